@@ -9,8 +9,9 @@ many and one more Chebyshev points, and all instants of the cell take
 a product whose result is written where it belongs. What is made of states, an angle or a turn, costs there
 what a coordinate costs. A law of the chassis is taken at the instants themselves. Numbers are analytic in
 a cell: where the second half of their coefficients is below `HALFWAY`, what lies beyond them is below the
-square of that and more. A cell that is too long for that is halved; where one of few instants still is, the
-plain formulas are left to do. How far a number is off is proven from it (see `bounds`), however it was found.
+square of that and more. A cell that is too long for that, or in which a rate grows from nothing, is halved;
+where one of few instants still is, the plain formulas are left to do. How far a number is off is proven from
+it (see `bounds`), however it was found.
 """
 
 from __future__ import annotations
@@ -42,8 +43,10 @@ MOST, FEWEST = 4096, 128
 # Of the largest number of its kind, what is none at all: rates that are solved for together share that much
 # of each other's rounding.
 SHARED = 8.0 * EPS
-# Half the length of a cell by its distance from the start of the series: its numbers are of one size there.
-NARROW = 1.0 / 16.0
+# Where a series starts, a number is off by a part of what it is there, be it small or nothing. A cell that
+# lies nearer to the start than so many times half its length is good only if each of its numbers has so much
+# of its largest size at the first instant already.
+NEAR, BEGUN = 16.0, 0.5
 # By how much of half a cell an instant may be rounded (see `Interpolation.chebyshev`).
 ROUNDED = 2.0**-24
 # Largest coefficient of the second half, of a number's size.
@@ -90,7 +93,7 @@ class CloseInstants:
                     if len(laws):
                         stand += self._added[still:, :-1] @ laws[:, low : low + MOST]
                 while len(cells):
-                    good = self._narrow(cells, times)
+                    good = self._apart(cells, times)
                     coefficients, fits = self._coefficients(cells[good], times)
                     good[good] = fits
                     self._sum(cells[good], coefficients[fits], times, laws, rows)
@@ -120,12 +123,16 @@ class CloseInstants:
     def _starts(self) -> Array:
         return np.array([segment.start for segment in self.chain.segments])
 
-    def _narrow(self, cells: Whole, times: Array) -> NDArray[np.bool_]:
-        """Whether numbers of a cell are of one size, and rounding tells its instants apart."""
+    def _apart(self, cells: Whole, times: Array) -> NDArray[np.bool_]:
+        """Whether rounding tells the instants of a cell apart."""
+        middle, half = middle_and_half(cells, times)
+        return np.asarray((half > 0.0) & (EPS * np.abs(middle) <= ROUNDED * half))
+
+    def _near(self, cells: Whole, times: Array) -> NDArray[np.bool_]:
+        """Whether a cell lies so near to the start of its series that a number may begin there."""
         middle, half = middle_and_half(cells, times)
         start = self._starts[np.searchsorted(self._starts, times[cells[:, 0]], side="right") - 1]
-        rounded = EPS * np.abs(middle) <= ROUNDED * half
-        return np.asarray((half > 0.0) & rounded & (half <= NARROW * (middle - start)))
+        return np.asarray(middle - start < NEAR * half)
 
     def _coefficients(self, cells: Whole, times: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Of powers, highest first, of the rows that are solved for or computed; and in which cells they fit.
@@ -142,15 +149,17 @@ class CloseInstants:
         values = values.reshape(len(values), *points.shape)
         found = own.chebyshev(values, (points - middle) / half - own.points)
         rows, least, kinds = self._numbers
-        largest, later = (
+        largest, begun, later = (
             np.maximum.reduceat(np.abs(each).max(axis=-1), rows)
-            for each in (values, found[..., DEGREE // 2 + 1 :])
+            for each in (values, values[..., :1], found[..., DEGREE // 2 + 1 :])
         )
         of_kind = np.zeros((kinds.max() + 1, len(cells)))
         np.maximum.at(of_kind, kinds, largest)
-        allowed = HALFWAY * np.maximum(largest, least[:, None]) + SHARED * of_kind[kinds]
+        size, none = np.maximum(largest, least[:, None]), SHARED * of_kind[kinds]
+        fits = (later <= HALFWAY * size + none).all(axis=0)
+        grown = (np.maximum(begun, least[:, None]) < BEGUN * size - none).any(axis=0)
         powers = np.moveaxis(found @ own.powers, 1, 0)[..., ::-1]
-        return np.ascontiguousarray(powers), np.asarray((later <= allowed).all(axis=0))
+        return np.ascontiguousarray(powers), fits & ~(grown & self._near(cells, times))
 
     def _sum(self, cells: Whole, coefficients: Array, times: Array, laws: Array, rows: Array) -> None:
         """Fill the columns of cells, but for the chassis' points, by their coefficients and the laws."""
