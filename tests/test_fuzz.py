@@ -190,22 +190,6 @@ def results() -> bytes:
     return ("\n".join(lines) + "\n").encode("utf-8")
 
 
-def swept() -> bytes:
-    """Two designs at three instants as `sweep` writes them."""
-    head = "design,lower_ball_joint.z [mm],time [s],wheel.camber [deg],status"
-    rows = [f"{d},{95.0 + d},{0.5 * i},{0.1 * i - d:.17g},solved" for d in range(2) for i in range(3)]
-    return ("\n".join([head, *rows]) + "\n").encode("utf-8")
-
-
-def arrays_of_a_sweep() -> bytes:
-    """The same as arrays."""
-    stream, designs = io.BytesIO(), np.arange(2.0)
-    camber = 0.05 * np.arange(3.0) - designs[:, None]
-    columns = {"lower_ball_joint.z [mm]": 95.0 + designs, "time [s]": 0.5 * np.arange(3.0)}
-    np.savez(stream, design=designs, **columns, **{"wheel.camber [deg]": camber}, allow_pickle=False)
-    return stream.getvalue()
-
-
 MAP = """[columns]
 t = { is = "time", unit = "s" }
 camber = { is = "wheel.camber", unit = "deg" }
@@ -238,8 +222,6 @@ FORMATS: dict[str, tuple[str, Callable[[], str | bytes], str, bool]] = {
         "import {folder}/points.csv --names {file} -o {folder}/out.toml",
         True,
     ),
-    "table of a sweep": ("sweep.csv", swept, "plot {file} -o {folder}/out.svg", False),
-    "arrays of a sweep": ("sweep.npz", arrays_of_a_sweep, "plot {file} -o {folder}/out.svg", False),
     "designs": ("designs.csv", lambda: DESIGNS, "sweep double-wishbone --designs {file}", False),
 }
 

@@ -7,10 +7,9 @@ import os
 import re
 from pathlib import Path
 
-from pointcoord import Scene, SceneError, built_in_scenes
-from pointcoord.mechanism.file import MECHANISMS, is_path, shipped
+from pointcoord import UnknownName, built_in_scenes
+from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.scene.scene_file import SCENES
-from pointcoord.toml_text import parsed, read_file
 from validate.commands.usage import Command
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -18,10 +17,7 @@ from validate.output.console import Console
 from validate.output.files import require_writable
 from validate.plain_text import shown
 
-TYPE = re.compile(r"^([ \t]*type[ \t]*=[ \t]*)(\"[^\"\n]*\"|'[^'\n]*')", re.MULTILINE)
-
-PATH = re.compile(r"(\b(?:mechanism|table)[ \t]*=[ \t]*)(\"[^\"\n]*\"|'[^'\n]*')")
-
+TYPE = re.compile(r'^(type *= *)"(\w+)"', re.MULTILINE)
 SCENE_NOTE = """\
 # A scene: mechanism, points as drawn (mm), inputs over time, instants, effects.
 # Try: pointcoord plan {name}.toml, pointcoord draw {name}.toml -o {name}.svg, pointcoord validate {name}.toml
@@ -46,23 +42,16 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     name, copied = options.name.removesuffix(".toml"), vars(options)["from"]
     if not name:
         raise UsageError("NAME is empty; allowed: the name of the new files, without .toml")
-    Scene.load(copied)
-    source = SCENES / f"{copied}.toml" if copied in built_in_scenes() else Path(copied)
-    written = read_file(source, "a scene")
-    of_type = parsed(written, copied)["mechanism"].get("type")
-    files = {}
-    text = _found_from(written.decode("utf-8-sig"), source.parent, Path(name).parent)
-    if of_type is not None:
-        own = f"{Path(name).name}-mechanism.toml"
-        text, count = TYPE.subn(lambda found: f'{found[1]}"{own}"', text)
-        if count != 1:
-            raise SceneError(copied, "mechanism.type", "is not written as one line type = ...")
-        source = source.parent / of_type if is_path(of_type) else MECHANISMS / f"{of_type}.toml"
-        tables = read_file(source, ", ".join(shipped())).decode("utf-8-sig")
-        files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + _found_from(
-            tables, source.parent, Path(name).parent
-        )
-    files = {f"{name}.toml": SCENE_NOTE.format(name=name) + text, **files}
+    if copied not in built_in_scenes():
+        raise UnknownName("built-in scene", copied, built_in_scenes())
+    text = (SCENES / f"{copied}.toml").read_text(encoding="utf-8")
+    own = f"{Path(name).name}-mechanism.toml"
+    found = TYPE.search(text)
+    files = {f"{name}.toml": SCENE_NOTE.format(name=name) + text}
+    if found is not None:
+        files[f"{name}.toml"] = SCENE_NOTE.format(name=name) + TYPE.sub(rf'\1"{own}"', text)
+        tables = (MECHANISMS / f"{found[2]}.toml").read_text(encoding="utf-8")
+        files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + tables
     for target in files:
         if os.path.exists(target):
             raise UsageError(f"{shown(target)} is there already; allowed: a name of its own")
@@ -72,19 +61,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.say(f"{' and '.join(map(shown, files))} written, copied from {shown(copied)}")
     console.say(f"for another (pointcoord scenes): --from SCENE; try: pointcoord plan {shown(name)}.toml")
     return ExitStatus.AGREE
-
-
-def _found_from(text: str, folder: Path, other: Path) -> str:
-    """A file's text with its relative paths of mechanisms and tables, of one folder, counted from another."""
-
-    def counted(found: re.Match[str]) -> str:
-        path, of_table = found[2][1:-1], found[1].startswith("table")
-        elsewhere = folder.resolve() != other.resolve() and not os.path.isabs(path)
-        if not (elsewhere and (of_table or is_path(path))):
-            return found[0]
-        return f"{found[1]}'{os.path.relpath(folder / path, other)}'"
-
-    return PATH.sub(counted, text)
 
 
 COMMANDS = {"new": Command(run)}

@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import sensitivity, sweep
 from pointcoord.effects.numbers import RANKED_FIRST
-from pointcoord.effects.registry import number_called
 from pointcoord.sweeping.sensitivity import numbers_named
-from validate.commands.table import meant_numbers
 from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
-from validate.curves.numbers import asking_for, by_path
+from validate.curves.numbers import asking_for, numbers_asked
 from validate.exit_status import ExitStatus
-from validate.extras import needed
 from validate.output.console import Console
-from validate.output.table import Table, csv_of
-from validate.tables.units import degrees_of
+from validate.output.table import Table, csv_of, text_for
 
 Array = NDArray[np.float64]
 
-PICTURES = (".svg", ".png")
-ENDINGS = (".csv", ".md", *PICTURES)
+ENDINGS = (".csv",)
 ROWS = 15
 SAMPLES = 11
 DESIGNS = 400
@@ -51,77 +46,50 @@ class Column:
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print or write the derivatives and the spreads."""
     target = place_of_result(options, ENDINGS, console)
-    ending = "" if target is None else Path(target).suffix
-    if ending in PICTURES:
-        needed("sensitivity", "matplotlib", "plot")
-    scene, name = load_scene(options.scene), name_of(options.scene)
-    signs = meant_numbers(options.number, scene, name, RANKED_FIRST) or meant_numbers(None, scene, name, None)
-    paths, samples = by_path(scene), min(SAMPLES, scene.time.samples)
-    time = {"start": scene.time.start, "stop": scene.time.stop, "samples": samples}
-    scene = asking_for(scene.model_copy(update={"effects": (), "time": time}), [*signs])
+    name = name_of(options.scene)
+    scene = load_scene(options.scene).model_copy(update={"effects": ()})
+    numbers = numbers_asked(scene, name, options.number, RANKED_FIRST)
+    numbers = numbers or numbers_asked(scene, name, None, None)
+    called = [number.called for number in numbers]
+    time = {"start": scene.time.start, "stop": scene.time.stop, "samples": min(SAMPLES, scene.time.samples)}
     random = np.random.default_rng(options.seed)
     with told_as(name), console.progress(f"solving {name}", total=None, lines=False):
-        found = sensitivity(scene, [*signs], options.point)
+        scene = asking_for(scene, numbers).model_copy(update={"time": time})
+        found = sensitivity(scene, called, options.point)
         offsets = {one: random.normal(0.0, options.tolerance, DESIGNS) for one in found.coordinates}
         designs = sweep(scene, offsets=offsets)
     for coordinate, why in found.failures.items():
         console.warn(f"{name}: {coordinate} has no derivative: {why}")
-    order = np.argsort(-np.abs(found.largest(next(iter(signs)))), kind="stable")
+    order = np.argsort(-np.abs(found.largest(called[0])), kind="stable")
     columns = []
-    for number, array in numbers_named(designs.numbers, [*signs]).items():
-        called, sign = number_called(number), signs[number]
-        factor, unit = degrees_of(paths[number].unit if called is None else called.quantity.unit)
-        deviation, worst = found.spread(number, options.tolerance)
+    for number, array in zip(numbers, numbers_named(designs.numbers, called).values(), strict=True):
+        deviation, worst = found.spread(number.called, options.tolerance)
         drawn = float(np.nanstd(array[designs.solved], axis=0).max())  # where it is largest
-        spreads = tuple(factor * spread for spread in (deviation, drawn, worst))
-        changes = sign * factor * found.largest(number)[order]
-        columns.append(Column(f"{'-' if sign < 0 else ''}{number}", unit, changes, spreads))
+        spreads = tuple(number.in_degrees * spread for spread in (deviation, drawn, worst))
+        changes = (-1 if number.minus else 1) * number.in_degrees * found.largest(number.called)[order]
+        columns.append(
+            Column(f"{'-' if number.minus else ''}{number.called}", number.unit_shown, changes, spreads)
+        )
     coordinates = [found.coordinates[place] for place in order]
-    if ending in PICTURES:
-        console.put(target, _picture(coordinates, columns, name, ending), "the picture")
-    else:
-        console.put(target, _text(coordinates, columns, ending, options.tolerance), "the table")
+    console.put(target, _text(coordinates, columns, target, options.tolerance), "the table")
     return ExitStatus.NO_VERDICT if found.failures else ExitStatus.AGREE
 
 
-def _text(coordinates: Sequence[str], columns: Sequence[Column], ending: str, tolerance: float) -> str:
-    """A row for each coordinate, and what a tolerance makes."""
+def _text(coordinates: Sequence[str], columns: Sequence[Column], target: str | None, tolerance: float) -> str:
+    """A row for each coordinate, and in text what a tolerance makes."""
     head = ("hardpoint", *(f"{one.name} [{one.unit}/mm]" for one in columns))
-    if ending == ".csv":
+    if target is not None:
         return csv_of(head, zip(coordinates, *(one.changes.tolist() for one in columns), strict=True))
-    shown = len(coordinates) if ending else min(ROWS, len(coordinates))
     # Adding 0 turns a rounded -0 into 0.
-    texts = ([f"{round(change, 5) + 0.0:.5f}" for change in one.changes[:shown]] for one in columns)
-    table = Table(head, tuple(zip(coordinates[:shown], *texts, strict=True)))
+    texts = ([f"{round(change, 5) + 0.0:.5f}" for change in one.changes[:ROWS]] for one in columns)
+    table = Table(head, tuple(zip(coordinates[:ROWS], *texts, strict=True)))
     made = Table(
         (f"by {tolerance:g} mm of each", "standard deviation", f"of {DESIGNS} designs", "worst case"),
         tuple((f"{one.name} [{one.unit}]", *(f"{spread:.4f}" for spread in one.spreads)) for one in columns),
     )
-    if ending:
-        return "\n".join([table.markdown, "", made.markdown, ""])
-    rest = len(coordinates) - shown
-    told = [f"{rest} more coordinates: -o FILE.csv has all"] if rest else []
-    return "\n".join([table.text, *told, "", made.text, ""])
-
-
-def _picture(coordinates: Sequence[str], columns: Sequence[Column], name: str, ending: str) -> bytes:
-    """A panel of bars for each number, a bar for each of the first coordinates."""
-    # Imported here: matplotlib takes a second.
-    from matplotlib import rc_context
-    from matplotlib.figure import Figure
-
-    from validate.output.figure import BLUE, SETTINGS, drawn, plain
-
-    first = coordinates[:ROWS][::-1]
-    with rc_context(SETTINGS):
-        page = Figure(figsize=(2.2 * len(columns) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
-        page.suptitle(f"{name}: change by each hardpoint, per mm", x=0.02, ha="left", fontsize=9.0)
-        panels = page.subplots(1, len(columns), sharey=True, squeeze=False)[0]
-        for axes, one in zip(panels, columns, strict=True):
-            axes.barh(first, one.changes[:ROWS][::-1], color=BLUE)
-            axes.set_xlabel(f"{one.name}, {one.unit}/mm")
-            plain(axes)
-        return drawn(page, ending.removeprefix("."))
+    rest = len(coordinates) - ROWS
+    told = [f"{rest} more coordinates: -o FILE.csv has all"] if rest > 0 else []
+    return text_for(sys.stdout, [table, *told, "", made, ""])
 
 
 WORDS = {"samples": SAMPLES, "designs": DESIGNS, "rows": ROWS, "ranked": ", ".join(RANKED_FIRST)}

@@ -6,32 +6,21 @@ import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-import numpy as np
-
 from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
-from validate.commands.usage import (
-    Command,
-    load_scene,
-    name_of,
-    place_of_picture,
-    place_of_result,
-    told_as,
-)
-from validate.curves.numbers import TIME, TRAVEL, Curves, Number, as_meant, found, usual
+from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
+from validate.curves.numbers import TIME, TRAVEL, Curves, Number, angles_of, asking_for, numbers_called, usual
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.columns import ENDINGS, require_table, write_csv, write_motion
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.paper.printed import PRINTED
-from validate.plain_text import some_of
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 PICTURES = (".svg", ".png")
-NAMED = 8  # columns of a file, in a message
 SMOOTH = 401  # a curve of fewer instants has corners
 
 
@@ -62,13 +51,13 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw curves."""
-    target = place_of_picture(options, PICTURES, console)
+    target = place_of_result(options, PICTURES, console)
     needed("plot", "matplotlib", "plot")
-    if Path(options.scene).suffix in ENDINGS:
-        return _plot_file(options, target, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
-    scene, numbers = as_meant(scene)
-    chosen = _curves(options, numbers, name)
+    angles = tuple(n for one in angles_of(scene) for n in numbers_called(one.path[1], scene))
+    chosen = _curves(options, scene, name)
+    with told_as(name):
+        scene = asking_for(scene, (*chosen.across, *chosen.up) if chosen else angles)
 
     def write(motion: Motion) -> str:
         # Imported here: matplotlib takes a second.
@@ -78,47 +67,13 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
         count = options.instants or max(len(motion.times), SMOOTH)
         own = options.instants is None and count == len(motion.times)
         samples = motion if own or len(motion.times) == 1 else next(motion.blocks(count, count))
-        curves = chosen or usual(scene, numbers, motion)
-        degrees = options.degrees
-        picture = figure(curves, lambda n: n.shown(motion, samples, degrees), scene.title or name, degrees)
-        console.put(target, drawn(picture, _ending(target)), "the picture")
+        curves = chosen or usual(scene, motion, angles)
+        picture = figure(curves, lambda n: n.shown(motion, samples), scene.title or name)
+        ending = "svg" if target is None else Path(target).suffix.removeprefix(".")
+        console.put(target, drawn(picture, ending), "the picture")
         return "the picture"
 
     return solved(scene, target, options, console, write)
-
-
-def _plot_file(options: argparse.Namespace, target: str | None, console: Console) -> ExitStatus:
-    """Draw the columns of a file; the designs of a sweep by what they differ by."""
-    # Imported here: matplotlib takes a second.
-    from validate.curves.of_file import read_written
-    from validate.curves.picture import Shade, figure
-    from validate.output.figure import drawn
-
-    if options.instants is not None or not options.degrees:
-        raise UsageError("--instants and --no-degrees are about a scene; a file has its own rows and units")
-    name, written = name_of(options.scene), read_written(options.scene)
-    across, up = written.across, [".".join(number.path) for number in written.angles]
-    curves = _curves(options, written.numbers, name, (".".join(across.path),), up)
-    if curves is None:
-        if not up:
-            there = some_of([number.short for number in written.numbers], NAMED)
-            raise UsageError(f"{name} has no angle of a wheel; say --y NAME of its columns: {there}")
-        curves = Curves((across,), written.angles)
-    if written.curves < written.designs and written.curves > 1:
-        console.note(f"{name}: {written.curves} of {written.designs} designs are drawn")
-    shade = None
-    if written.curves > 1:
-        numbers = np.arange(float(written.curves))
-        by = written.varied[0] if len(written.varied) == 1 else None
-        words = "design" if by is None else f"{by.words} [{by.unit}]"
-        shade = Shade(words, numbers if by is None else written.values[by.path][0])
-    picture = figure(curves, lambda n: written.values[n.path], name, False, shade)
-    console.put(target, drawn(picture, _ending(target)), "the picture")
-    return ExitStatus.AGREE
-
-
-def _ending(target: str | None) -> str:
-    return "svg" if target is None else Path(target).suffix.removeprefix(".")
 
 
 def solved(
@@ -174,18 +129,12 @@ def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
         console.note(f"{name}: {note}")
 
 
-def _curves(
-    options: argparse.Namespace,
-    numbers: Sequence[Number],
-    name: str,
-    across_if_not_said: Sequence[str] = (TIME,),
-    up_if_not_said: Sequence[str] = (TRAVEL,),
-) -> Curves | None:
+def _curves(options: argparse.Namespace, scene: Scene, name: str) -> Curves | None:
     """What the command line asks for; None if it leaves that open."""
     if not options.x and not options.y:
         return None
-    asked = (("--x", options.x or across_if_not_said), ("--y", options.y or up_if_not_said))
-    across, up = (_named(words, option, numbers, name) for option, words in asked)
+    asked = (("--x", options.x or (TIME,)), ("--y", options.y or (TRAVEL,)))
+    across, up = (_named(words, option, scene, name) for option, words in asked)
     if len(across) > 1 and len(up) > 1:
         raise UsageError(
             f"--x are {len(across)} numbers, and --y {len(up)}; allowed: several of one of them; say which "
@@ -194,19 +143,15 @@ def _curves(
     return Curves(across, up)
 
 
-def _named(words: Sequence[str], option: str, numbers: Sequence[Number], name: str) -> tuple[Number, ...]:
+def _named(words: Sequence[str], option: str, scene: Scene, name: str) -> tuple[Number, ...]:
     try:
-        named = [number for one in words for number in found(one, numbers)]
-    except (UsageError, PointcoordError) as error:
+        named = [number for one in words for number in numbers_called(one, scene)]
+    except UsageError as error:
         raise UsageError(f"{name}: {option} {error}") from None
     return tuple({number.path: number for number in named}.values())
 
 
 COMMANDS = {
     "simulate": Command(run_simulate, more={"--method": {"choices": tuple(BY_NAME), "metavar": None}}),
-    "plot": Command(
-        run_plot,
-        {"smooth": SMOOTH},
-        {"--degrees": {"action": argparse.BooleanOptionalAction, "default": True}},
-    ),
+    "plot": Command(run_plot, {"smooth": SMOOTH}),
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,40 +21,91 @@ from pointcoord import (
     grid_of,
     sweep_blocks,
 )
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.sweeping.designs import coordinates_named
+from pointcoord.sweeping.swept import Failure, Noted, merged
 from pointcoord.toml_text import read_file
-from validate.commands.usage import (
-    Command,
-    load_scene,
-    name_of,
-    require_results,
-    told_as,
-)
-from validate.commands.values import MOST_VALUES, finite, values_of
+from validate.commands.usage import Command, load_scene, name_of, require_results, told_as
+from validate.commands.values import finite, values_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.columns import ENDINGS, require_table, write_sweep, write_sweep_csv
 from validate.output.console import Console
-from validate.output.document import Head, Journal
 from validate.output.progress import Told
-from validate.output.sweep_summary import Summary
+from validate.output.report import counted_as
+from validate.output.table import Part, Table
 from validate.plain_text import shown
 from validate.tables.cells import joined, lines_of, text_of
+from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
 
-EXAMPLES = (
-    "POINT.AXIS=START:STOP:COUNT, =A,B,C, =normal:SIGMA or =uniform:HALF, in finite mm; == for places, not "
-    "offsets"
-)
-NORMAL = "normal"
-KINDS = (NORMAL, "uniform")
+EXAMPLES = "POINT.AXIS=START:STOP:COUNT or =A,B,C, in finite mm from the drawing"
+
+
+@dataclass
+class Summary:
+    """What is there so far of a sweep.
+
+    Attributes:
+        failures: by reason how many designs, and the first of them.
+        ends: by quantity and name of a number of the car its lowest and its highest, each with its design.
+    """
+
+    tried: int = 0
+    instants: int = 0
+    failures: dict[str, tuple[int, Failure]] = field(default_factory=dict)
+    notes: tuple[Noted, ...] = ()
+    ends: dict[tuple[str, str], tuple[tuple[float, int], tuple[float, int]]] = field(default_factory=dict)
+
+    def add(self, block: Sweep) -> None:
+        """Take in a block."""
+        self.tried += len(block)
+        self.instants = len(block.times)
+        for failure in block.failures.values():
+            count, first = self.failures.get(failure.reason, (0, failure))
+            self.failures[failure.reason] = (count + 1, first)
+        self.notes = merged((*self.notes, *block.notes))
+        for quantity, channel in block.numbers.items():
+            for name, array in channel.items() if channel.quantity.of == "car" else ():
+                if np.isfinite(array).any():
+                    low, high = (int(of(array) // len(block.times)) for of in (np.nanargmin, np.nanargmax))
+                    here = (
+                        (float(np.nanmin(array)), block.first + low),
+                        (
+                            float(np.nanmax(array)),
+                            block.first + high,
+                        ),
+                    )
+                    before = self.ends.get((quantity, name), here)
+                    self.ends[quantity, name] = min(before[0], here[0]), max(before[1], here[1])
+
+    def failed_lines(self) -> list[str]:
+        """Why designs failed, the most frequent reason first."""
+        return [
+            f"{count} of {self.tried} designs failed, {reason}; design {first.design} for one: {first.error}"
+            for reason, (count, first) in sorted(self.failures.items(), key=lambda item: -item[1][0])
+        ]
+
+    def parts(self) -> tuple[Part, ...]:
+        """For people, angles in degrees."""
+        solved = self.tried - sum(count for count, _ in self.failures.values())
+        instants = counted_as(self.instants, "instant")
+        rows = []
+        for (quantity, name), ends in self.ends.items():
+            factor, unit = degrees_of(QUANTITIES[quantity].unit)
+            # Adding 0 turns a rounded -0 into 0.
+            told = (f"{round(factor * end, 4) + 0.0:.6g} (design {design})" for end, design in ends)
+            rows.append((f"{name} [{unit}]", *told))
+        table = [Table(("over designs and instants", "lowest", "highest"), tuple(rows))] if rows else []
+        said = f"solved: {solved} of {self.tried} designs, at {instants} each"
+        return (said, *self.failed_lines(), *table)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the designs, write them as they come, and say what came of them."""
-    target, results = options.output, {"-o": options.output, "--json": options.json}
-    require_results(results, (options.scene, options.designs), options, console, {"-o": ENDINGS})
+    target, read = options.output, (options.scene, options.designs)
+    require_results({"-o": target}, read, options, console, {"-o": ENDINGS})
     if target not in (None, "-"):
         require_table(target)
     name = name_of(options.scene)
@@ -62,44 +114,30 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         if options.instants is not None:
             time = {"start": scene.time.start, "stop": scene.time.stop, "samples": options.instants}
             scene = scene.model_copy(update={"time": time})
-    designs = _designs(scene, options)
-    if not options.memory > 0.0:
-        raise UsageError(f"--memory is {options.memory:g} MB; allowed: more than 0")
-    summary = Summary(designs.count, scene.mechanism.topology.wheel_centre)
-    journal = Journal(
-        options.json,
-        Head.of("sweep", options.command, options.timings),
-        console,
-        lambda: {"scene": name, **summary.data()},
-        lambda: f"{summary.tried} of {designs.count} designs" if summary.tried else "",
-    )
-    with journal.closing() as ending:
-        try:
-            with console.progress("designs", total=designs.count, lines=False) as told:
-                blocks = _seen(sweep_blocks(designs, memory=1e6 * options.memory), summary, told)
-                if target == "-":
-                    write_sweep_csv(console, blocks)
-                elif target is not None:
-                    write_sweep(target, blocks)
-                    console.written[target] = "the designs"
-                else:
-                    for _ in blocks:
-                        pass
-        except (SceneError, SweepError, UnknownName):
-            raise
-        except PointcoordError as error:
-            console.complain(f"{name}: {error}")
-            ending.status = ExitStatus.NO_VERDICT
-            return ending.status
-        console.show(summary.parts())
-        for note in summary.notes:
-            (console.warn if note.warns else console.note)(f"{name}: {note.told(summary.tried)}")
-        if console.mute:
-            for line in summary.failed_lines():
-                console.complain(f"{name}: {line}")
-        if summary.failures:
-            ending.status = ExitStatus.NO_VERDICT
-    return ending.status
+    designs, summary = _designs(scene, options), Summary()
+    try:
+        with console.progress("designs", total=designs.count, lines=False) as told:
+            blocks = _seen(sweep_blocks(designs), summary, told)
+            if target == "-":
+                write_sweep_csv(console, blocks)
+            elif target is not None:
+                write_sweep(target, blocks)
+                console.written[target] = "the designs"
+            else:
+                for _ in blocks:
+                    pass
+    except (SceneError, SweepError, UnknownName):
+        raise
+    except PointcoordError as error:
+        console.complain(f"{name}: {error}")
+        return ExitStatus.NO_VERDICT
+    console.show(summary.parts())
+    for note in summary.notes:
+        (console.warn if note.warns else console.note)(f"{name}: {note.told(summary.tried)}")
+    if console.mute:
+        for line in summary.failed_lines():
+            console.complain(f"{name}: {line}")
+    return ExitStatus.NO_VERDICT if summary.failures else ExitStatus.AGREE
 
 
 def _seen(blocks: Iterator[Sweep], summary: Summary, told: Told) -> Iterator[Sweep]:
@@ -115,49 +153,17 @@ def _designs(scene: Scene, options: argparse.Namespace) -> Designs:
     if bool(options.vary) == bool(options.designs):
         problem = "both --vary and --designs" if options.vary else "nothing varies"
         raise UsageError(f"{problem}; give --vary {EXAMPLES}, once or more, or --designs FILE.csv")
-    varied: dict[str, Array | tuple[str, float]] = {}
-    for text in options.vary:
-        coordinate, values = _read(text, scene)
-        if coordinate in varied:
-            raise SweepError(f"--vary {shown(coordinate)}", "is given twice", "once")
-        varied[coordinate] = values
-    random = {name: one for name, one in varied.items() if isinstance(one, tuple)}
-    if not random and (options.count is not None or options.seed is not None):
-        raise UsageError("--count and --seed are for what is random: --vary POINT.AXIS=normal:SIGMA")
     if options.designs:
         return _designs_of_file(scene, options.designs)
-    if not random:
-        return grid_of(scene, {name: one for name, one in varied.items() if not isinstance(one, tuple)})
-    if len(random) < len(varied):
-        raise UsageError("--vary gives random values and a grid at once; give either")
-    count = options.count
-    if count is None or count > MOST_VALUES:
-        raise UsageError(f"how many designs at random? give --count N, 1 to {MOST_VALUES}")
-    generator = np.random.default_rng(options.seed or 0)
-    drawn = {
-        name: generator.normal(0.0, size, count) if kind == NORMAL else generator.uniform(-size, size, count)
-        for name, (kind, size) in random.items()
-    }
-    return designs_of(scene, offsets=drawn)
-
-
-def _read(text: str, scene: Scene) -> tuple[str, Array | tuple[str, float]]:
-    """The coordinate of one `--vary`, and where it is drawn, mm; of what is random its kind and its size."""
-    what = f"--vary {shown(text)}"
-    coordinate, _, values = text.partition("=")
-    coordinate, offsets, values = coordinate.strip(), not values.startswith("="), values.removeprefix("=")
-    if len(meant := coordinates_named(coordinate, scene.mechanism.topology.points)) > 1:
-        raise SweepError(what, "names no coordinate", ", ".join(meant))
-    kind, _, size = values.partition(":")
-    if kind.strip() in KINDS:
-        spread = float(finite(what, [size], EXAMPLES)[0])
-        if not offsets or spread < 0.0:
-            raise SweepError(what, "is no spread about the drawing", "0 mm or more, after one =")
-        return coordinate, (kind.strip(), spread)
-    places = values_of(what, values, EXAMPLES)
-    if offsets:
-        places = grid_of(scene, offsets={coordinate: places}).columns[coordinate].values
-    return coordinate, places
+    varied: dict[str, Array] = {}
+    for text in options.vary:
+        what, (coordinate, _, values) = f"--vary {shown(text)}", text.partition("=")
+        if len(meant := coordinates_named(coordinate.strip(), scene.mechanism.topology.points)) > 1:
+            raise SweepError(what, "names no coordinate", ", ".join(meant))
+        if coordinate.strip() in varied:
+            raise SweepError(f"--vary {shown(coordinate)}", "is given twice", "once")
+        varied[coordinate.strip()] = values_of(what, values, EXAMPLES)
+    return grid_of(scene, offsets=varied)
 
 
 def _designs_of_file(scene: Scene, path: str) -> Designs:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import takewhile
 from textwrap import fill
 
@@ -27,7 +26,6 @@ Values = Callable[[Number], Array]
 
 COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY)
 STYLES = ("-", "--", "-.", ":")  # for those who see no colours, and beyond their number
-SHADES = "viridis"
 # Inches: how wide and high panels are, one alone or several that stand side by side or above each other, and
 # what the labels and the title take.
 ALONE, BESIDE, ABOVE, LABELS = (4.4, 3.6), (2.3, 3.6), (5.5, 2.3), (0.9, 1.1)
@@ -36,26 +34,11 @@ TITLE, LETTER = 0.08, 0.066  # inches, of letters of a title and of a label, on 
 STILL = 1e-9
 
 
-@dataclass(frozen=True)
-class Shade:
-    """What curves of designs differ by, from dark to light.
-
-    Attributes:
-        values: of each design, (D,).
-    """
-
-    words: str
-    values: Array
-
-
-def figure(
-    curves: Curves, values: Values, title: str, degrees: bool = True, shade: Shade | None = None
-) -> Figure:
+def figure(curves: Curves, values: Values, title: str) -> Figure:
     """Draw curves.
 
     Args:
-        values: of each number, as it is shown: (N,), or (N, D) of designs that differ by a shade.
-        degrees: whether angles are in degrees there, or as the numbers have them.
+        values: of each number, as it is shown, (N,).
     """
     upright = len(_panels(curves.across)) > 1 or curves.up[0].path[0] == TRAVEL
     several = _panels(curves.across if upright else curves.up)
@@ -69,16 +52,9 @@ def figure(
         grid = page.subplots(rows, columns, sharex=not upright, sharey=upright, squeeze=False)
         for axes, panel in zip(grid.flat, several, strict=True):
             across, up = (panel, curves.up) if upright else (curves.across, panel)
-            _draw(axes, Curves(tuple(across), tuple(up)), values, degrees, size, shade)
+            _draw(axes, Curves(tuple(across), tuple(up)), values, size)
             axes.label_outer()
-        if shade is not None:
-            shades = mpl.cm.ScalarMappable(_norm(shade), SHADES)
-            page.colorbar(shades, ax=grid, label=shade.words, aspect=40, pad=0.02)
     return page
-
-
-def _norm(shade: Shade) -> mpl.colors.Normalize:
-    return mpl.colors.Normalize(float(np.min(shade.values)), float(np.max(shade.values)))
 
 
 def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
@@ -89,14 +65,7 @@ def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
     return list(found.values())
 
 
-def _draw(
-    axes: Axes,
-    curves: Curves,
-    values: Values,
-    degrees: bool,
-    size: tuple[float, float],
-    shade: Shade | None,
-) -> None:
+def _draw(axes: Axes, curves: Curves, values: Values, size: tuple[float, float]) -> None:
     plain(axes)
     for set_limits, numbers in ((axes.set_xlim, curves.across), (axes.set_ylim, curves.up)):
         every = np.concatenate([values(number).ravel() for number in numbers])
@@ -107,30 +76,27 @@ def _draw(
             set_limits(middle - reach, middle + reach)
     several = len(curves.across) > 1 or len(curves.up) > 1
     for i, (across, up) in enumerate(curves.pairs):
-        lines = axes.plot(
+        axes.plot(
             values(across),
             values(up),
             color=COLOURS[i % len(COLOURS)],
             linestyle=STYLES[i % len(STYLES)] if several else "-",
-            linewidth=1.4 if shade is None else 0.9,
+            linewidth=1.4,
+            label=(across if len(curves.across) > 1 else up).short,
         )
-        lines[0].set_label((across if len(curves.across) > 1 else up).short)
-        if shade is not None:
-            for curve, colour in zip(lines, mpl.colormaps[SHADES](_norm(shade)(shade.values)), strict=True):
-                curve.set_color(colour)
     for line, (low, high) in ((axes.axvline, axes.get_xlim()), (axes.axhline, axes.get_ylim())):
         if low < 0.0 < high:
             line(0.0, color=GREY, linewidth=0.6, zorder=1.0)
     axes.ticklabel_format(useOffset=False)
     axes.locator_params(nbins=6)
     wide, high = (int(side / LETTER) for side in size)
-    axes.set_xlabel(_label(curves.across, degrees, wide))
-    axes.set_ylabel(_label(curves.up, degrees, high))
+    axes.set_xlabel(_label(curves.across, wide))
+    axes.set_ylabel(_label(curves.up, high))
     if several:
         axes.legend(fontsize=7.0, framealpha=0.8, edgecolor=FAINT)
 
 
-def _label(numbers: Sequence[Number], degrees: bool, letters: int) -> str:
+def _label(numbers: Sequence[Number], letters: int) -> str:
     """What an axis shows, with its unit and its sign; of several numbers what they have in common."""
     first = numbers[0]
     words = first.words if len(numbers) == 1 else _common([n.words for n in numbers])
@@ -140,7 +106,7 @@ def _label(numbers: Sequence[Number], degrees: bool, letters: int) -> str:
         sign = "\n" + fill(
             "; ".join(dict.fromkeys(f"+{n.path[-1]} {n.sign}" for n in numbers if n.sign)), letters
         )
-    return f"{fill(f'{words} [{first.unit_shown(degrees)}]', letters)}{sign}"
+    return f"{fill(f'{words} [{first.unit_shown}]', letters)}{sign}"
 
 
 def _common(texts: Sequence[str]) -> str:

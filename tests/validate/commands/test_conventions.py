@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene, simulate
 from pointcoord.scene.scene_file import SCENES
 from validate.cli import main
-from validate.curves.numbers import as_meant, found
+from validate.curves.numbers import asking_for, numbers_called
 
 Array = NDArray[np.float64]
 CAR = Scene.load("double-wishbone")
@@ -124,8 +124,8 @@ def test_a_scene_says_what_names_mean_in_its_tables_sensitivities_pictures_and_f
     assert theirs == -ours != 0.0
     assert main(["plot", str(tmp_path / "car.toml"), "-o", str(tmp_path / "car.svg"), "--quiet"]) == 0
     assert "minus toe by arcsine" in (tmp_path / "car.svg").read_text()
-    asked, numbers = as_meant(scene)
-    motion, (toe,) = simulate(asked), found("toe", numbers)
+    (toe,) = numbers_called("toe", scene)
+    motion = simulate(asking_for(scene, [toe]))
     np.testing.assert_allclose(toe.shown(motion, motion), toe_of_optimumk(), rtol=0, atol=1e-12)
     rows = [f"{t!r},{v:.6f}" for t, v in zip(motion.times.tolist(), toe_of_optimumk().tolist(), strict=True)]
     told = "\n".join(["time [s],toe [deg]", *rows, ""])

@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 from program import short_scene
 
-from pointcoord import NotComputed, Scene, simulate, sweep
+from pointcoord import NotComputed, Scene, simulate
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
 from validate.cli import main
 from validate.curves import picture
-from validate.curves.numbers import Curves, found, numbers_of, usual
-from validate.curves.of_file import read_written
+from validate.curves.numbers import Curves, angles_of, asking_for, found, numbers_of, usual
 from validate.errors import UsageError
-from validate.output.columns import ENDINGS
 
 WISHBONE = Scene.load("double-wishbone")
 MOTION = simulate(WISHBONE)
@@ -35,6 +33,9 @@ def test_few_words_name_the_number_that_the_motion_has() -> None:
     assert (np.stack(read("angular_velocity"), axis=-1) == MOTION.angular_velocity["knuckle"]).all()
     (rack,) = read("rack")
     assert rack == pytest.approx(15.0 * np.sin(4.0 * MOTION.times), abs=1e-12)
+    axle = numbers_of(Scene.load("axle-steer"))
+    assert [number.called for number in found("toe", axle)] == ["left.toe", "right.toe"]
+    assert [number.called for number in found("left.toe", axle)] == ["left.toe"]
 
 
 @pytest.mark.parametrize(
@@ -51,20 +52,18 @@ def test_without_a_word_the_curves_are_those_of_an_engineer(
     scene = Scene.load(name)
     if effects is not None:
         scene = scene.model_copy(update={"effects": effects})
-    curves = usual(scene, numbers_of(scene), simulate(scene))
+    curves = usual(scene, simulate(scene), angles_of(scene))
     assert ([n.short for n in curves.across], [n.short for n in curves.up]) == expected
 
 
 def test_angles_are_in_degrees_and_each_axis_says_its_sign() -> None:
     curves = Curves(tuple(found("wheel_centre.z", NUMBERS)), tuple(found("camber", NUMBERS)))
-    camber = MOTION.wheel["camber"]
-    for degrees, unit, values in ((True, "[deg]", np.degrees(camber)), (False, "[rad]", camber)):
-        (axes,) = picture.figure(curves, lambda n, d=degrees: n.shown(MOTION, MOTION, d), "car", degrees).axes
-        assert np.array_equal(axes.lines[0].get_xdata(), MOTION.position["wheel_centre"][:, 2])
-        assert np.array_equal(axes.lines[0].get_ydata(), values)
-        said = " ".join(axes.get_ylabel().split())
-        assert said == f"camber {unit} + {NUMBERS_OF_THE_CAR['camber'].sign}"
-        assert axes.get_xlabel().splitlines() == ["position of wheel centre, z [mm]", "+ up"]
+    (axes,) = picture.figure(curves, lambda n: n.shown(MOTION, MOTION), "car").axes
+    assert np.array_equal(axes.lines[0].get_xdata(), MOTION.position["wheel_centre"][:, 2])
+    assert np.array_equal(axes.lines[0].get_ydata(), np.degrees(MOTION.wheel["camber"]))
+    said = " ".join(axes.get_ylabel().split())
+    assert said == f"camber [deg] + {NUMBERS_OF_THE_CAR['camber'].sign}"
+    assert axes.get_xlabel().splitlines() == ["position of wheel centre, z [mm]", "+ up"]
 
 
 def test_no_label_of_a_picture_reaches_over_its_edge_or_another_panel() -> None:
@@ -98,64 +97,12 @@ def test_the_same_scene_gives_the_same_bytes_and_its_title_is_text(
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_point_that_the_scene_does_not_report_is_said_how_to_have() -> None:
+def test_what_is_named_is_computed_and_a_point_that_is_not_reported_is_said_how_to_have() -> None:
+    (toe,) = found("toe", numbers_of(Scene.load("bounce")))
+    assert "toe" in asking_for(Scene.load("bounce"), [toe]).effects
     scene = WISHBONE.model_copy(update={"points": ("tie_rod_outer",)})
     for words in ("wheel_centre.z", "travel"):
         with pytest.raises(NotComputed, match="add 'wheel_centre' to the scene's points"):
-            found(words, numbers_of(scene))
+            asking_for(scene, found(words, numbers_of(scene)))
     with pytest.raises(UsageError, match="is more than one number"):
         found("z", numbers_of(scene))
-
-
-@pytest.fixture(scope="module")
-def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A sweep of three designs, of which the middle one cannot be solved, in every kind of file."""
-    folder = tmp_path_factory.mktemp("sweep")
-    for ending in ENDINGS:
-        words = ("--designs", str(folder / "designs.csv"), "--instants", "7", "-q")
-        (folder / "designs.csv").write_text("tie_rod_inner.y\n178\n640\n180\n", encoding="utf-8")
-        assert main(("sweep", "double-wishbone", *words, "-o", str(folder / f"sweep{ending}"))) == 3
-    return folder
-
-
-@pytest.mark.parametrize("ending", ENDINGS)
-def test_a_file_of_a_sweep_has_a_curve_for_each_design(ending: str, swept: Path) -> None:
-    written = read_written(str(swept / f"sweep{ending}"))
-    few = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"samples": 7})})
-    designs = sweep(few, {"tie_rod_inner.y": [178.0, 180.0]})
-    camber = written.values["wheel", "camber"]
-    assert camber.shape == (7, 3)
-    # CSV has every digit, and degrees are one rounding away.
-    assert pytest.approx(np.degrees(designs.numbers["wheel"]["camber"]), rel=1e-14) == camber[:, ::2].T
-    assert np.isnan(camber[:, 1]).all()
-    assert [n.words for n in written.varied] == ["tie_rod_inner.y"]
-    assert written.across.path == ("time",)
-    assert {number.path[-1] for number in written.angles} == {"camber", "kingpin", "toe", "caster"}
-    shade = picture.Shade("tie_rod_inner.y [mm]", written.values["tie_rod_inner", "y"][0])
-    curves = Curves((written.across,), written.angles[:1])
-    axes, bar = picture.figure(curves, lambda n: written.values[n.path], "sweep", False, shade).axes
-    drawn = [np.asarray(line.get_xydata()) for line in axes.lines if len(line.get_xdata()) == 7]
-    for line, rows in zip(drawn, camber.T, strict=True):
-        assert np.array_equal(line[:, 1], rows, equal_nan=True)
-    assert bar.get_ylabel() == "tie_rod_inner.y [mm]"
-    assert axes.get_ylabel() == "camber [deg]\n+ where the wheel leans out at the top"
-
-
-@pytest.mark.parametrize(
-    ("words", "status", "told"),
-    [
-        ((), 0, ""),
-        (("--x", "camber"), 0, ""),
-        (("--y", "wheel_centre.z"), 0, ""),
-        (("--y", "cambr"), 2, "'cambr' names no number that is here (did you mean 'camber'?)"),
-        (("--instants", "3"), 2, "are about a scene; a file has its own rows and units"),
-    ],
-)
-def test_plot_draws_the_columns_of_a_file(
-    words: tuple[str, ...], status: int, told: str, swept: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    target = swept / "sweep.png"
-    target.unlink(missing_ok=True)
-    assert main(("plot", str(swept / "sweep.csv"), *words, "-o", str(target))) == status
-    assert target.exists() == (status == 0)
-    assert told in capsys.readouterr().err

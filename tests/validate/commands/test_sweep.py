@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet
 import pytest
-from program import document
 
 from pointcoord import Scene, simulate, sweep
 from pointcoord.results.named_columns import columns
@@ -71,32 +70,25 @@ def test_every_kind_of_table_holds_the_designs_one_by_one(
         assert arrays["upper_ball_joint.y [mm]"][number] == points["upper_ball_joint"][1]
 
 
-def test_the_summary_says_what_failed_and_how_far_numbers_range(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["sweep", SCENE, *VARY, *INSTANTS, "--json", str(tmp_path / "s.json")]) == 3
+def test_the_summary_says_what_failed_and_how_far_numbers_range(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", SCENE, *VARY, *INSTANTS]) == 3
     out = capsys.readouterr().out
     assert "solved: 4 of 6 designs, at 5 instants each" in out
     assert "2 of 6 designs failed, the mechanism cannot be assembled; design 4 for one: the mech" in out
-    data = document(tmp_path / "s.json")
-    assert (data["kind"], data["designs"], data["tried"], data["solved"]) == ("sweep", 6, 6, 4)
-    assert (data["exit_status"], data["failed"]) == (3, [4, 5])
-    assert data["failures"][0]["designs"] == 2
-    camber = [simulate(design(number)).wheel["camber"] for number in range(4)]
-    (told,) = [one["in_motion"] for one in data["ranges"] if one["name"] == "camber"]
-    assert told["lowest"] == pytest.approx(min(float(each.min()) for each in camber), abs=1e-12)
-    assert told["highest"] == pytest.approx(max(float(each.max()) for each in camber), abs=1e-12)
-    assert told["design_of_lowest"] == int(np.argmin([each.min() for each in camber]))
-    assert told["design_of_highest"] == int(np.argmax([each.max() for each in camber]))
-    low, high = (np.degrees(told[end]) for end in ("lowest", "highest"))
+    camber = [np.degrees(simulate(design(number)).wheel["camber"]) for number in range(4)]
+    ends = []
+    for of, end in ((np.argmin, np.min), (np.argmax, np.max)):
+        each = [float(end(one)) for one in camber]
+        number = int(of(each))
+        ends.append(f"{round(each[number], 4):.6g} (design {number})")
     (line,) = (line for line in out.splitlines() if line.startswith("camber [deg]"))
-    assert f"{round(low, 4):.6g} (design {told['design_of_lowest']}) to {round(high, 4):.6g} (de" in line
+    assert [cell.strip() for cell in line.split("  ") if cell.strip()][1:] == ends
 
 
-def test_offsets_places_and_a_table_of_designs_mean_the_same(tmp_path: Path) -> None:
+def test_offsets_and_a_table_of_designs_mean_the_same(tmp_path: Path) -> None:
     z = Scene.load(SCENE).mechanism.points["lower_ball_joint"][2]
     (tmp_path / "d.csv").write_text(f"lower_ball_joint.z [mm]\n{z - 2!r}\n{z!r}\n{z + 2!r}\n")
-    ways = [["--vary", f"lower_ball_joint.z={v}"] for v in ("-2:2:3", f"={z - 2}:{z + 2}:3", "-2,0,2")]
+    ways = [["--vary", f"lower_ball_joint.z={v}"] for v in ("-2:2:3", "-2,0,2")]
     found = []
     for i, way in enumerate([*ways, ["--designs", str(tmp_path / "d.csv")]]):
         target = tmp_path / f"{i}.csv"
@@ -104,20 +96,6 @@ def test_offsets_places_and_a_table_of_designs_mean_the_same(tmp_path: Path) -> 
         found.append(target.read_bytes())
     assert len(found[0].splitlines()) == 1 + 3 * 5
     assert found[1:] == found[:-1]
-
-
-def test_random_designs_are_the_same_each_time_and_spread_as_asked(tmp_path: Path) -> None:
-    words = ["sweep", "steer", "--vary", "strut_top.x=normal:0.5", "--vary", "strut_top.y=uniform:2"]
-    for name, seed in (("a.npz", "1"), ("b.npz", "1"), ("c.npz", "2")):
-        more = ["--count", "200", "--seed", seed, "--instants", "2", "-q", "-o", str(tmp_path / name)]
-        assert main([*words, *more]) == 0
-    one, same, other = (np.load(tmp_path / name) for name in ("a.npz", "b.npz", "c.npz"))
-    np.testing.assert_array_equal(one["strut_top.x [mm]"], same["strut_top.x [mm]"])
-    assert (one["strut_top.x [mm]"] != other["strut_top.x [mm]"]).any()
-    x, y, _ = Scene.load("steer").mechanism.points["strut_top"]
-    # The deviation of 200 normal numbers is itself known to 1/sqrt(400) of it: four times that.
-    assert np.std(one["strut_top.x [mm]"] - x) == pytest.approx(0.5, rel=0.2)
-    assert 1.8 < np.abs(one["strut_top.y [mm]"] - y).max() <= 2.0
 
 
 @pytest.mark.parametrize("ending", [".csv", ".parquet"])

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pointcoord import Motion, PointcoordError, Scene
 from pointcoord.effects.registry import ALWAYS
 from validate.closed_drawing import closed_drawing
-from validate.curves.numbers import TRAVEL, Number, numbers_of, usual
+from validate.curves.numbers import TRAVEL, Number, angles_of, usual
 from validate.formulations.protocol import Solution
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, fewer, marks, panel, plain
 from validate.html.run import Drawn, Run
@@ -171,7 +171,7 @@ def _wheel_angles(one: Drawn, scene: Scene, points: int) -> tuple[Plots | None, 
     """The curves of a scene, or why there are none."""
     if one.motion is None or not one.models:
         return None, "no curves: pointcoord solves no instant of it"
-    pairs = usual(scene, numbers_of(scene), one.motion).pairs
+    pairs = usual(scene, one.motion, angles_of(scene)).pairs
     first, *rest = one.models
     if panels := [drawn for pair in pairs if (drawn := _angle_panel(pair, one.models, one.motion, points))]:
         dots = "".join(f"; dots: {other.formulation}" for other in rest)
@@ -219,7 +219,7 @@ def _angle_panel(
 
 
 def _title(number: Number) -> str:
-    return f"{number.words} [{number.unit_shown()}]" + (f", + {number.sign}" if number.sign else "")
+    return f"{number.words} [{number.unit_shown}]" + (f", + {number.sign}" if number.sign else "")
 
 
 SECTION = Section("motion", "The suspension in motion", 30, _blocks)
