@@ -7,7 +7,7 @@ from typing import Any
 
 from mechanism_files import mechanism_file, plain
 
-from validate.reference import Design, Instant, closed_drawing, instants_of
+from validate.reference import Design, Instant, instants_of
 from validate.reference.effects.registry import ANGLES
 from validate.reference.route import CLEAR
 
@@ -37,8 +37,3 @@ def solve_car(
 ) -> Instant:
     """The reference at one instant of it."""
     return next(instants_of(design_of(points, **settings), [inputs], digits, clearness, effects))
-
-
-def close_car(points: Points, digits: int = 60, clearness: float = CLEAR, **settings: Any) -> Any:
-    """Its closed drawing."""
-    return closed_drawing(design_of(points, **settings), digits, clearness)

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from lotus_front import POINTS as LOTUS
-from plain_mechanisms import close_car, design_of, solve_car
+from plain_mechanisms import design_of, solve_car
 
 from validate.cars.paper_car import PAPER
 from validate.reference import Instant
@@ -92,9 +92,6 @@ class ReferenceCar:
 
     def solve(self, inputs: Inputs, **settings: Any) -> Instant:
         return solve_car(self.points, inputs, **{**self.kind, **settings})
-
-    def close(self, **settings: Any) -> Any:
-        return close_car(self.points, **self.kind, **settings)
 
 
 CARS = {

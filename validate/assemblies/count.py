@@ -1,7 +1,7 @@
 r"""How many assemblies a knuckle on its legs has, each certified, and which of them is the drawing's.
 
-Ends of paths are candidates. Of each, in balls of many digits, Newton's method finds the solution x + i y in
-the chart where its largest number is 1, and Krawczyk's operator (see `reference.krawczyk`) proves that a box
+Ends of paths are candidates. Of each, in balls of many digits, Newton's method finds the solution in the
+chart where its largest number is 1, and Krawczyk's operator (see `reference.krawczyk`) proves that a box
 around it holds one solution of the forms' real and imaginary parts and no other:
 
     x . Q x - y . Q y = 0,      2 x . Q y = 0.
@@ -13,7 +13,7 @@ proven: it rests on the paths, which are followed again from other starts until 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -26,10 +26,21 @@ from validate.assemblies.legs import forms
 from validate.extras import MissingPackage
 
 try:
-    from flint import acb, arb, arb_mat, ctx
+    from flint import acb, acb_mat, arb, ctx
 
     from validate.reference.errors import NotDecidedError
-    from validate.reference.krawczyk import Contraction, System, column, less, middle_inverse, newton, within
+    from validate.reference.krawczyk import (
+        Contraction,
+        Curve,
+        Matrix,
+        column,
+        less,
+        matrix_of,
+        middle_inverse,
+        newton,
+        within,
+    )
+    from validate.reference.vectors import Scalar
 except ImportError as error:
     raise MissingPackage("validate.assemblies", error) from None
 
@@ -37,7 +48,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 BITS = 300
-# Half widths of boxes: one that Newton's method in so many bits ends far inside, and one that holds the pose
+# Radii of discs: those that Newton's method in so many bits ends far inside, and one that holds the pose
 # as drawn too, which solves the forms to the rounding of their entries.
 NARROW, WIDE = "1e-40", "1e-9"
 # Runs from other starts that must find the same, and how many are tried.
@@ -108,7 +119,7 @@ def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) 
     quadratic = forms(mechanism, places)
     found = Counted(0, (), (), ())
     with ctx.workprec(BITS):
-        matrices = [arb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
+        matrices = [acb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
         while not found.agreed and len(found.candidates) < MOST_RUNS:
             ends = _poses(solve_quadratic(quadratic, len(found.candidates)))
             proven = [one for one in (_certified(matrices, end) for end in ends) if one is not None]
@@ -130,58 +141,57 @@ def _poses(ends: Complex) -> Complex:
     return np.asarray(ends[np.abs((ends[:, :4] ** 2).sum(axis=1)) > NO_TURN])
 
 
-def _certified(matrices: Sequence[arb_mat], end: Complex) -> Assembly | None:
+@dataclass(frozen=True)
+class _Forms(Curve):
+    """The forms of homogeneous numbers, of which one is 1; x are the others. There is no t."""
+
+    matrices: Sequence[acb_mat]
+    chart: int
+
+    def whole(self, x: Sequence[acb], one: int = 1) -> list[acb]:
+        """All numbers."""
+        return [*x[: self.chart], acb(one), *x[self.chart :]]
+
+    def rows(self, x: Sequence[acb], t: Scalar) -> list[acb]:
+        """x^T Q x."""
+        z = column(self.whole(x))
+        return [(z.transpose() * (matrix * z))[0, 0] for matrix in self.matrices]
+
+    def entries(self, x: Sequence[acb], t: Scalar, one: int = 1) -> list[tuple[int, int, acb]]:
+        """2 Q x."""
+        z = column(self.whole(x, one))
+        slopes = [(matrix * z).entries() for matrix in self.matrices]
+        for slope in slopes:
+            del slope[self.chart]
+        return [(i, j, 2 * entry) for i, slope in enumerate(slopes) for j, entry in enumerate(slope)]
+
+    def bend(self, change: Sequence[acb]) -> Matrix:
+        """The same without what the number 1 makes of it."""
+        return matrix_of(len(change), self.entries(change, 0, 0))
+
+    def holds_one(self, centre: Sequence[acb], radius: str) -> bool:
+        """Whether discs are proven to hold one solution and no other."""
+        width, inverse = [arb(radius)] * len(centre), middle_inverse(self.matrix(centre, 0))
+        return less(Contraction.at(self, centre, 0, inverse).image(width), width)
+
+
+def _certified(matrices: Sequence[acb_mat], end: Complex) -> Assembly | None:
     """The assembly near an end of a path; None where nothing is proven."""
-    chart, size = int(np.argmax(np.abs(end))), len(matrices)
-    parts, near = _parts(matrices, chart), np.delete(end / end[chart], chart)
+    chart = int(np.argmax(np.abs(end)))
+    forms, near = _Forms(matrices, chart), np.delete(end / end[chart], chart)
     try:
-        centre, _ = newton(parts, [arb(float(number)) for number in (*near.real, *near.imag)])
-        mirrored = [*centre[:size], *[arb(0)] * size]
-        real = within(centre, mirrored, [arb(NARROW)] * 2 * size) and _holds_one(parts, mirrored, NARROW)
-        centre = mirrored if real else centre
-        if not (real or _holds_one(parts, centre, NARROW)):
+        centre, _ = newton(forms, [acb(complex(number)) for number in near], 0)
+        middle = [acb(x.real) for x in centre]
+        real = within(centre, middle, [arb(NARROW)] * len(centre)) and forms.holds_one(middle, NARROW)
+        centre = middle if real else centre
+        if not (real or forms.holds_one(centre, NARROW)):
             return None
-        at_drawing = chart == 0 and less([abs(x) for x in centre], [arb(WIDE)] * 2 * size)
-        drawn = at_drawing and _holds_one(parts, centre, WIDE)
+        at_drawing = chart == 0 and less([x.abs_upper() for x in centre], [arb(WIDE)] * len(centre))
+        drawn = at_drawing and forms.holds_one(centre, WIDE)
     except NotDecidedError:
         return None
-    balls = [x + arb(0, arb(NARROW)) for x in centre]
-    box = [acb(x, y) for x, y in zip(balls[:size], balls[size:], strict=True)]
-    return Assembly((*box[:chart], acb(1), *box[chart:]), real, drawn)
-
-
-def _parts(matrices: Sequence[arb_mat], chart: int) -> System:
-    """The parts of the forms, in those x and then y of all numbers but the chart's, which is 1."""
-
-    def halves(values: Sequence[arb], one: int) -> Iterator[tuple[arb_mat, arb_mat, arb_mat, arb_mat]]:
-        x, y = list(values[: len(matrices)]), list(values[len(matrices) :])
-        x.insert(chart, arb(one))
-        y.insert(chart, arb(0))
-        for matrix in matrices:
-            yield column(x), column(y), matrix * column(x), matrix * column(y)
-
-    def residual(values: Sequence[arb]) -> list[arb]:
-        found = [
-            ((x.transpose() * p - y.transpose() * q)[0, 0], 2 * (x.transpose() * q)[0, 0])
-            for x, y, p, q in halves(values, 1)
-        ]
-        return [*(real for real, _ in found), *(imaginary for _, imaginary in found)]
-
-    def derivative(values: Sequence[arb], one: int = 1) -> arb_mat:
-        rows: tuple[list[list[arb]], list[list[arb]]] = ([], [])
-        for _, _, p, q in halves(values, one):
-            a, b = ([2 * x for i, x in enumerate(half.entries()) if i != chart] for half in (p, q))
-            rows[0].append([*a, *(-x for x in b)])
-            rows[1].append([*b, *a])
-        return arb_mat([*rows[0], *rows[1]])
-
-    return System(residual, derivative, lambda change: derivative(change, 0))
-
-
-def _holds_one(parts: System, centre: Sequence[arb], radius: str) -> bool:
-    """Whether a box is proven to hold one solution and no other."""
-    width = [arb(radius)] * len(centre)
-    return less(Contraction.at(parts, centre, middle_inverse(parts.matrix(centre))).image(width), width)
+    ball = arb(0, arb(NARROW))
+    return Assembly(tuple(forms.whole([x + acb(ball, ball) for x in centre])), real, drawn)
 
 
 def _apart(one: Sequence[acb], other: Sequence[acb]) -> bool:

@@ -16,10 +16,7 @@ try:
     from validate.reference.errors import SingularPoseError as SingularPoseError
     from validate.reference.errors import TooManyStepsError as TooManyStepsError
     from validate.reference.instant import Instant as Instant
-    from validate.reference.solve import ClosedDrawing as ClosedDrawing
-    from validate.reference.solve import closed_drawing as closed_drawing
     from validate.reference.solve import instants_of as instants_of
     from validate.reference.solve import pose_exists as pose_exists
-    from validate.reference.solve import solve_reference as solve_reference
 except ModuleNotFoundError as error:
     raise MissingPackage("validate.reference", error) from None

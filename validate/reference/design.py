@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from flint import arb, arb_mat, ctx
+from flint import arb, ctx
 
 from validate.reference.car_data import car_data, corners
 from validate.reference.chassis import ChassisMotion
@@ -18,11 +18,9 @@ from validate.reference.equations import Equations, equations_in
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
-from validate.reference.krawczyk import System
 from validate.reference.mechanism import Mechanism
-from validate.reference.vectors import Scalar, Vector, dot, each, minus, times
+from validate.reference.vectors import Scalar, Vector, each, minus, times
 
-DIRECTION_SLACK = Fraction(1, 10**12)  # a float64 unit vector is off by about 1e-16; a wrong one by far more
 SAME_ROW = 1e-9  # of the largest: what is left of a row that others say already, in doubles
 
 # Every input, each (value, rate, acceleration) in fractions, or with more of its derivatives; rad or mm.
@@ -47,6 +45,19 @@ class Known:
     chassis: ChassisMotion
     inputs: Mapping[str, Jet]
 
+    @classmethod
+    def of(
+        cls,
+        mechanism: Mechanism,
+        equations: Equations,
+        inputs: Mapping[str, Jet],
+        exact: Callable[[Fraction], Scalar],
+    ) -> Known:
+        """What inputs make of it, as jets of any kind of number, into which `exact` takes a fraction."""
+        plain, table, unit = mechanism.plain, mechanism.table, mechanism.unit
+        chassis = ChassisMotion.of(plain, table, unit, inputs, exact)
+        return cls(mechanism, equations, mechanism.numbers(inputs, exact), chassis, inputs)
+
     @property
     def derivatives(self) -> int:
         """How many time derivatives of the inputs are known."""
@@ -55,12 +66,7 @@ class Known:
     def driven_at(self, name: str, rate: arb) -> Known:
         """One input at a rate, rad/s or mm/s, and all else at rest, at the same instant; in balls."""
         inputs = {one: Jet(jet.value, rate if one == name else arb(0)) for one, jet in self.inputs.items()}
-        numbers = self.mechanism.numbers(inputs, as_ball)
-        return replace(self, numbers=numbers, chassis=self.chassis.still())
-
-    def handed(self, unknown: Sequence[arb]) -> bool:
-        """Whether a zero is an assembly, proven: no body is mirrored, no hinge the wrong way round."""
-        return all(one > 0 for one in self.mechanism.handed(unknown, self.numbers, as_ball))
+        return Known.of(self.mechanism, self.equations, inputs, as_ball)
 
     def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
         """Of every moving body two vectors fixed in it, with the chassis moved."""
@@ -75,19 +81,10 @@ class Known:
         """C(y, w)."""
         return self.equations.residual(unknown, self.numbers)
 
-    def matrix(self, unknown: Sequence[arb]) -> arb_mat:
-        """dC/dy as a square matrix of balls."""
-        return self.equations.matrix(unknown, self.numbers)
-
-    @property
-    def system(self) -> System:
-        """C(y, w) = 0 in y; numbers are balls."""
-        return System(self.residual, self.matrix, self.equations.bend)
-
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """The mechanism as given. Local coordinates are (p - origin) / unit, exact.
+    """The mechanism as given, of a scene that is checked. Local coordinates are (p - origin) / unit, exact.
 
     The shift and the unit keep balls tight whether the points lie 1e9 mm from the frame's origin or
     the mechanism is 1e-3 or 1e6 mm in size.
@@ -119,40 +116,19 @@ class Design:
         """Take over a description, mm.
 
         Raises:
-            BadInputError: a point is unknown, a number is not finite, `up` and `right` are not unit vectors
-                at right angles, a number of the car cannot be, a rod or a body has no extent, or freedoms and
-                inputs are not as many.
+            BadInputError: a number is not finite, a rod or a body has no extent, or freedoms and inputs are
+                not as many.
         """
-        given = {name: exact_vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
-        if not given:
-            raise BadInputError("points", "none", "at least one")
+        table = {name: exact_vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
         up, right = exact_vector(plain["up"], "up"), exact_vector(plain["right"], "right")
-        for off, allowed in (
-            (max(abs(dot(up, up) - 1), abs(dot(right, right) - 1)), "unit vectors"),
-            (abs(dot(up, right)), "at right angles"),
-        ):
-            if off > DIRECTION_SLACK:
-                raise BadInputError("up and right", (plain["up"], plain["right"]), f"{allowed}, to 1e-12")
-        for kind in ("bodies", "rods"):
-            for name, points in plain[kind].items():
-                for point in points:
-                    if point not in given:
-                        raise BadInputError(f"{kind}.{name}", point, f"one of {', '.join(given)}")
-        origin = next(iter(given.values()))
-        unit, parts = _unit(given.values(), origin), corners(plain)
-        table = {name: times(minus(p, origin), 1 / unit) for name, p in given.items()}
+        origin = next(iter(table.values()))
+        unit = _unit(table.values(), origin)
+        table = {name: times(minus(p, origin), 1 / unit) for name, p in table.items()}
         exact = {**plain, "up": up, "right": right}
         mechanism = compiled(exact, table, unit)
+        chosen = _chosen(mechanism)
         return cls(
-            exact,
-            mechanism,
-            table,
-            origin,
-            unit,
-            parts,
-            car_data(plain),
-            _loads(plain, parts),
-            _chosen(mechanism, table),
+            exact, mechanism, table, origin, unit, corners(plain), car_data(plain), _loads(plain), chosen
         )
 
     @property
@@ -174,23 +150,8 @@ class Design:
         return _equations(self, ctx.prec)
 
     def driven(self, inputs: Mapping[str, Sequence[object]]) -> Driven:
-        """Inputs by name as fractions; a travel or chassis motion that is not named rests at zero.
-
-        Raises:
-            BadInputError: an unknown name, fewer than three finite numbers, not as many of each, or an input
-                is missing.
-        """
+        """Inputs by name as fractions; one that is not named rests at zero."""
         count = max((len(law) for law in inputs.values()), default=3)
-        for name, law in inputs.items():
-            if name not in self.inputs:
-                raise BadInputError(f"inputs[{name!r}]", law, f"one of {', '.join(self.inputs)}")
-            if len(law) != count or count < 3:
-                allowed = "three numbers: value, rate, acceleration; or of all inputs as many more"
-                raise BadInputError(f"inputs[{name!r}]", law, allowed)
-        required = [name for name, drive in self.mechanism.drives.items() if drive.required]
-        if not set(required) <= set(inputs):
-            allowed = f"a mapping that names at least {' and '.join(required)}"
-            raise BadInputError("inputs", sorted(inputs), allowed)
         return {
             name: Jet(*(as_fraction(part, f"inputs[{name!r}]") for part in inputs.get(name, (0,) * count)))
             for name in self.inputs
@@ -199,25 +160,7 @@ class Design:
     def known(self, driven: Driven) -> Known:
         """What the equations take as given, as jets of balls at the present precision, local."""
         inputs = {name: balls(jet) for name, jet in driven.items()}
-        numbers = self.mechanism.numbers(inputs, as_ball)
-        return self._known(numbers, inputs)
-
-    def known_as_drawn(self) -> Known:
-        """The same at rest at the inputs that the car is drawn at, the chassis in its place."""
-        drives, zero = self.mechanism.drives, arb(0)
-        drawn = {name: drive.input_of(drive.drawn()) for name, drive in drives.items()}
-        numbers = [Jet(w, zero, zero) for w in self.mechanism.drawn_numbers]
-        return self._known(numbers, {name: Jet(drawn.get(name, zero), zero, zero) for name in self.inputs})
-
-    def _known(self, numbers: Sequence[Jet], inputs: Mapping[str, Jet]) -> Known:
-        chassis = ChassisMotion.of(self.plain, self.table, self.unit, inputs, as_ball)
-        return Known(self.mechanism, self.equations(), numbers, chassis, inputs)
-
-    def drawn_unknown(self) -> list[arb]:
-        """The unknowns of the points as drawn, exact numbers: what they do not meet is theirs to close."""
-        places = {name: ball_vector(p) for name, p in self.table.items()}
-        unknown = self.mechanism.unknown_of(places, self.mechanism.drawn_numbers, as_ball)
-        return [arb(number).mid() for number in unknown]
+        return Known.of(self.mechanism, self.equations(), inputs, as_ball)
 
 
 @lru_cache(maxsize=256)
@@ -255,18 +198,15 @@ def _unit(points: Collection[Vector], origin: Vector) -> Fraction:
     return Fraction(2**power) if power >= 0 else Fraction(1, 2**-power)
 
 
-def _loads(plain: Mapping[str, Any], corners: Collection[str]) -> dict[str, tuple[Vector, Vector]]:
+def _loads(plain: Mapping[str, Any]) -> dict[str, tuple[Vector, Vector]]:
     found = {}
     for part, load in plain.get("loads", {}).items():
-        prefix, what = f"{part}." if part else "", f"loads[{part!r}]"
-        if prefix not in corners:
-            raise BadInputError(what, load, f"a load of a part: {', '.join(corners).replace('.', '')}")
         force, moment = load["force"], load.get("moment") or (0, 0, 0)
-        found[prefix] = exact_vector(force, f"{what}.force"), exact_vector(moment, f"{what}.moment")
+        found[f"{part}." if part else ""] = exact_vector(force, "force"), exact_vector(moment, "moment")
     return found
 
 
-def _chosen(mechanism: Mechanism, table: Mapping[str, Vector]) -> tuple[int, ...]:
+def _chosen(mechanism: Mechanism) -> tuple[int, ...]:
     """As many rows as unknowns; of more than that those that stand most clearly apart as drawn.
 
     Rows are taken in turn, each time the one of which most is left beside those taken (QR with pivots).
@@ -279,8 +219,7 @@ def _chosen(mechanism: Mechanism, table: Mapping[str, Vector]) -> tuple[int, ...
         return tuple(range(size))
     from scipy.linalg import qr  # few mechanisms need it, and it takes long to import
 
-    places, w = {n: ball_vector(p) for n, p in table.items()}, mechanism.drawn_numbers
-    drawn, numbers = [float(x) for x in mechanism.unknown_of(places, w, as_ball)], [float(x) for x in w]
+    drawn, numbers = ([float(x) for x in of] for of in (mechanism.drawn_unknown, mechanism.drawn_numbers))
     every = equations_in(mechanism, range(rows), float)
     matrix = np.zeros((rows, size))
     for i, j, entry in every.jacobian(drawn, numbers):

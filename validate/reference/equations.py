@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from flint import arb, arb_mat
+from flint import arb
 
+from validate.reference.krawczyk import Matrix, matrix_of
 from validate.reference.mechanism import Mechanism
 from validate.reference.polynomial import Monomial, ordered, polynomial, value_of
 from validate.reference.vectors import Scalar, Vector, each
@@ -44,11 +45,11 @@ class Equations:
         values = ordered(unknown, numbers)
         return [(row, column, value_of(terms, values)) for row, column, terms in self.entries]
 
-    def matrix(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> arb_mat:
+    def matrix(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> Matrix:
         """dC/dy as a square matrix of balls."""
         return matrix_of(self.size, self.jacobian(unknown, numbers))
 
-    def bend(self, change: Sequence[arb]) -> arb_mat:
+    def bend(self, change: Sequence[arb]) -> Matrix:
         """By how much a change of y changes dC/dy, which is linear in y."""
         return matrix_of(self.size, ((i, j, value_of(terms, change)) for i, j, terms in self._bending))
 
@@ -71,14 +72,6 @@ class Equations:
         """Two vectors fixed in a body and not parallel."""
         one, two = self.frames[body]
         return _vector(one, unknown), _vector(two, unknown)
-
-
-def matrix_of(size: int, entries: Iterable[tuple[int, int, arb]]) -> arb_mat:
-    """A square matrix of balls, of its entries that are not zero."""
-    matrix = arb_mat(size, size)
-    for i, j, entry in entries:
-        matrix[i, j] = entry
-    return matrix
 
 
 def equations_in(

@@ -14,7 +14,6 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
 from validate.reference.equations import Equations, equations_in
 from validate.reference.jet import Dual, Jet, value_of
@@ -39,9 +38,7 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
     """
     still = np.zeros((count, max((law.shape[-1] for law in laws.values()), default=3)))
     driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}
-    numbers = design.mechanism.numbers(driven, float)
-    chassis = ChassisMotion.of(design.plain, design.table, design.unit, driven, float)
-    return Known(design.mechanism, equations_in_doubles(design), numbers, chassis, driven)
+    return Known.of(design.mechanism, equations_in_doubles(design), driven, float)
 
 
 def local_places(design: Design, places: Mapping[str, Array], known: Known) -> dict[str, Vector]:

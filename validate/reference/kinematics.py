@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from math import comb
 
-from flint import arb, arb_mat
+from flint import arb
 
 from validate.reference.design import Known
 from validate.reference.errors import NotDecidedError
@@ -16,34 +16,17 @@ from validate.reference.vectors import Scalar, Vector, cross, dot, minus, plus, 
 Solved = Callable[[Sequence[Scalar]], Sequence[Scalar]]
 
 
-def unknown_jets(enclosure: Sequence[arb], known: Known, inverse: arb_mat) -> list[Jet]:
-    """The unknowns with rates, as jets of balls, local.
+def with_rates(
+    values: Sequence[Scalar], known: Known, solved: Solved, derivatives: int | None = None
+) -> list[Jet]:
+    """The unknowns with rates, as jets of any kind of number, local.
 
     C(y(t), t) = 0 differentiated once and twice gives  C' y' = -C_t  and  C' y'' = -rest, the paper's
     eqs. (19) and (22), and so on, as far as the inputs are known. The right-hand sides are C evaluated with
     jets whose unknown part is zero.
 
     Args:
-        inverse: of the Jacobian over the enclosure.
-    """
-    return with_rates(enclosure, known, _solving(inverse))
-
-
-def unknown_rates(enclosure: Sequence[arb], known: Known, inverse: arb_mat) -> Sequence[arb]:
-    """The rates of the unknowns alone."""
-    return [jet.part(1) for jet in with_rates(enclosure, known, _solving(inverse), 1)]
-
-
-def _solving(inverse: arb_mat) -> Solved:
-    return lambda rows: (-(inverse * column(rows))).entries()
-
-
-def with_rates(
-    values: Sequence[Scalar], known: Known, solved: Solved, derivatives: int | None = None
-) -> list[Jet]:
-    """The same of any kind of number, where `solved` gives -C'^-1 times a column.
-
-    Args:
+        solved: gives -C'^-1 times a column.
         derivatives: how many; as many as are known of the inputs unless given.
     """
     zero, moving = values[0] * 0, [Jet(value) for value in values]
@@ -55,16 +38,17 @@ def with_rates(
     return moving
 
 
-def inverse_jacobian(enclosure: Sequence[arb], known: Known) -> arb_mat:
-    """C'^-1 over the enclosure; `known` with the values of the jets.
+def by_balls(enclosure: Sequence[arb], known: Known) -> Solved:
+    """Solves with the inverse of the Jacobian over the enclosure; `known` with the values of the jets.
 
     Raises:
         NotDecidedError: the Jacobian over the enclosure may be singular.
     """
     try:
-        return known.matrix(enclosure).inv()
+        inverse = known.equations.matrix(enclosure, known.numbers).inv()
     except ZeroDivisionError:
         raise NotDecidedError("the inverse of the Jacobian for the rates", "0", "not 0") from None
+    return lambda rows: (-(inverse * column(rows))).entries()
 
 
 def body_turns(solved: Sequence[Jet], known: Known) -> dict[str, list[Vector]]:

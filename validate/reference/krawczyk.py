@@ -1,25 +1,29 @@
 r"""Newton's method for a candidate, and Krawczyk's proof that a box holds one solution and no other.
 
-The equations F(x) = 0 are quadratic, as many as unknowns: F'(x + d) = F'(x) + F'' d. For a centre x, half
-widths r and any matrix A (here nearly the inverse Jacobian), let
+The equations F(x, t) = 0 are quadratic in x, as many as unknowns: F'(x + d) = F'(x) + F'' d. For a centre x,
+half widths r and any matrix A (here nearly the inverse Jacobian), let
 
     eta >= |A F(x)|  and  M r >= |(I - A F'(x)) e - A (F'' d) e|  for all d, e in +- r.
 
 If eta + M r < r then F has exactly one zero in x +- r, it lies within eta + M r of x, and F' is regular on
-the whole box (R. Krawczyk 1969; R. E. Moore 1977; Neumaier, Interval Methods, 5.1). Where x, A and F are
-polynomials in a parameter u, so are A F and I - A F'; they are bounded for |u| <= h term by term, and the
-proof holds for each u by itself. Everything is evaluated in ball arithmetic, so it includes all rounding.
+the whole box (R. Krawczyk 1969; R. E. Moore 1977; Neumaier, Interval Methods, 5.1); of complex numbers within
+discs. Where x, A and F are polynomials in a parameter u, so are A F and I - A F'; they are bounded for
+|u| <= h term by term, and the proof holds for each u by itself. Everything is evaluated in ball arithmetic,
+so it includes all rounding.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from typing import Any
 
-from flint import arb, arb_mat, arb_poly, ctx
+from flint import acb, acb_mat, arb, arb_mat, arb_poly, ctx
 
 from validate.reference.errors import NotDecidedError
+from validate.reference.vectors import Scalar
 
 MOST_STEPS = 60  # quadratic convergence needs 5 from float accuracy; the rest is for a far guess
 HOPELESS = 4  # so many times as large as before: a step of Newton's method, or a width that is to settle
@@ -27,15 +31,28 @@ TRIES = 6  # of the widths: they settle on what the equations make of them
 SETTLED = 0.125  # a last term of A that changes A F' by no more leaves room in M
 
 Entries = Sequence[tuple[int, int, arb_poly]]
+Matrix = Any
+"""Of balls, `arb_mat`, or of complex ones, `acb_mat`."""
 
 
-@dataclass(frozen=True)
-class System:
-    """Quadratic equations, as many as unknowns: F(x), F'(x) and F'' d."""
+class Curve(ABC):
+    """Quadratic equations F(x, t) = 0 in x, as many as unknowns; t is a ball or a polynomial in balls."""
 
-    residual: Callable[[Sequence[arb]], list[arb]]
-    matrix: Callable[[Sequence[arb]], arb_mat]
-    bend: Callable[[Sequence[arb]], arb_mat]
+    @abstractmethod
+    def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
+        """F(x, t)."""
+
+    @abstractmethod
+    def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
+        """F' as (row, column, entry), zeros left out."""
+
+    @abstractmethod
+    def bend(self, change: Sequence[Scalar]) -> Matrix:
+        """By how much a change of x changes F', which is linear in x."""
+
+    def matrix(self, x: Sequence[Scalar], t: Scalar) -> Matrix:
+        """F' in balls."""
+        return matrix_of(len(x), self.entries(x, t))
 
 
 @dataclass(frozen=True)
@@ -49,30 +66,29 @@ class Contraction:
     """
 
     missed: Sequence[arb]
-    defect: arb_mat
-    inverse: arb_mat
-    bend: Callable[[Sequence[arb]], arb_mat]
+    defect: Matrix
+    inverse: Matrix
+    bend: Callable[[Sequence[Scalar]], Matrix]
 
     @classmethod
-    def at(cls, system: System, centre: Sequence[arb], inverse: arb_mat) -> Contraction:
+    def at(cls, curve: Curve, centre: Sequence[Scalar], t: Scalar, inverse: Matrix) -> Contraction:
         """About a centre."""
-        missed = bounds(inverse * column(system.residual(centre)))
-        return cls(missed, unit_matrix(len(centre)) - inverse * system.matrix(centre), inverse, system.bend)
+        missed = bounds(inverse * column(curve.rows(centre, t)))
+        unit = matrix_of(len(centre), ((i, i, x * 0 + 1) for i, x in enumerate(centre)))
+        return cls(missed, unit - inverse * curve.matrix(centre, t), inverse, curve.bend)
 
     @classmethod
-    def along(
-        cls, rows: Sequence[arb_poly], entries: Entries, bend: Callable[[Sequence[arb]], arb_mat], span: arb
-    ) -> Contraction:
-        """Along a curve in u.
+    def along(cls, curve: Curve, about: Sequence[arb_poly], time: arb_poly, span: arb) -> Contraction:
+        """Along polynomials in u.
 
         Args:
-            rows, entries: F and F' on the curve.
+            about, time: x and t.
             span: of u, a ball about 0.
         Raises:
             NotDecidedError: F' is singular at u = 0, to the present precision.
         """
-        size = len(rows)
-        inverse = moving_inverse(entries, size, span.rad())
+        rows, entries, size = curve.rows(about, time), curve.entries(about, time), len(about)
+        inverse = _moving_inverse(entries, size, span.rad())
         missed = [reduce(arb_poly.__add__, map(arb_poly.__mul__, line, rows))(span) for line in inverse]
         defect = [[arb_poly([int(i == j)]) for j in range(size)] for i in range(size)]
         for line, left in zip(inverse, defect, strict=True):
@@ -80,22 +96,20 @@ class Contraction:
                 left[j] -= line[row] * entry
 
         defects, inverses = (arb_mat([[x(span) for x in line] for line in of]) for of in (defect, inverse))
-        return cls([x.abs_upper() for x in missed], defects, inverses, bend)
+        return cls([x.abs_upper() for x in missed], defects, inverses, curve.bend)
 
     def image(self, width: Sequence[arb]) -> list[arb]:
         """eta + M r."""
-        box = [arb(0, r) for r in width]
+        box: list[Scalar] = [arb(0, r) for r in width]
+        if isinstance(self.inverse, acb_mat):
+            box = [acb(side, side) for side in box]
         sides = column(box)
         spread = bounds(self.defect * sides - self.inverse * (self.bend(box) * sides))
         return [(eta + x).upper() for eta, x in zip(self.missed, spread, strict=True)]
 
-    def settled(self, bits: float = 0.5) -> list[arb] | None:
-        """Half widths of a box that is proven, not much wider than need be; None if none is found.
-
-        Args:
-            bits: share of the arithmetic's bits that the narrowest has.
-        """
-        width = [2 * x + arb(2) ** int(-bits * ctx.prec) for x in self.missed]
+    def settled(self) -> list[arb] | None:
+        """Half widths of a box that is proven, not much wider than need be; None if none is found."""
+        width = [2 * x + arb(2) ** (-ctx.prec // 2) for x in self.missed]
         for _ in range(TRIES):
             image = self.image(width)
             if less(image, width):
@@ -106,19 +120,17 @@ class Contraction:
         return None
 
 
-def newton(system: System, start: Sequence[arb], most: int = MOST_STEPS) -> tuple[list[arb], arb_mat]:
+def newton(curve: Curve, start: Sequence[Scalar], t: Scalar) -> tuple[list[Scalar], Matrix]:
     """Newton's method to the present precision: exact numbers, not yet a proof, and nearly the inverse there.
 
-    Args:
-        most: steps.
     Raises:
         NotDecidedError: it does not settle, or the Jacobian is singular to the present precision.
     """
     x, last = [number.mid() for number in start], arb(2) ** ctx.prec
     good_enough = arb(2) ** (-ctx.prec // 2)  # the next step's error is the square of this one's
-    for _ in range(most):
-        inverse = middle_inverse(system.matrix(x))
-        step = (inverse * column(system.residual(x))).entries()
+    for _ in range(MOST_STEPS):
+        inverse = middle_inverse(curve.matrix(x, t))
+        step = (inverse * column(curve.rows(x, t))).entries()
         x = [(number - part).mid() for number, part in zip(x, step, strict=True)]
         size = largest(step)
         if size < good_enough:
@@ -129,7 +141,7 @@ def newton(system: System, start: Sequence[arb], most: int = MOST_STEPS) -> tupl
     raise NotDecidedError("Newton's method: the last correction (of the mechanism's size)", size, "0")
 
 
-def moving_inverse(entries: Entries, size: int, reach: arb) -> list[list[arb_poly]]:
+def _moving_inverse(entries: Entries, size: int, reach: arb) -> list[list[arb_poly]]:
     """Nearly the inverse of a matrix of polynomials in u, of as many terms as |u| <= reach needs.
 
     From A J = I follow A_0 = J_0^-1 and A_k = -(A_0 J_k + ... + A_k-1 J_1) A_0.
@@ -152,7 +164,7 @@ def moving_inverse(entries: Entries, size: int, reach: arb) -> list[list[arb_pol
     return [flat[i : i + size] for i in range(0, size * size, size)]
 
 
-def middle_inverse(matrix: arb_mat) -> arb_mat:
+def middle_inverse(matrix: Matrix) -> Matrix:
     """Nearly the inverse of a Jacobian, in exact numbers.
 
     Raises:
@@ -164,27 +176,29 @@ def middle_inverse(matrix: arb_mat) -> arb_mat:
         raise NotDecidedError("the inverse of the Jacobian", "0", "not 0") from None
 
 
-def column(numbers: Sequence[arb]) -> arb_mat:
+def matrix_of(size: int, entries: Iterable[tuple[int, int, Scalar]]) -> Matrix:
+    """A square matrix, of its entries that are not zero."""
+    rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
+    for i, j, entry in entries:
+        rows[i][j] = entry
+    return (acb_mat if any(isinstance(x, acb) for row in rows for x in row) else arb_mat)(rows)
+
+
+def column(numbers: Sequence[Scalar]) -> Matrix:
     """Numbers as a matrix of one column."""
-    return arb_mat(len(numbers), 1, list(numbers))
+    kind = acb_mat if any(isinstance(x, acb) for x in numbers) else arb_mat
+    return kind(len(numbers), 1, list(numbers))
 
 
-def unit_matrix(size: int) -> arb_mat:
-    """I."""
-    unit = arb_mat(size, size)
-    for i in range(size):
-        unit[i, i] = 1
-    return unit
-
-
-def bounds(matrix: arb_mat) -> list[arb]:
+def bounds(matrix: Matrix) -> list[arb]:
     """Upper bounds on the absolute values of the entries."""
     return [x.abs_upper() for x in matrix.entries()]
 
 
-def largest(numbers: Sequence[arb]) -> arb:
+def largest(numbers: Sequence[Scalar]) -> arb:
     """Greatest upper bound on the absolute values; not finite if one of them is not."""
-    return reduce(arb.max, (number.abs_upper() for number in numbers))
+    sizes: list[arb] = [number.abs_upper() for number in numbers]
+    return reduce(arb.max, sizes)
 
 
 def less(image: Sequence[arb], width: Sequence[arb]) -> bool:
@@ -192,6 +206,6 @@ def less(image: Sequence[arb], width: Sequence[arb]) -> bool:
     return all(x < r for x, r in zip(image, width, strict=True))
 
 
-def within(solution: Sequence[arb], centre: Sequence[arb], width: Sequence[arb]) -> bool:
+def within(solution: Sequence[Scalar], centre: Sequence[Scalar], width: Sequence[arb]) -> bool:
     """Whether a solution, enclosed, lies inside the box about a centre."""
     return less([(x - y).abs_upper() for x, y in zip(solution, centre, strict=True)], width)

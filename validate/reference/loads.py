@@ -31,7 +31,7 @@ from validate.reference.design import Design, Known, ball_vector
 from validate.reference.drives import compiled
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
 from validate.reference.effects.car import DAMPER, KNUCKLE, WHEEL
-from validate.reference.effects.effect import NEEDS, TRAVEL
+from validate.reference.effects.effect import TRAVEL
 from validate.reference.equations import Equations, equations_in
 from validate.reference.exact import as_ball
 from validate.reference.jet import Dual, slope_of
@@ -44,16 +44,17 @@ FORCES = ROD, JOINT, THRUST = ("rod_force", "joint_force", "hinge_thrust")
 Forces = dict[str, dict[str, Any]]
 
 
-def forces_at(
-    design: Design, known: Known, enclosure: Sequence[arb], digits: int
-) -> tuple[Forces, Mapping[str, str]]:
-    """The forces at a pose, N, in balls, to so many digits of the loads; none where no load is given.
+def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: int) -> Forces:
+    """The forces at a pose, N, in balls, to so many digits of the loads.
+
+    There are none where no load is given, where the car lacks what they need, and where what holds the wheel
+    does not hold it at this pose, or all but.
 
     Args:
         known: its rates are not looked at.
         enclosure: of the unknowns.
     Returns:
-        By quantity and name, and why there are none by quantity. Of `FORCES`
+        By quantity and name. Of `FORCES`
 
         rod_force, tension: of every rod by its name and of every damper that holds, `left.damper`.
         joint_force, in the scene's axes: of every point that is a ball joint of just two bodies, or one of
@@ -65,11 +66,8 @@ def forces_at(
             second, as the body lists them.
     """
     forces: Forces = {quantity: {} for quantity in FORCES}
-    if not design.loads:
-        return forces, {}
-    lack = _lacking(design)
-    if lack:
-        return forces, dict.fromkeys(FORCES, f"needs {lack}")
+    if not (design.loads and _can_be_had(design)):
+        return forces
     mechanism, equations, chassis = _held(design), _equations(design, ctx.prec), known.chassis.still()
     places = known.equations.points_of(enclosure)
     numbers = [jet.value for jet in known.numbers]
@@ -89,8 +87,7 @@ def forces_at(
     try:
         solved = equations.matrix(unknown, numbers).transpose().solve(column(work)).entries()
     except ZeroDivisionError:
-        why = "cannot be proven in this pose: what holds the wheel does not hold it here"
-        return forces, dict.fromkeys(FORCES, why)
+        return forces
 
     rods = {name: (mechanism.rods[name], ends) for name, ends in design.plain["rods"].items()}
     rods |= {f"{prefix}{DAMPER}": one for prefix, one in _dampers(design, mechanism).items()}
@@ -121,25 +118,20 @@ def forces_at(
     within = scale * as_ball(Fraction(1, 10**digits))
     every = [*forces[ROD].values(), *forces[THRUST].values(), *(x for pull in pulls.values() for x in pull)]
     if not all(x.is_finite() and x.rad() <= within for x in every):
-        why = "cannot be proven in this pose, which is all but singular under its loads"
-        return {quantity: {} for quantity in FORCES}, dict.fromkeys(FORCES, why)
-    return forces, {}
+        return {quantity: {} for quantity in FORCES}
+    return forces
 
 
-def _lacking(design: Design) -> str:
-    """What forces need and the car does not have, in words; empty if they can be had."""
-    rows = set(range(len(design.mechanism.rows))) - set(design.chosen)
-    if rows:
-        twice = ", ".join(dict.fromkeys(design.mechanism.rows[row][0] for row in sorted(rows)))
-        return f"rows that do not depend on each other, as these do: {twice}"
+def _can_be_had(design: Design) -> bool:
+    """Whether no row depends on others, and each loaded or sprung corner has what its forces are made of."""
+    if len(design.chosen) < len(design.mechanism.rows):
+        return False
     for prefix in design.corners:
         has = provided(design, prefix)
-        needs = [WHEEL, KNUCKLE, RADIUS] if prefix in design.loads else []
-        needs += [TRAVEL] if DAMPER in has else []
-        lacks = [NEEDS[need] for need in needs if need not in has]
-        if lacks:
-            return " and ".join(lacks)
-    return ""
+        needs = {WHEEL, KNUCKLE, RADIUS} if prefix in design.loads else set()
+        if not needs | ({TRAVEL} if DAMPER in has else set()) <= has:
+            return False
+    return True
 
 
 @lru_cache(maxsize=64)

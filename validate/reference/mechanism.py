@@ -38,6 +38,7 @@ from flint import arb
 
 from validate.reference.car_data import directions
 from validate.reference.errors import BadInputError
+from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial, ordered, polynomial
 from validate.reference.vectors import Scalar, Vector, across, cross, dot, each, minus, near_one, plus, times
@@ -83,9 +84,9 @@ class Mechanism:
         size: unknowns, y0 and so on; symbols of the numbers w are -1, -2 and so on, see `polynomial`.
         rows: C(y, w), each with what it says.
         frames: of every moving body two vectors fixed in it and not parallel.
-        triples: the columns of every matrix R; an assembly's are right-handed.
         positive: products that are positive in an assembly: where not, a hinge is mounted the wrong way round
-            or an angle is off by half a turn.
+            or an angle is off by half a turn. On a way none of them passes zero at a regular pose, and no
+            matrix R becomes a mirror image: its rows hold from the drawing on.
         readers: give the unknowns of assembled points, one after the other.
         drives: by input, what its numbers w are; chassis motions are not among them.
         driving: of each of these the row that its numbers are in, the last of them if there are several.
@@ -111,7 +112,6 @@ class Mechanism:
         self.rows: list[tuple[str, Polynomial]] = []
         self.readers: list[Reader] = []
         self.positive: list[Polynomial] = []
-        self.triples: list[tuple[Vector, Vector, Vector]] = []
         self.frames: dict[str, tuple[Vector, Vector]] = {}
         self.drives: dict[str, Drive] = {}
         self.driving: dict[str, int] = {}
@@ -140,12 +140,6 @@ class Mechanism:
         """Of every point, relative to the chassis."""
         return {name: self.place(name) for name in self.table}
 
-    @cached_property
-    def fixed(self) -> frozenset[str]:
-        """The points of the chassis."""
-        constant = ((n, all(not m for x in p for m in polynomial(x).terms)) for n, p in self.places.items())
-        return frozenset(name for name, rests in constant if rests)
-
     def numbers(self, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
         """The numbers w of all inputs, of jets of any kind of number and a fraction in that kind."""
         return [w for drive in self.drives.values() for w in drive.numbers(inputs, exact)]
@@ -166,14 +160,16 @@ class Mechanism:
             unknown.extend(read(points, unknown, exact, numbers))
         return unknown
 
-    def handed(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:
-        """Numbers that are all positive in an assembly, and one of them not in a zero that is none."""
+    @property
+    def drawn_unknown(self) -> list[arb]:
+        """The unknowns of the points as drawn, exact numbers: what they do not meet is theirs to close."""
+        places = {name: each(as_ball, place) for name, place in self.table.items()}
+        return [arb(number).mid() for number in self.unknown_of(places, self.drawn_numbers, as_ball)]
+
+    def handed(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> bool:
+        """Whether a zero that a drawing leads to is an assembly, proven: no hinge is the wrong way round."""
         values = ordered(unknown, numbers)
-        found = [polynomial(one).at(values, exact) for one in self.positive]
-        for columns in self.triples:
-            a, b, c = (at(column, values, exact) for column in columns)
-            found.append(dot(cross(a, b), c))
-        return found
+        return all(polynomial(one).at(values, as_ball) > 0 for one in self.positive)
 
     def unknowns(self, count: int, read: Reader) -> list[Polynomial]:
         """New ones; `read` gives their values from points, the unknowns before them and the numbers w."""
@@ -312,7 +308,6 @@ class Mechanism:
         for p in range(3):
             for q in range(p, 3):
                 self.row(f"turn of {name}", dot(columns[p], columns[q]) - int(p == q))
-        self.triples.append(columns)
         if origin is None:
             px, py, pz = self.unknowns(3, lambda points, *_: points[base])
             origin = (px, py, pz)

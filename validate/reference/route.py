@@ -7,7 +7,7 @@ take of them (see `drives`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -16,7 +16,7 @@ from math import ceil
 
 from flint import arb
 
-from validate.reference.design import Design, Driven, balls, values_only
+from validate.reference.design import Design, Driven, balls
 from validate.reference.errors import (
     AmbiguousAssemblyError,
     InfeasibleError,
@@ -36,6 +36,7 @@ TURN = Fraction(3, 2)  # rad, less than a quarter turn
 MOST_STEPS = 400
 MOST_ORDERS = 6  # in which the inputs go there in turn
 CLEAR = 1e-9  # a drawing is rounded to floats and need not close: where its assemblies are closer is noise
+REMEDY = "the points are drawn at a singular pose: draw the car where it is wanted, off that pose"
 
 
 @dataclass(frozen=True)
@@ -58,19 +59,21 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
     """
 
     def attempt(digits: int) -> Assembly:
-        drawn, known = design.drawn_unknown(), values_only(design.known_as_drawn())
-        way = Way(known.equations, known.numbers, known.numbers, known.residual(drawn))
+        equations, mechanism, clear = design.equations(), design.mechanism, 0.0
+        drawn, numbers = mechanism.drawn_unknown, mechanism.drawn_numbers
+        way = Way(equations, numbers, numbers, equations.residual(drawn, numbers))
         try:
             pose = start_pose(way, drawn, arb(0))
+            clear = 1.0 / bending(way, pose)
         except NotDecidedError:
             if digits < MOST_DIGITS:
                 raise
-            raise _ambiguous(0.0, clearness) from None
-        clear = 1.0 / bending(way, pose)
-        if clear < clearness:
-            raise _ambiguous(clear, clearness)
-        for there in _led(way, pose, design, "closing the drawing"):
-            pose = there
+        if not 0.0 < clear >= clearness:
+            what = "how far the drawing is from another assembly"
+            raise AmbiguousAssemblyError(what, clear, clearness, REMEDY)
+        pose = _led(way, pose, design, "closing the drawing")
+        if not mechanism.handed(pose.box, numbers):
+            raise NotDecidedError("the handedness of the zero found", "not positive", "> 0")
         return Assembly({}, pose)
 
     return with_more_digits(attempt, DIGITS)
@@ -91,15 +94,14 @@ def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
         drawn, wanted = _numbers(design, {}), _numbers(design, driven)
         same = {n for n in drawn if all(a.overlaps(b) for a, b in zip(drawn[n], wanted[n], strict=True))}
         changed = [name for name in drawn if name not in same]
-        if len(changed) > 1:
-            for order in islice(permutations(changed), MOST_ORDERS):
-                try:
-                    there = here
-                    for k in range(1, len(order)):
-                        there = moved(design, there, {name: driven[name] for name in order[:k]})
-                    return moved(design, there, driven)
-                except InfeasibleError:
-                    continue
+        for order in islice(permutations(changed), MOST_ORDERS if len(changed) > 1 else 0):
+            try:
+                there = here
+                for k in range(1, len(order)):
+                    there = moved(design, there, {name: driven[name] for name in order[:k]})
+                return moved(design, there, driven)
+            except InfeasibleError:
+                continue
         raise straight from None
 
 
@@ -113,26 +115,21 @@ def moved(design: Design, here: Assembly, driven: Driven) -> Assembly:
         SingularPoseError: the way meets a singular pose, or one so near that 400 digits do not tell.
     """
 
-    pose, leg, gone = here.pose, 0, arb(0)
-
     def attempt(_: int) -> Assembly:
-        # With more digits the way goes on where it stopped with fewer: what was proven of a pose holds.
-        nonlocal pose, leg, gone
-        for begin, end in islice(pairwise(_stops(design, here.driven, driven)), leg, None):
+        pose = here.pose
+        for begin, end in pairwise(_stops(design, here.driven, driven)):
             way = Way(design.equations(), begin, end)
-            start = start_pose(way, pose.unknown, gone)
+            start = start_pose(way, pose.unknown, arb(0))
             if not pose.holds(start.box):
                 raise NotDecidedError("the start of the way", "another solution", "the same")
-            for pose in _led(way, start, design, "the way to the inputs"):
-                gone = pose.t
-            leg, gone = leg + 1, arb(0)
+            pose = _led(way, start, design, "the way to the inputs")
         return Assembly(driven, pose)
 
     return with_more_digits(attempt, DIGITS)
 
 
-def _led(way: Way, pose: Pose, design: Design, what: str) -> Iterator[Pose]:
-    """The poses along a way to its end.
+def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
+    """The pose at the end of a way.
 
     Raises:
         TooManyStepsError: it takes more than `MOST_STEPS`.
@@ -145,7 +142,6 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Iterator[Pose]:
         there = next_pose(way, pose, longest)
         step = float(there.t - pose.t)
         pose, longest = there, arb(4 * step)
-        yield pose
         if step < tried and pose.t < 1:
             tried = step * FOLDS_FROM
             fold = fold_ahead(way, pose)
@@ -156,31 +152,26 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Iterator[Pose]:
             if not fold.t > 1:
                 raise NotDecidedError("the fold beyond the end of the way", fold.t, "1")
             pose = pose_before(way, fold, arb(1))
-            yield pose
+    return pose
 
 
 def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
     """The numbers w between which the ways are straight."""
-    drives = design.mechanism.drives
     turns = {
         name: [Fraction(inputs[name].value) if name in inputs else Fraction(0) for inputs in (begin, end)]
-        for name, one in drives.items()
+        for name, one in design.mechanism.drives.items()
         if one.turns
     }
     count = max(1, ceil(max((abs(b - a) for a, b in turns.values()), default=Fraction(0)) / TURN))
     first, last = _numbers(design, begin), _numbers(design, end)
     between = []
     for k in range(1, count):
-        numbers: list[arb] = []
-        for name, one in drives.items():
-            if name in turns:
-                a, b = turns[name]
-                there = balls(Jet(a + Fraction(k, count) * (b - a)))
-                numbers += [jet.value for jet in one.numbers({name: there}, as_ball)]
-            else:
-                numbers += [x + (y - x) * k / count for x, y in zip(first[name], last[name], strict=True)]
-        between.append(numbers)
-    return [[*chain(*first.values())], *between, [*chain(*last.values())]]
+        driven = {name: Jet(a + Fraction(k, count) * (b - a)) for name, (a, b) in turns.items()}
+        straight = {
+            n: [x + (y - x) * k / count for x, y in zip(first[n], last[n], strict=True)] for n in first
+        }
+        between.append(straight | {name: _numbers(design, driven)[name] for name in turns})
+    return [[*chain(*stop.values())] for stop in (first, *between, last)]
 
 
 def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
@@ -193,14 +184,8 @@ def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
 
 
 def _inputs(design: Design, numbers: Sequence[arb]) -> dict[str, Fraction]:
-    found, first = {}, 0
-    for name, drive in design.mechanism.drives.items():
-        count = len(drive.drawn())
-        found[name] = centre_of(drive.input_of(numbers[first : first + count]))
-        first += count
-    return found
-
-
-def _ambiguous(clear: float, clearness: float) -> AmbiguousAssemblyError:
-    remedy = "the points are drawn at a singular pose: draw the car where it is wanted, off that pose"
-    return AmbiguousAssemblyError("how far the drawing is from another assembly", clear, clearness, remedy)
+    left = iter(numbers)
+    return {
+        name: centre_of(drive.input_of([*islice(left, len(drive.drawn()))]))
+        for name, drive in design.mechanism.drives.items()
+    }

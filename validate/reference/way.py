@@ -16,47 +16,20 @@ a far smaller box is proven to hold one, and to lie inside the first: so it is t
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, log
 
 from flint import arb, arb_mat, arb_poly, ctx
 
-from validate.reference.equations import Equations, matrix_of
+from validate.reference.equations import Equations
 from validate.reference.errors import NotDecidedError
-from validate.reference.krawczyk import Contraction, System, column, largest, less, newton, within
+from validate.reference.krawczyk import Contraction, Curve, Matrix, column, largest, less, newton, within
 from validate.reference.vectors import Scalar
 
-LEAST_ORDER, MOST_ORDER = 7, 40  # of the series: more terms cost more than the longer steps save
-PER_TERM = 1.4  # what a term more gains, as a logarithm: steps of e^-1.4, a quarter, of the series' radius
-SHARE = 0.4  # of that radius at most, where the last terms have lost their weight: 0.4^8 is 1/1500
+ORDER = 9  # of the series: what a step misses falls with the power ORDER + 1 of its length
+SHARE = 0.4  # of the series' radius at most: 0.4^8 is 1/1500
 SHORTER = 0.6  # so much of a step that could not be proven is tried next
 BOXES = (0.75, 0.5, 0.25)  # of the bits: how narrow the boxes about a pose are
-
-
-class Curve(ABC):
-    """Quadratic equations F(x, t) = 0 in x, as many as unknowns; t is a ball or a polynomial in balls."""
-
-    @abstractmethod
-    def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
-        """F(x, t)."""
-
-    @abstractmethod
-    def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
-        """F' as (row, column, entry), zeros left out."""
-
-    @abstractmethod
-    def bend(self, change: Sequence[arb]) -> arb_mat:
-        """By how much a change of x changes F', which is linear in x."""
-
-    def matrix(self, x: Sequence[arb], t: arb) -> arb_mat:
-        """F' in balls."""
-        return matrix_of(len(x), self.entries(x, t))
-
-    def at(self, t: arb) -> System:
-        """The equations at one t."""
-        return System(lambda x: self.rows(x, t), lambda x: self.matrix(x, t), self.bend)
 
 
 @dataclass(frozen=True)
@@ -80,15 +53,13 @@ class Way(Curve):
     def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
         """C(y, w(t)) - (1 - t) c."""
         rows = self.equations.residual(x, self.numbers(t))
-        if not self.missed:
-            return rows
-        return [row - (1 - t) * c for row, c in zip(rows, self.missed, strict=True)]
+        return [row - (1 - t) * c for row, c in zip(rows, self.missed, strict=True)] if self.missed else rows
 
     def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
         """C'(y, w(t))."""
         return self.equations.jacobian(x, self.numbers(t))
 
-    def bend(self, change: Sequence[arb]) -> arb_mat:
+    def bend(self, change: Sequence[arb]) -> Matrix:
         """C'' times a change of y."""
         return self.equations.bend(change)
 
@@ -147,9 +118,8 @@ def start_pose(curve: Curve, near: Sequence[arb], t: arb) -> Pose:
     Raises:
         NotDecidedError: there is none so near, or the Jacobian is singular to the present precision.
     """
-    system = curve.at(t)
-    unknown, inverse = newton(system, near)
-    proof = Contraction.at(system, unknown, inverse)
+    unknown, inverse = newton(curve, near, t)
+    proof = Contraction.at(curve, unknown, t, inverse)
     # The narrowest box tells where the solution is, the widest how far it is from any other.
     proofs = []
     for share in BOXES:
@@ -169,8 +139,8 @@ def next_pose(curve: Curve, pose: Pose, longest: arb) -> Pose:
     Raises:
         NotDecidedError: a step falls below the least that the present digits can carry.
     """
-    series, share = _ahead(curve, pose, float(arb.min(longest, 1 - pose.t)))
-    step = arb.min(arb(share), longest).mid()
+    series = series_of(curve, pose, ORDER)
+    step = arb.min(arb(_reach(curve, pose, series)), longest).mid()
     least = arb(2) ** (-ctx.prec // 3)
     while step > least:
         stop = arb.min((pose.t + step).mid(), arb(1)).mid()
@@ -193,14 +163,13 @@ def bending(curve: Curve, pose: Pose) -> float:
     return float(largest((pose.inverse * (curve.bend(box) * column(box))).entries()))
 
 
-def series_of(curve: Curve, pose: Pose, order: int, begun: Sequence[arb_poly] = ()) -> list[arb_poly]:
-    """The unknowns as polynomials in t less the pose's t; `begun` are their first terms, if there are any."""
-    terms = [one.coeffs() for one in begun] or [[x] for x in pose.unknown]
-    time = arb_poly([pose.t, 1])
-    for k in range(max(map(len, terms)), order + 1):
+def series_of(curve: Curve, pose: Pose, order: int) -> list[arb_poly]:
+    """The unknowns as polynomials in t less the pose's t."""
+    terms, time = [[x] for x in pose.unknown], arb_poly([pose.t, 1])
+    for k in range(1, order + 1):
         rows = curve.rows([arb_poly(one) for one in terms], time)
         for one, x in zip(terms, (pose.inverse * column([row[k] for row in rows])).entries(), strict=True):
-            one += [arb(0)] * (k - len(one)) + [-x.mid()]
+            one.append(-x.mid())
     return [arb_poly(one) for one in terms]
 
 
@@ -208,10 +177,9 @@ def proven_tube(curve: Curve, start: arb, series: Sequence[arb_poly], begin: arb
     """The step from `begin` to `stop` along a series about `start`, or None if it cannot be proven."""
     middle = ((stop + begin) / 2).mid()
     span = arb(0, arb.max(abs(stop - middle), abs(middle - begin)).upper())
-    about, time = [one(arb_poly([middle - start, 1])) for one in series], arb_poly([middle, 1])
-    rows, entries = curve.rows(about, time), curve.entries(about, time)
+    about = [one(arb_poly([middle - start, 1])) for one in series]
     try:
-        width = Contraction.along(rows, entries, curve.bend, span).settled()
+        width = Contraction.along(curve, about, arb_poly([middle, 1]), span).settled()
     except NotDecidedError:
         return None
     if width is None:
@@ -219,31 +187,15 @@ def proven_tube(curve: Curve, start: arb, series: Sequence[arb_poly], begin: arb
     return Tube(start, series, width, [one(span) + arb(0, r) for one, r in zip(about, width, strict=True)])
 
 
-def _ahead(curve: Curve, pose: Pose, wanted: float) -> tuple[list[arb_poly], float]:
-    """The series of as many terms as it pays to have, and how far it leads.
+def _reach(curve: Curve, pose: Pose, series: Sequence[arb_poly]) -> float:
+    """How far a series leads: its radius is estimated from its last two terms against its first.
 
-    To `order` it misses some speed * radius * share^(order + 1), and that may bend A C' by an eighth.
+    It misses some speed * radius * share^(ORDER + 1), and that may bend A C' by an eighth.
     """
-    series = series_of(curve, pose, LEAST_ORDER)
-    speed, radius = max(abs(float(one[1])) for one in series), _radius(series)
+    weights = [max(abs(float(one[k].mid())) for one in series) for k in (1, ORDER - 1, ORDER)]
+    speed, guesses = weights[0], [1e6]
+    if all(weights):
+        guesses = [(speed / w) ** (1.0 / k) for w, k in zip(weights[1:], (ORDER - 2, ORDER - 1), strict=True)]
+    radius = min(guesses)
     bend = max(1.0, 8.0 * speed * radius * bending(curve, pose))
-
-    def reach(order: int) -> float:
-        return radius * min(SHARE, float(bend ** (-1.0 / (order + 1))))
-
-    order = LEAST_ORDER
-    if reach(order) < wanted:
-        order = max(order, ceil(min(log(bend) / PER_TERM, MOST_ORDER)))
-        series = series_of(curve, pose, order, series)
-    return series, reach(order)
-
-
-def _radius(series: Sequence[arb_poly]) -> float:
-    """How far the series reaches, from its last two terms against its first."""
-    weights = [max(abs(float(one[k].mid())) for one in series) for k in range(LEAST_ORDER + 1)]
-    guesses = [
-        (weights[1] / weights[k]) ** (1.0 / (k - 1))
-        for k in (LEAST_ORDER - 1, LEAST_ORDER)
-        if weights[k] > 0.0 and weights[1] > 0.0
-    ]
-    return min(guesses, default=1e6)
+    return radius * min(SHARE, float(bend ** (-1.0 / (ORDER + 1))))

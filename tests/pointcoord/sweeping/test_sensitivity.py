@@ -15,7 +15,7 @@ from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import LoadPart, built_in_scenes
 from pointcoord.sweeping.hardpoint_slopes import ByHardpoints
 from validate.formulations.reference_solution import inputs_at
-from validate.reference import solve_reference
+from validate.reference import Design, instants_of
 
 TIME = {"start": 0.0, "stop": 0.4, "samples": 3}
 LOAD = LoadPart(force=(-310.0, 1870.0, 3105.0), moment=(1e4, -2e4, 3e4))
@@ -153,7 +153,8 @@ def test_derivatives_are_those_of_the_many_digit_reference(
         place["xyz".index(axis)] += move
         points = {**plain["points"], point: place}
         inputs = inputs_at(scene, instant)
-        return solve_reference({**plain, "points": points}, inputs, effects=numbers).effects
+        design = Design.from_plain({**plain, "points": points})
+        return next(instants_of(design, [inputs], effects=numbers)).effects
 
     for i, instant in enumerate(found.times.tolist()):
         less, more = solved(instant, -step), solved(instant, step)

@@ -19,7 +19,7 @@ from validate.reference import (
     Design,
     Instant,
     NoReferenceError,
-    solve_reference,
+    instants_of,
 )
 from validate.reference.vectors import Vector, minus
 
@@ -29,6 +29,10 @@ WITHIN = mpf("1e-50")
 def apart(one: Mapping[str, Vector], other: Mapping[str, Vector]) -> mpf:
     """Greatest difference of a coordinate, mm."""
     return max(abs(x) for name in other for x in minus(one[name], other[name]))
+
+
+def solved(plain: Mapping[str, Any], inputs: Mapping[str, Any]) -> Instant:
+    return next(instants_of(Design.from_plain(plain), [inputs]))
 
 
 def crank_of(theta: mpf) -> Vector:
@@ -41,7 +45,7 @@ def test_a_slider_crank_is_where_its_closed_form_says_after_any_number_of_turns(
         return 3 * mpmath.cos(angle) + mpmath.sqrt(144 - 9 * mpmath.sin(angle) ** 2)
 
     t = mpf(theta)
-    found = solve_reference(SLIDER_CRANK, {"turn": (t, 2, 0)})
+    found = solved(SLIDER_CRANK, {"turn": (t, 2, 0)})
     assert apart(found.position, {"a": crank_of(t), "b": (slider(t), mpf(0), mpf(5))}) < WITHIN
     with mpmath.workdps(80):
         rate = 2 * mpmath.diff(slider, t)
@@ -54,12 +58,10 @@ def test_a_slider_crank_is_where_its_closed_form_says_after_any_number_of_turns(
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"rods": {"rod": ["a", "nowhere"]}}, "rods.rod is 'nowhere'"),
-        ({"points": {**SLIDER_CRANK["points"], "spare": (1, 2, 3)}}, "points.spare is 'in no body"),
         ({"points": {**SLIDER_CRANK["points"], "above": (0, 0, 0)}}, "hinge of crank"),
         ({"points": {**SLIDER_CRANK["points"], "a": (0, 0, 3)}}, "all on one line"),
         ({"points": {**SLIDER_CRANK["points"], "b": (3, 0, 0)}}, "length of rod"),
-        ({"inputs": {"turn": {"spins": "crank"}}}, "inputs.turn"),
+        ({"inputs": {}}, "drive 1 more"),
     ],
 )
 def test_a_description_that_makes_no_mechanism_is_refused_by_name(
@@ -85,7 +87,7 @@ def planar_four_bar(lift: Fraction) -> dict[str, Any]:
 
 
 def test_a_planar_mechanism_is_solved_by_independent_rows_and_the_others_hold() -> None:
-    found: Instant = solve_reference(planar_four_bar(Fraction(0)), {"turn": (mpf("0.3"), 1, 0)})
+    found = solved(planar_four_bar(Fraction(0)), {"turn": (mpf("0.3"), 1, 0)})
     p = found.position
     for one, other, squared in (("a", "b", 25), ("p", "b", 10), ("a2", "b2", 25), ("o", "a", 9)):
         d = minus(p[one], p[other])
@@ -95,4 +97,4 @@ def test_a_planar_mechanism_is_solved_by_independent_rows_and_the_others_hold() 
 
 def test_the_same_with_a_crooked_pin_is_locked() -> None:
     with pytest.raises(NoReferenceError):
-        solve_reference(planar_four_bar(Fraction(1, 3)), {"turn": (mpf("0.3"), 1, 0)})
+        solved(planar_four_bar(Fraction(1, 3)), {"turn": (mpf("0.3"), 1, 0)})

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 
-from flint import arb, arb_mat
+from flint import arb
 
 from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
@@ -17,8 +17,8 @@ from validate.reference.effects.effect import PAIR, RACK, ROLL, TIME, TRAVEL, Ef
 from validate.reference.effects.registry import named
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball
-from validate.reference.jet import Jet, value_of
-from validate.reference.kinematics import unknown_rates
+from validate.reference.jet import value_of
+from validate.reference.kinematics import Solved, with_rates
 from validate.reference.vectors import Scalar, Vector
 
 
@@ -116,7 +116,7 @@ def car_at(
 
 
 def effects_at(
-    design: Design, known: Known, enclosure: Sequence[arb], inverse: arb_mat, numbers: Iterable[Number]
+    design: Design, known: Known, enclosure: Sequence[arb], solver: Solved, numbers: Iterable[Number]
 ) -> dict[str, arb]:
     """Those of some numbers that the car can have, in balls, rad, mm and %.
 
@@ -125,34 +125,27 @@ def effects_at(
 
     Args:
         known: as jets; their rates are looked at by numbers by time alone.
-        inverse: of the Jacobian over the enclosure.
+        solver: of the rates over the enclosure.
     """
     unit, equations = as_ball(design.unit), known.equations
 
     @cache
     def car(prefix: str, along: str | None) -> Car:
-        pose, chassis = list[Scalar](enclosure), known.chassis.still()
         drawn, body = drawn_car(design, as_ball, prefix), design.role(prefix + KNUCKLE)
         if along is None:
-            return car_at(drawn, chassis, equations.points_of(pose, drawn.points))
+            places = equations.points_of(enclosure, drawn.points)
+            return car_at(drawn, known.chassis.still(), places)
         driven = known
-        if along == TIME:
-            chassis = known.chassis.with_slopes()
-        else:
+        if along != TIME:
             # A slide is driven in the design's own lengths, in which the car's are.
             driver = drivers(design, prefix)[along]
             rate = unit if along == RACK else arb(1)
             if "steers" in design.plain["inputs"][driver]:
                 rate /= travel_per_radian(design.plain)
             driven = known.driven_at(driver, rate)
-            if along == ROLL:
-                laws = {n: Jet(jet.value, arb(n == driver)) for n, jet in known.inputs.items()}
-                moving = ChassisMotion.of(design.plain, design.table, design.unit, laws, as_ball)
-                chassis = moving.with_slopes()
-        rates = unknown_rates(enclosure, driven, inverse)
-        pose = [Jet(y, slope) for y, slope in zip(enclosure, rates, strict=True)]
+        pose = with_rates(enclosure, driven, solver, 1)
         frame = equations.frame_of(pose, body) if body in equations.frames else None
-        return car_at(drawn, chassis, equations.points_of(pose, drawn.points), frame)
+        return car_at(drawn, driven.chassis.with_slopes(), equations.points_of(pose, drawn.points), frame)
 
     found = {}
     for name, effect, corners in ((one.name, one.effect, one.corners) for one in numbers if not one.lacks):
