@@ -2,7 +2,7 @@
 
     python tests/figures.py NAME [NAME ...]
 
-Names: agreement, hard, assemblies, random, bounds, cost, effects, growth, speed, struts, tables.
+Names: agreement, hard, assemblies, random, bounds, cost, effects, speed, struts, tables.
 
 A figure stands in its page between two comments, `<!-- figure NAME -->` and `<!-- end -->`; what is between
 them is replaced, and nothing else is. Long ones (see `FIGURES`) take as long as their command.
@@ -127,13 +127,8 @@ FIGURES = {
     ),
     "cost": Figure(
         "validate/cost/README.md",
-        "pointcoord cost --parts accuracy --rows {folder}/rows.parquet --report {folder}/cost",
+        "pointcoord cost --rows {folder}/rows.parquet --report {folder}/cost",
         _tables("accuracy of position"),
-    ),
-    "growth": Figure(
-        "validate/cost/README.md",
-        "pointcoord cost --parts growth --rows {folder}/rows.parquet --report {folder}/cost",
-        _tables("Growth in"),
     ),
     "speed": Figure(
         "validate/cost/README.md",

@@ -28,14 +28,12 @@ import numpy as np
 import pyarrow
 import pyarrow.csv
 import pytest
+from chain_of_four_bars import INSTANTS, TOLERANCE, chain_scene
 from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from pointcoord import Scene, kinematic_map, simulate, solve_poses, sweep_blocks
 from pointcoord.results.named_columns import number_columns
-from validate.cost.chain import TOLERANCE as OF_CHAIN
-from validate.cost.chain import chain_scene
-from validate.cost.growth import CHAIN_INSTANTS
 from validate.cost.scenes import study_instants
 from validate.cost.ways.absolute import in_bodies
 from validate.cost.ways.registry import ways_named
@@ -207,7 +205,7 @@ def chain() -> Race:
 
     def made_ready(unknowns: int) -> Work:
         scene = chain_scene(unknowns)
-        return partial(series.prepare(scene, OF_CHAIN), CHAIN_INSTANTS)
+        return partial(series.prepare(scene, TOLERANCE), INSTANTS)
 
     return Race(made_ready(size(1500, 600)), made_ready(size(150, 60)), 10.0)
 

@@ -461,7 +461,7 @@ def test_on_a_phone_every_entry_of_a_long_legend_is_seen(browser: Browser, tmp_p
         for k, way in enumerate(WAYS)
         for row in measured("bounce", way.name, "a", {"position": 10.0**-k}, 1e-5)
     )
-    run = Run(Head.of("cost", ("pointcoord", "cost")), cost=Report("rows", "", False, rows))
+    run = Run(Head.of("cost", ("pointcoord", "cost")), cost=Report("rows", "", rows))
     (tmp_path / "index.html").write_text(page_of(run, {}), encoding="utf-8")
     phone = opened(browser, tmp_path, viewport=PHONE)
     settled(phone.page)

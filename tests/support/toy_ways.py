@@ -50,7 +50,7 @@ class Toy:
     @property
     def runner(self) -> Runner:
         """As a race takes it; a run gives ten poses."""
-        return Runner(Row("accuracy", "scene", self.name, poses=10), self._set_up, self._found)
+        return Runner(Row("scene", self.name, poses=10), self._set_up, self._found)
 
     def _spend(self, phase: str) -> None:
         self.before(phase)

@@ -5,16 +5,15 @@ from __future__ import annotations
 import argparse
 import os
 import shlex
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pointcoord import UnknownName
 from validate.commands.comparing import Page
 from validate.commands.usage import (
     STANDARD_INPUT,
     Command,
+    given,
     load_scene,
     name_of,
     require_input_once,
@@ -22,7 +21,7 @@ from validate.commands.usage import (
     told_as,
 )
 from validate.cost.report import Report
-from validate.cost.table import PARTS, Part, Row, Store, StoreError, latest, measured_here
+from validate.cost.table import frame, measured_here
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -33,108 +32,59 @@ from validate.output.report import counted_as
 
 if TYPE_CHECKING:
     from validate.cost.study import Study
-    from validate.cost.way import Way
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Measure what the file of rows does not hold yet, and report."""
+    """Measure, keep the rows, and report; or report the rows of a file."""
     require_input_once(options.scenes)
     if options.rows == STANDARD_INPUT or not options.rows.strip():
         raise UsageError(f"--rows {options.rows!r} names no file; allowed: the path of a file")
+    if options.from_rows and (more := given(options, "scenes", "--ways", "--quick")):
+        what = "SCENE" if more[0] == "scenes" else more[0]
+        raise UsageError(f"--from-rows shows all rows of {options.rows}; leave {what} out")
     results, read = {"--json": options.json, "--csv": options.csv}, [*options.scenes]
-    if options.from_rows or options.list:
+    if options.from_rows:
         read.append(options.rows)
     else:
         results["--rows"] = options.rows
     require_results(results, read, options, console)
-    if options.list:
-        console.say(_listing())
-        return ExitStatus.AGREE
-    parts = _parts(options)
     if options.report is not None:
         needed("--report", "matplotlib", "plot")
     page = Page.of(options)
     needed("cost", "pyarrow")
-    study = None if options.from_rows else _study(options, parts)
     command = shlex.join(options.command)
-    try:
-        store = Store(Path(options.rows), measured_here(command)) if study else None
-        report = Report.of_file(options.rows, command, options.quick) if study is None else None
-    except StoreError as error:
-        raise UsageError(f"--rows {error}") from None
-    rows = [] if report is None else _chosen_rows(report, parts, options)
-
-    def so_far() -> Report:
-        return replace(report or Report(options.rows, command, options.quick, ()), rows=tuple(rows))
-
+    if options.from_rows:
+        study, report = None, Report.of_file(options.rows, command)
+    else:
+        study, report = _study(options, command), Report(options.rows, command, ())
     journal = Journal(
         options.json,
         Head.of("cost", options.command, timed=True),
         console,
-        lambda: so_far().data(),
-        lambda: counted_as(len(rows), "row") if rows else "",
+        lambda: report.data(),
+        lambda: counted_as(len(report.rows), "row") if report.rows else "",
     )
-    if store is not None:
-        there = f"rows are kept in {options.rows} ({len(store.rows)} there)"
-        console.note(f"{there}; a run that is stopped goes on with its scene")
     with journal.closing() as ending:
-        if study is not None and store is not None:
-            _measure(study, store, rows, options, console)
-        ending.status = _told(so_far(), page, options, console)
+        if study is not None:
+            with console.progress("what accuracy costs") as told:
+                for rows in needed("cost", "validate.cost.study").measure(study, told):
+                    report = replace(report, rows=(*report.rows, *rows))
+                    write_content(options.rows, frame(report.rows).to_parquet())
+                    console.written[options.rows] = counted_as(len(report.rows), "row")
+        ending.status = _told(report, page, options, console)
     return ending.status
 
 
-def _measure(
-    study: Study, store: Store, rows: list[Row], options: argparse.Namespace, console: Console
-) -> None:
-    """Measure into rows; what was measured is kept and named however it ends."""
-    try:
-        with console.progress("what accuracy costs") as told:
-            rows += needed("cost", "validate.cost.study").measure(study, store, told)
-    except BaseException:
-        # What was kept before it stopped is in the file only.
-        rows[:] = [row for row in latest(store.rows, study.quick) if row.part in study.parts]
-        raise
-    finally:
-        console.written[options.rows] = counted_as(len(store.rows), "row")
-
-
-def _listing() -> str:
-    scenes = needed("cost", "validate.cost.scenes").STUDY_SCENES
-    ways: tuple[Way, ...] = needed("cost", "validate.cost.ways.registry").WAYS
-    needs = {way.name: f" (needs the package {way.package})" if way.package else "" for way in ways}
-    wide = max(map(len, needs))
-    lines = ["ways:", *(f"  {way.name.ljust(wide)}  {way.words}{needs[way.name]}" for way in ways)]
-    lines += ["scenes of the study; a scene of your own is measured by its file:"]
-    return "\n".join([*lines, *(f"  {name}" for name in scenes), f"parts: {', '.join(PARTS)}"])
-
-
-def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
-    if options.parts is not None:
-        chosen = _chosen(options.parts, "--parts", "part of the study", PARTS)
-        return tuple(part for part in PARTS if part in chosen)
-    return ("accuracy",) if options.quick and not options.from_rows else PARTS
-
-
-def _chosen(words: str, option: str, what: str, allowed: Sequence[str]) -> list[str]:
-    """Names that an option lists."""
-    names = [word.strip() for word in words.split(",") if word.strip()]
-    if not names:
-        raise UsageError(f"{option} {words!r} names nothing; there are: {', '.join(allowed)}")
-    for name in names:
-        if name not in allowed:
-            raise UnknownName(what, name, allowed)
-    return names
-
-
-def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
+def _study(options: argparse.Namespace, command: str) -> Study:
     """What is to be measured; everything is found before anything is measured."""
     of_study = needed("cost", "validate.cost.scenes")
     registry = needed("cost", "validate.cost.ways.registry")
-    study = needed("cost", "validate.cost.study")
     ways = registry.WAYS
     if options.ways is not None:
-        ways = registry.ways_named(_chosen(options.ways, "--ways", "way", [way.name for way in ways]))
+        names = [word.strip() for word in options.ways.split(",") if word.strip()]
+        if not names:
+            raise UsageError(f"--ways {options.ways!r} names nothing; there are: {', '.join(registry.NAMES)}")
+        ways = registry.ways_named(names)
     scenes = []
     usual = (of_study.QUICK_SCENE,) if options.quick else of_study.STUDY_SCENES
     for name in dict.fromkeys(options.scenes or usual):
@@ -142,27 +92,10 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
             own = name in of_study.STUDY_SCENES or not options.scenes
             scene = of_study.own_scene(name) if own else load_scene(name)
             scenes.append(of_study.study_scene(name_of(name), scene))
-    found: Study = study.Study(parts, tuple(scenes), ways, options.quick)
-    return found
-
-
-def _chosen_rows(report: Report, parts: Sequence[Part], options: argparse.Namespace) -> list[Row]:
-    """The rows of a file, chosen as they would be measured."""
-    rows = [row for row in report.rows if row.part in parts]
-    # A scene without its effects is named after a comma.
-    there = [*dict.fromkeys(row.scene for row in rows if row.scene)]
-    chosen: set[str] = set()
-    for name in map(name_of, options.scenes):
-        about = {one for one in there if f"{one}, ".startswith(f"{name}, ")}
-        if not about:
-            raise UnknownName(f"scene of the rows in {options.rows}", name, there)
-        chosen |= about
-    rows = [row for row in rows if not chosen or row.scene in chosen]
-    if options.ways is not None:
-        known = [*dict.fromkeys(row.way for row in rows)]
-        asked = _chosen(options.ways, "--ways", f"way in the rows of {options.rows}", known)
-        rows = [row for row in rows if row.way in asked]
-    return rows
+    study: Study = needed("cost", "validate.cost.study").Study(
+        tuple(scenes), ways, measured_here(command), options.quick
+    )
+    return study
 
 
 def _told(report: Report, page: Page | None, options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -199,4 +132,4 @@ def _draw_beside(rows: str, report: Report, console: Console) -> None:
         console.say(f"the picture: {place}")
 
 
-COMMANDS = {"cost": Command(run, {"parts": ", ".join(PARTS)})}
+COMMANDS = {"cost": Command(run)}

@@ -14,7 +14,6 @@ from validate.commands.comparison import PAGE_WORDS, require_sense
 from validate.commands.comparison import run as compare
 from validate.commands.usage import Command
 from validate.cost.report import Report
-from validate.cost.table import StoreError
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.html.hard_cases import HardCases, read_hard_cases
@@ -40,10 +39,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
     require_sense(options)
     hard = None if options.hard is None else read_hard_cases(options.hard)
-    try:
-        cost = None if options.cost is None else Report.of_file(options.cost)
-    except StoreError as error:
-        raise UsageError(f"--cost {error}") from None
+    cost = None if options.cost is None else Report.of_file(options.cost)
     options.report, options.with_more = folder, partial(_with_more, hard, cost, console)
     return compare(options, console)
 
@@ -73,14 +69,15 @@ def _first_look_at_cost(run: Run, console: Console) -> Report:
     # So does the study of cost.
     from validate.cost.scenes import own_scene, study_scene
     from validate.cost.study import Study, measure
-    from validate.cost.table import Store, measured_here
+    from validate.cost.table import measured_here
     from validate.cost.ways.registry import ways_named
 
     command = shlex.join(run.head.command)
-    study = Study(("accuracy",), (study_scene(SCENE, own_scene(SCENE)),), ways_named(WAYS), quick=True)
+    scenes = (study_scene(SCENE, own_scene(SCENE)),)
+    study = Study(scenes, ways_named(WAYS), measured_here(command), quick=True)
     with console.progress("a first look at cost") as told:
-        rows = measure(study, Store(None, measured_here(command)), told)
-    return Report("in this run", command, True, tuple(rows))
+        (rows,) = measure(study, told)
+    return Report("in this run", command, tuple(rows))
 
 
 COMMANDS = {"report": Command(run, PAGE_WORDS)}

@@ -15,7 +15,7 @@ what anybody can be given: half a unit in the last place of an angle is no error
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate.cost.race import Found, NoNumbers, absent
-from validate.cost.way import Answer
+from validate.cost.race import Found, absent
+from validate.cost.way import Answer, NoNumbers
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import shape_of
@@ -60,23 +60,14 @@ class Truth:
     radius: Mapping[str, float]
 
 
-def judge(
-    scene: Scene, instants: Array, places: Sequence[int] | None = None, positions: bool | None = None
-) -> Callable[[Answer], Found]:
+def judge(scene: Scene, instants: Array, positions: bool | None = None) -> Callable[[Answer], Found]:
     """What tells the errors of answers at instants, (N,), s; the reference is solved once, when it is needed.
 
     Args:
-        places: numbers of the instants that are looked at; all if None.
         positions: whether only positions are looked at, or all else; everything if None.
     """
-    some = slice(None) if places is None else [*places]
-    truth = cache(lambda: truth_of(scene, instants[some]))
-
-    def found(answer: Answer) -> Found:
-        numbers = {q: {n: x[some] for n, x in of.items()} for q, of in answer.numbers.items()}
-        return errors_of(Answer(numbers, answer.work), truth(), positions)
-
-    return found
+    truth = cache(lambda: truth_of(scene, instants))
+    return lambda answer: errors_of(answer, truth(), positions)
 
 
 def truth_of(scene: Scene, instants: Array) -> Truth:
@@ -125,16 +116,12 @@ def errors_of(answer: Answer, truth: Truth, positions: bool | None = None) -> Fo
             found[quantity] = absent("left out", f"gives no {QUANTITIES[quantity].words}")
             continue
         errors = np.concatenate([_error(quantity, n, given, exact).ravel() for n, exact in names.items()])
-        found[quantity] = {**summed_up(np.abs(errors)), "radius": truth.radius[quantity], "work": work}
+        largest = float(np.abs(errors).max())
+        # In parts of the largest, so that no square is too large or too small for a double.
+        mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
+        sizes = {"error": largest, "rms": largest * mean**0.5, "numbers": errors.size}
+        found[quantity] = {**sizes, "radius": truth.radius[quantity], "work": work}
     return found
-
-
-def summed_up(errors: Array) -> dict[str, Any]:
-    """Columns of a row: the largest of some errors, and their root mean square."""
-    largest = float(errors.max())
-    # In parts of the largest, so that no square is too large or too small for a double.
-    mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
-    return {"error": largest, "rms": largest * mean**0.5, "numbers": errors.size}
 
 
 def _error(quantity: str, name: str, given: Mapping[str, Array], exact: Exact) -> Array:

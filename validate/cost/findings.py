@@ -13,17 +13,13 @@ from itertools import product
 
 import numpy as np
 import pandas as pd
-from scipy.stats import linregress
 
 from pointcoord.effects.registry import QUANTITIES
 from validate.cost.way import power
 from validate.cost.ways.registry import OURS
 
-LINE = ["against", "scene", "way", "setting"]
-"""The columns that say what grows."""
 ACCURACIES = (1e-3, 1e-6, 1e-9)
 """In the unit of each quantity: mm of positions."""
-DECADES = 2.0  # below the largest size: an exponent is fitted where fixed costs have been left behind
 LISTED = 6  # ways that a sentence names
 
 
@@ -37,21 +33,16 @@ def words_of(quantity: str) -> str:
     return QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
 
 
-def in_units(value: float, **units: float) -> str:
-    """Three digits and the first unit, from the largest, that is not too large."""
-    name = next((name for name, size in units.items() if value >= 0.9995 * size), [*units][-1])
-    return f"{float(f'{value / units[name]:.3g}'):g} {name}"
-
-
 def duration(seconds: float) -> str:
-    """A time, such as 14.3 us."""
-    return in_units(seconds, s=1.0, ms=1e-3, us=1e-6, ns=1e-9)
+    """A time in three digits and the first unit that is not too large, such as 14.3 us."""
+    units = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+    name = next((name for name, size in units.items() if seconds >= 0.9995 * size), "ns")
+    return f"{float(f'{seconds / units[name]:.3g}'):g} {name}"
 
 
-def timed(table: pd.DataFrame, part: str) -> pd.DataFrame:
-    """The rows of a part that have a time; of what has errors, those with one."""
-    found = table[(table.part == part) & (table.verdict == "measured") & table.time.notna()]
-    return found[found.error.notna()] if part == "accuracy" else found
+def timed(table: pd.DataFrame) -> pd.DataFrame:
+    """The rows that have a time and an error."""
+    return table[(table.verdict == "measured") & table.time.notna() & table.error.notna()]
 
 
 def heights(errors: pd.Series) -> tuple[pd.Series, str]:
@@ -63,7 +54,7 @@ def heights(errors: pd.Series) -> tuple[pd.Series, str]:
 
 def cheapest(table: pd.DataFrame) -> pd.DataFrame:
     """By scene, quantity, way and accuracy the quickest setting that is accurate enough."""
-    found = timed(table, "accuracy")
+    found = timed(table)
     near = pd.concat([found[found.error + found.radius <= a].assign(accuracy=a) for a in ACCURACIES])
     near = near.sort_values("time", kind="stable")
     return near.drop_duplicates(["scene", "quantity", "way", "accuracy"])
@@ -71,7 +62,7 @@ def cheapest(table: pd.DataFrame) -> pd.DataFrame:
 
 def races(table: pd.DataFrame) -> pd.DataFrame:
     """Who is quicker to an accuracy: the quickest of our ways, or of the others; and all that reach it."""
-    best, asked = cheapest(table), timed(table, "accuracy").groupby(["scene", "quantity"], sort=False)
+    best, asked = cheapest(table), timed(table).groupby(["scene", "quantity"], sort=False)
     lines = []
     for (scene, quantity), accuracy in product(asked.groups, ACCURACIES):
         here = best[(best.scene == scene) & (best.quantity == quantity) & (best.accuracy == accuracy)]
@@ -91,37 +82,13 @@ def races(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(lines, columns=columns)
 
 
-def growths(table: pd.DataFrame) -> pd.DataFrame:
-    """How time (s a run) and memory (bytes) grow: value = factor x size^exponent, of the largest sizes.
-
-    The exponent is the slope of the logarithms, with its standard error; NaN from fewer than three sizes.
-    Against instants time is without the set-up, which is the same for any number of them.
-    """
-    sizes = timed(table, "growth").sort_values("size", kind="stable")
-    sizes = sizes.drop_duplicates([*LINE, "size"], keep="last")
-    set_up = sizes.set_up.where(sizes.against != "instants", 0.0)
-    time = sizes.assign(of="time", value=sizes.time * sizes.poses.astype(float) + set_up)
-    both = pd.concat([time, sizes.assign(of="memory", value=sizes.peak_bytes.astype(float))])
-    lines = []
-    for key, line in both[both.value > 0.0].groupby([*LINE, "of"], sort=False):
-        size, value = line["size"].to_numpy(float), line.value.to_numpy(float)
-        large = size >= size[-1] * 10.0**-DECADES * (1.0 - 1e-9)
-        large[-3:] = True
-        slope = error = math.nan
-        if len(size) > 1:
-            fit = linregress(np.log(size[large]), np.log(value[large]))
-            slope, error = float(fit.slope), float(fit.stderr) if large.sum() > 2 else math.nan
-        lines.append((*key, slope, error, float(size[-1]), float(value[-1])))
-    return pd.DataFrame(lines, columns=[*LINE, "of", "exponent", "error", "largest", "value"])
-
-
 def sentences(table: pd.DataFrame) -> list[str]:
     """Who is quickest, what digits cost, and where others win."""
     return [line for line in (_quickest(table), _digits(table), _won(table)) if line]
 
 
 def _quickest(table: pd.DataFrame) -> str:
-    best, asked = cheapest(table), timed(table, "accuracy")
+    best, asked = cheapest(table), timed(table)
     finest = best[(best.quantity == "position") & (best.accuracy == ACCURACIES[-1])]
     times = finest.groupby("way").time.agg(["median", "min", "max"]).sort_values("median")
     if times.empty:
@@ -139,7 +106,7 @@ def _quickest(table: pd.DataFrame) -> str:
 
 
 def _digits(table: pd.DataFrame) -> str:
-    found = timed(table, "accuracy")
+    found = timed(table)
     found = found[(found.quantity == "position") & found.value.notna()].sort_values("value")
     ends = found.groupby(["scene", "way"], sort=False).agg(["first", "last"])
     ends = ends[ends.value["first"] < ends.value["last"]]

@@ -20,7 +20,7 @@ except ImportError as error:
 @mpl.rc_context(SETTINGS)
 def headline(table: pd.DataFrame) -> Figure | None:
     """Error of positions against time, of the scene that is measured first; None if there is none."""
-    here = timed(table, "accuracy")
+    here = timed(table)
     here = here[here.quantity == "position"]
     if here.empty:
         return None

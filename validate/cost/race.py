@@ -28,7 +28,7 @@ from threadpoolctl import threadpool_limits
 from pointcoord import PointcoordError
 from pointcoord.errors import visible
 from validate.cost.table import Row, Verdict
-from validate.cost.way import LeftOut
+from validate.cost.way import LeftOut, NoNumbers
 
 Clock = Callable[[], int]
 """Nanoseconds since some instant."""
@@ -36,10 +36,6 @@ Progress = Callable[[str, int, int], None]
 """Is called before anything is measured: what, how much is done, of how much."""
 SEED = 20221122
 MOST_LOOPS = 10_000
-
-
-class NoNumbers(Exception):
-    """What a way gives is not what it was asked for: a number that is none, or that is not there."""
 
 
 @dataclass(frozen=True)

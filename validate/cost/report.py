@@ -8,12 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
-from validate.cost.table import WHERE, Row, StoreError, frame, latest, read_rows
-from validate.output.document import json_text
+from validate.cost.table import WHERE, Row, frame, read_rows
 from validate.output.table import Part, Table, markdown
 
 # Imported where they are needed, as `findings` is: pandas takes half a second, and most pages show no costs.
@@ -36,26 +34,26 @@ class Report:
 
     Attributes:
         store: the file that holds them. command: that makes this report, as a shell would take it.
-        quick: whether they are those of `--quick`.
     """
 
     store: str
     command: str
-    quick: bool
     rows: tuple[Row, ...]
 
     @classmethod
-    def of_file(cls, store: str, command: str = "", quick: bool = False) -> Report:
-        """That of a file: of its rows that are not quick, unless quick ones are asked for or all there are.
+    def of_file(cls, store: str, command: str = "") -> Report:
+        """That of a file.
 
         Raises:
-            StoreError: it cannot be read, or holds none.
+            UsageError: it cannot be read, or holds no rows.
         """
-        found = read_rows(Path(store))
-        if not found:
-            raise StoreError(f"{store}: holds no rows; measure them first")
-        quick = quick or all(row.quick for row in found)
-        return cls(store, command or found[0].command, quick, tuple(latest(found, quick)))
+        rows = read_rows(store)
+        return cls(store, command or rows[0].command, tuple(rows))
+
+    @property
+    def quick(self) -> bool:
+        """Whether any row is one of `--quick`."""
+        return any(row.quick for row in self.rows)
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -71,7 +69,7 @@ class Report:
 
     def tables(self, *quantities: str) -> list[Table]:
         """The same with its numbers; of errors those of some quantities, or of all."""
-        return [*_reached(self.table, quantities), *_growths(self.table), *_without_numbers(self.table)]
+        return [*_reached(self.table, quantities), *_without_numbers(self.table)]
 
     @property
     def measured(self) -> int:
@@ -117,7 +115,7 @@ class Report:
 
     def data(self) -> dict[str, Any]:
         """As plain data: see the schema of the documents, kind `cost`."""
-        from validate.cost.findings import growths, races
+        from validate.cost.findings import races
 
         return {
             "quick": self.quick,
@@ -125,7 +123,6 @@ class Report:
             "measured_by": self.measured_by(),
             "sentences": self.sentences,
             "races": _records(races(self.table)),
-            "growths": _records(growths(self.table)),
             "rows": [asdict(row) for row in self.rows],
         }
 
@@ -142,7 +139,7 @@ class Report:
         return None if figure is None else drawn(figure, "svg")
 
     def files(self) -> Iterator[tuple[str, bytes]]:
-        """Names and contents of the files of a folder: the picture, all tables as a page, and the rows.
+        """Names and contents of the files of a folder: the picture, and all tables as a page.
 
         Raises:
             ImportError: matplotlib is not there.
@@ -150,8 +147,6 @@ class Report:
         if (picture := self.headline()) is not None:
             yield "headline.svg", picture
         yield "report.md", self.markdown("headline.svg" if picture else "").encode()
-        yield "table.csv", self.csv().encode()
-        yield "rows.json", json_text(self.data()).encode()
 
 
 def _reached(table: pd.DataFrame, quantities: tuple[str, ...]) -> Iterator[Table]:
@@ -159,7 +154,7 @@ def _reached(table: pd.DataFrame, quantities: tuple[str, ...]) -> Iterator[Table
     from validate.cost.findings import ACCURACIES, cheapest, duration, timed, unit_of, words_of
     from validate.cost.way import power
 
-    best, found = cheapest(table), timed(table, "accuracy")
+    best, found = cheapest(table), timed(table)
     settings = (f" ({power(value)})" if value == value else "" for value in best.value)
     best = best.assign(cell=[duration(time) + more for time, more in zip(best.time, settings, strict=True)])
     for (scene, quantity), here in found.groupby(["scene", "quantity"], sort=False):
@@ -186,39 +181,13 @@ def _reached(table: pd.DataFrame, quantities: tuple[str, ...]) -> Iterator[Table
         )
 
 
-def _growths(table: pd.DataFrame) -> Iterator[Table]:
-    """Fitted exponents of time and memory, a table for each thing that is varied and each scene."""
-    from validate.cost.findings import duration, growths, in_units
-
-    for (against, scene), here in growths(table).groupby(["against", "scene"], sort=False):
-        lines = []
-        for one in here.itertuples():
-            fit = "-" if one.exponent != one.exponent else f"{one.exponent:.2f}"
-            fit += "" if one.error != one.error else f" +- {one.error:.2f}"
-            values = one.value, one.value / one.largest
-            takes = [
-                duration(v) if one.of == "time" else in_units(v, GB=1e9, MB=1e6, kB=1e3, B=1.0)
-                for v in values
-            ]
-            lines.append((f"{one.way} {one.setting}".strip(), one.of, fit, f"{one.largest:g}", *takes))
-        yield Table(
-            ("way and setting", "of", "exponent", "largest", "takes", "each"),
-            tuple(lines),
-            caption=f"Growth in {against} of {scene}: value = factor x size^exponent, of the largest sizes",
-        )
-
-
 def _without_numbers(table: pd.DataFrame) -> Iterator[Table]:
-    """What failed or was left out: each reason with the settings, quantities and sizes that it is of."""
-    here = table[table.verdict != "measured"]
-    here = here.assign(
-        sized=[f"{n} {of}" if of else "" for n, of in zip(here["size"], here.against, strict=True)]
-    )
-    lines = []
+    """What failed or was left out: each reason with the settings and quantities that it is of."""
+    here, lines = table[table.verdict != "measured"], []
     for (scene, way, verdict, reason), some in here.groupby(
         ["scene", "way", "verdict", "reason"], sort=False
     ):
-        where = dict.fromkeys([*some.setting, *some.quantity, *some.sized])
+        where = dict.fromkeys([*some.setting, *some.quantity])
         lines.append((f"{scene} {way}".strip(), verdict, ", ".join(filter(None, where)), reason))
     if lines:
         yield Table(("what", "verdict", "where", "reason"), tuple(lines), caption="Without numbers")

@@ -11,11 +11,8 @@ whose multiples keep from any fraction of small denominator as well as multiples
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from importlib import resources
 
 import numpy as np
@@ -44,12 +41,6 @@ class StudyScene:
 
     name: str
     scene: Scene
-
-    @cached_property
-    def digest(self) -> str:
-        """Of what the scene says, whatever its title."""
-        content = self.scene.model_dump(mode="json", exclude={"title"})
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
     def positions_only(self) -> Scene:
         """The scene without any effect."""

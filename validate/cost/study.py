@@ -1,23 +1,22 @@
-"""The study: error and time of every way with every setting on each scene, and what grows.
+"""The study: error and time of every way with every setting on each scene.
 
 A race for each scene. It is solved for its positions alone and, where it asks for more, for everything.
-Positions are judged by the first and all else by the second, so that nobody's positions wait for rates. What
-is kept is not measured again.
+Positions are judged by the first and all else by the second, so that nobody's positions wait for rates.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from validate.cost import growth
 from validate.cost.errors import judge
 from validate.cost.race import FULL, QUICK, Progress, Runner, race, silent
 from validate.cost.scenes import StudyScene, study_instants
-from validate.cost.table import Part, Row, Store
+from validate.cost.table import Row
 from validate.cost.way import Way
 
 SETTINGS_QUICK = 3  # of a way, the first and the last among them
@@ -25,43 +24,25 @@ SETTINGS_QUICK = 3  # of a way, the first and the last among them
 
 @dataclass(frozen=True)
 class Study:
-    """What is to be measured; of the first scene also how its cost grows."""
+    """What is to be measured, and the columns that say where."""
 
-    parts: tuple[Part, ...]
     scenes: tuple[StudyScene, ...]
     ways: tuple[Way, ...]
+    where: Mapping[str, Any]
     quick: bool = False
 
 
-def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row]:
-    """Measure what the store does not hold yet, and give all rows of the study.
-
-    What was measured is kept when its race ends, and of growth with each size: a run that is stopped goes on
-    with the race that it was in.
-
-    Raises:
-        OutputError: the store cannot be written.
-    """
-    lines: set[tuple[object, ...]] = set()
-    for scene in study.scenes if "accuracy" in study.parts else ():
-        runners = runners_of(scene, study.ways, study.quick)
-        lines |= {runner.row.line for runner in runners}
-        missing = [runner for runner in runners if not store.has(runner.row)]
-        if missing:
-            store.write(race(missing, QUICK if study.quick else FULL, progress))
-    limits = growth.LIMITS_QUICK if study.quick else growth.LIMITS
-    growing = growth.lines_of(study.scenes[0], study.ways, study.quick) if "growth" in study.parts else []
-    for i, line in enumerate(growing):
-        progress(f"growth in {line.row.against}: {line.row.scene}, {line.row.way}", i, len(growing))
-        growth.grow(line, store, limits)
-    lines |= {line.row.line for line in growing}
-    return [row for row in store.rows if row.line in lines]
+def measure(study: Study, progress: Progress = silent) -> Iterator[list[Row]]:
+    """Measure, a scene after the other: the rows of each."""
+    for scene in study.scenes:
+        rows = race(runners_of(scene, study.ways, study.quick), QUICK if study.quick else FULL, progress)
+        yield [replace(row, quick=study.quick, **study.where) for row in rows]
 
 
 def runners_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> list[Runner]:
     """Every way with every setting, for positions and for everything; of a quick study few settings."""
     instants, runners = study_instants(study.scene, quick=quick), []
-    row = Row("accuracy", study.name, "", poses=len(instants), digest=study.digest, quick=quick)
+    row = Row(study.name, "", poses=len(instants))
     alone = (study.positions_only(), "position", judge(study.positions_only(), instants))
     every = (study.scene, "", judge(study.scene, instants, positions=False))
     for way in ways:

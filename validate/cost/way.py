@@ -29,6 +29,10 @@ class LeftOut(Exception):
     """A way does not apply to a scene, as the paper's formulas not to a double wishbone; says why."""
 
 
+class NoNumbers(Exception):
+    """A way gives no answer to what it was asked for: it stops, or a number is none or not there; says why."""
+
+
 @dataclass(frozen=True)
 class Answer:
     """What a way computed, by quantity and name, in the scene's axes and units, and what it did for that."""

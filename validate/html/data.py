@@ -12,12 +12,6 @@ from validate.output.document import json_text
 from validate.output.table import csv_of
 from validate.published.tables import MODELS, Published
 
-OF_COST = {
-    "report.md": "the sentences and full tables",
-    "rows.json": "everything that was measured",
-    "table.csv": "a line for each way and setting",
-}
-"""What a study of cost writes itself, and what it holds."""
 WORDS = {
     "results.json": "the run, as --json writes it",
     "comparisons.csv": "a line for each point, body or angle that was compared",
@@ -36,9 +30,7 @@ HARD = ("case", "value", "formulation", "outcome", "error", "bound", "unit", "re
 
 
 def data_files(run: Run) -> Mapping[str, str]:
-    """Names and contents of what a run has; a study of cost writes its own beside its pictures."""
-    if run.head.kind == "cost":
-        return {}
+    """Names and contents of what a run has."""
     files = {"results.json": json_text(run.document)}
     if run.record.examined:
         files["comparisons.csv"] = csv_of((field.name for field in fields(Comparison)), _comparisons(run))
@@ -51,7 +43,9 @@ def data_files(run: Run) -> Mapping[str, str]:
             files["hard.json"] = json_text(run.hard.document)
         files["hard.csv"] = csv_of(HARD, _hard(run.hard))
     if run.cost is not None:
-        files |= {"cost.json": json_text(run.cost.data()), "cost.csv": run.cost.csv()}
+        if run.head.kind != "cost":
+            files["cost.json"] = json_text(run.cost.data())
+        files["cost.csv"] = run.cost.csv()
     return files
 
 

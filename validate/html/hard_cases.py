@@ -68,7 +68,7 @@ class HardCases(BaseModel):
 
     document: Mapping[str, Any]
     kind: Literal["hard"]
-    schema_version: Literal[2]
+    schema_version: Literal[3]
     complete: Literal[True]
     command_line: str
     started: str | None

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from validate.errors import UsageError
 from validate.extras import needed
-from validate.html.data import OF_COST, WORDS, data_files
+from validate.html.data import WORDS, data_files
 from validate.html.run import Run
 from validate.html.section import PLOTLY
 from validate.html.sections import sections
@@ -112,6 +112,5 @@ def write_report(folder: str, run: Run) -> None:
     """
     make_folder(folder)
     data = data_files(run)
-    links = OF_COST if run.head.kind == "cost" else {name: WORDS[name] for name in data}
-    for name, text in {**data, PAGE: page(run, links)}.items():
+    for name, text in {**data, PAGE: page(run, {name: WORDS[name] for name in data})}.items():
         write_content(os.path.join(folder, name), text)

@@ -22,7 +22,7 @@ from validate.exit_status import ExitStatus, of_interruption
 from validate.output.console import Console
 
 # Raised by one whenever a key changes its meaning or goes; a new key changes nothing for its readers.
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint", "mujoco", "exudyn")
 # Environment variables that say how many threads the linear algebra takes.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")

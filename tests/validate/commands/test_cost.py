@@ -1,8 +1,8 @@
 """`pointcoord cost` as its users meet it: options, files, interruptions and endings."""
 
+import csv
 import sys
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from validate.cost import study as studying
 from validate.cost.report import NOTHING
 from validate.cost.scenes import STUDY_SCENES
 from validate.cost.study import Study
-from validate.cost.table import PARTS, Row, Store, measured_here, read_rows
+from validate.cost.table import Row, measured_here, read_rows
 
 ROWS = study()
 
@@ -42,20 +42,23 @@ def told(capsys: pytest.CaptureFixture[str]) -> tuple[str, list[str]]:
 
 
 def test_a_report_from_rows_measures_nothing_and_ends_with_0(
-    store: str, capsys: pytest.CaptureFixture[str], fake: Callable[..., None]
+    store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], fake: Callable[..., None]
 ) -> None:
     def never(*_: object, **__: object) -> None:
         raise AssertionError("measured")
 
     fake(never)
-    before = Path(store).read_bytes()
-    assert main(["cost", "--from-rows", "--rows", store]) == 0
+    before, lines = Path(store).read_bytes(), tmp_path / "rows.csv"
+    assert main(["cost", "--from-rows", "--rows", store, "--csv", str(lines)]) == 0
     out, err = told(capsys)
     assert err == []
     assert out.index("A pose to 1e-9 mm") < out.index("bounce: time of a pose to an accuracy of position")
     assert "a made machine" in out
     assert store in out
     assert Path(store).read_bytes() == before
+    with lines.open(encoding="utf-8", newline="") as stream:
+        written = list(csv.DictReader(stream))
+    assert [float(one["time"] or 0.0) for one in written] == [row.time or 0.0 for row in ROWS]
 
 
 def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
@@ -68,33 +71,15 @@ def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
     assert data["measured_by"]["machine"] == "a made machine, 2 cores"
     assert data["sentences"]
     assert {race["verdict"] for race in data["races"]} == {"ours"}
-    assert {one["against"] for one in data["growths"]} == {"instants", "designs", "unknowns"}
 
 
-def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "rows.parquet"
-    kept(path, measured("bounce", "series", "", {"position": 1e-3}, 1e-3), quick=True)
-    words = ["cost", "--from-rows", "--rows", str(path), "--json", "-"]
-    # Where there are no others the quick ones are shown, and called quick.
-    assert main(words) == 0
-    assert document(capsys.readouterr().out)["quick"] is True
-    kept(path, measured("bounce", "series", "", {"position": 1e-9}, 1e-3))
-    for more, largest in (([], 1e-9), (["--quick"], 1e-3)):
-        assert main([*words, *more]) == 0
-        (row,) = document(capsys.readouterr().out)["rows"]
-        assert row["error"] == largest
+def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., Iterator[list[Row]]]:
+    """A measurement that gives the rows of a scene, and then ends as told."""
 
-
-def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., list[Row]]:
-    """A measurement that keeps rows, and then ends as told."""
-
-    def measure(study: Study, store: Store, progress: Any) -> list[Row]:
-        for number, row in enumerate(rows):
-            progress(row.way, number, len(rows))
-            store.write([replace(row, quick=study.quick)])
+    def measure(study: Study, progress: Any) -> Iterator[list[Row]]:
+        yield list(rows)
         if end is not None:
             raise end
-        return store.rows
 
     return measure
 
@@ -111,35 +96,34 @@ def test_ctrl_c_keeps_and_names_what_was_measured(
     _, (line,) = told(capsys)
     assert f"{path} holds 1 row" in line
     assert f"{target} holds 1 row" in line
+    assert read_rows(str(path)) == [ONE]
     data = document(target)
     assert (data["complete"], data["exit_status"], len(data["rows"])) == (False, 130, 1)
 
 
 @pytest.mark.parametrize(
-    ("words", "scenes", "parts"),
+    ("words", "scenes"),
     [
-        ("", STUDY_SCENES, PARTS),
-        ("--quick", ("bounce-and-steer",), ("accuracy",)),
-        ("--quick --parts growth", ("bounce-and-steer",), ("growth",)),
-        ("steer near-toggle steer", ("steer", "near-toggle"), PARTS),
-        ("--parts growth,accuracy steer", ("steer",), ("accuracy", "growth")),
+        ("", STUDY_SCENES),
+        ("--quick", ("bounce-and-steer",)),
+        ("steer near-toggle steer", ("steer", "near-toggle")),
     ],
 )
 def test_what_is_measured_is_what_the_options_say(
-    words: str, scenes: tuple[str, ...], parts: tuple[str, ...], tmp_path: Path, fake: Callable[..., None]
+    words: str, scenes: tuple[str, ...], tmp_path: Path, fake: Callable[..., None]
 ) -> None:
     asked: list[Study] = []
-    fake(lambda study, store, progress: asked.append(study) or [ONE])
+    fake(lambda study, progress: asked.append(study) or [[ONE]])
     assert main(["cost", *words.split(), "--rows", str(tmp_path / "rows.parquet"), "--quiet"]) == 0
     (study,) = asked
-    assert (tuple(scene.name for scene in study.scenes), study.parts) == (scenes, parts)
+    assert tuple(scene.name for scene in study.scenes) == scenes
     assert study.quick == ("--quick" in words)
 
 
 def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
     tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    fake(planted(Row("accuracy", "bounce", "series", verdict="failed", reason="locked at 2 s")))
+    fake(planted(Row("bounce", "series", verdict="failed", reason="locked at 2 s")))
     assert main(["cost", "--rows", str(tmp_path / "rows.parquet")]) == 3
     out, err = told(capsys)
     assert "locked at 2 s" in out
@@ -168,17 +152,11 @@ def test_a_run_leaves_the_picture_beside_its_rows_and_names_it(
     assert not (tmp_path / "mine.svg").exists()
 
 
-def test_a_real_run_of_one_way_goes_on_with_what_it_has(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_real_run_of_one_way(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "rows.parquet"
-    words = ["cost", "steer", "--quick", "--ways", "series", "--rows", str(path)]
-    assert main(words) == 0
+    assert main(["cost", "steer", "--quick", "--ways", "series", "--rows", str(path)]) == 0
     out = capsys.readouterr().out
     assert out.startswith("What accuracy costs in time\nA pose to 1e-9 mm of position takes series")
-    kept_rows = read_rows(path)
-    assert {row.way for row in kept_rows} == {"series"}
-    assert kept_rows[0].machine == measured_here().machine
-    before = path.read_bytes()
-    assert main(words) == 0
-    assert path.read_bytes() == before
+    rows = read_rows(str(path))
+    assert {(row.way, row.quick) for row in rows} == {("series", True)}
+    assert rows[0].machine == measured_here("")["machine"]

@@ -30,8 +30,8 @@ FILES = {
     "list.json": "[]",
     "other.json": '{"kind": "validate"}',
     "newer.json": '{"kind": "hard", "schema_version": 99, "complete": true}',
-    "cut.json": '{"kind": "hard", "schema_version": 2, "complete": false}',
-    "odd.json": '{"kind": "hard", "schema_version": 2, "complete": true, "cases": [1]}',
+    "cut.json": '{"kind": "hard", "schema_version": 3, "complete": false}',
+    "odd.json": '{"kind": "hard", "schema_version": 3, "complete": true, "cases": [1]}',
 }
 
 

@@ -7,9 +7,9 @@ import pytest
 from toy_ways import reference_numbers
 
 from validate.cost.errors import errors_of, truth_of
-from validate.cost.race import Found, NoNumbers
+from validate.cost.race import Found
 from validate.cost.scenes import own_scene, study_instants
-from validate.cost.way import Answer
+from validate.cost.way import Answer, NoNumbers
 from validate.formulations.protocol import Numbers
 from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.reference.exact import as_fraction

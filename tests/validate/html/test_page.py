@@ -419,7 +419,7 @@ def test_accuracy_against_time_has_a_point_for_each_setting_and_a_look_for_each_
         )
     ]
     rows += made_rows.measured("bounce", f"mine{NASTY}", "a", {"position": 1e-6}, 2e-4)
-    shown = read(Run(head("cost"), cost=Report("rows", "pointcoord cost", False, tuple(rows))))
+    shown = read(Run(head("cost"), cost=Report("rows", "pointcoord cost", tuple(rows))))
     ((_, plot),) = shown.by_words.items()
     assert "<" not in json.dumps(plot)
     *ways, mine = plot["data"]

@@ -6,13 +6,7 @@ from collections.abc import Sequence
 
 from pointcoord import UnknownName
 from validate.cost.way import Way
-from validate.cost.ways import (
-    absolute,
-    peers,
-    point_coordinates,
-    printed,
-    scipy_solvers,
-)
+from validate.cost.ways import absolute, peers, point_coordinates, printed, scipy_solvers
 
 WAYS: tuple[Way, ...] = (
     *point_coordinates.WAYS,
@@ -21,6 +15,7 @@ WAYS: tuple[Way, ...] = (
     *scipy_solvers.WAYS,
     *peers.WAYS,
 )
+NAMES = tuple(way.name for way in WAYS)
 OURS = tuple(way.name for way in point_coordinates.WAYS)
 """The ways of this project's solver; every other way is a contestant."""
 
@@ -31,8 +26,7 @@ def ways_named(names: Sequence[str]) -> tuple[Way, ...]:
     Raises:
         UnknownName: there is no such way.
     """
-    known = {way.name: way for way in WAYS}
     for name in names:
-        if name not in known:
-            raise UnknownName("way", name, known)
+        if name not in NAMES:
+            raise UnknownName("way", name, NAMES)
     return tuple(way for way in WAYS if way.name in names)

@@ -21,7 +21,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.pointwise import Solved, SquareVelocityTerm, with_rates
 from pointcoord.time_functions import TimeFunction
-from validate.cost.way import Solve, Way
+from validate.cost.way import NoNumbers, Solve, Way
 from validate.cost.ways.point_coordinates import by_method
 
 Array = NDArray[np.float64]
@@ -29,10 +29,6 @@ Array = NDArray[np.float64]
 # Of the equations, whose terms are up to 1: a thousand times what differences for a Jacobian leave.
 NOISE = 1e-9
 TOLERANCE = 1e-9  # mm, of the start, which is assembled before
-
-
-class SolverStopped(Exception):
-    """A solver of SciPy ended without success, or on another side than is drawn; says when, and how."""
 
 
 def in_scipy(
@@ -55,7 +51,7 @@ def in_scipy(
         with_jacobian: whether it is given the Jacobian, or takes differences of the equations for it.
         size: its relative tolerance; of least_squares all three.
     Raises:
-        SolverStopped: it ends without success, or came to another assembly: the sign of the Jacobian's
+        NoNumbers: it ends without success, or came to another assembly: the sign of the Jacobian's
             determinant changes where two of them meet.
     """
     system, n = mechanism.map, mechanism.map.unknowns
@@ -79,13 +75,13 @@ def in_scipy(
         # A least sum of squares may be none of the equations' roots.
         if not (found.success and left <= 10.0 * size + NOISE):
             words = f"the equations are left at {left:.3g}" if found.success else str(found.message)
-            raise SolverStopped(f"scipy.optimize.{solver} at t = {instant:.6g} s: {' '.join(words.split())}")
+            raise NoNumbers(f"scipy.optimize.{solver} at t = {instant:.6g} s: {' '.join(words.split())}")
         y[i] = at(found.x)
         residuals, jacobians = residuals + int(found.nfev), jacobians + int(found.get("njev") or 0)
     signs = np.linalg.slogdet(system.jacobian(y))[0]
     for instant in times[signs != signs[0]][:1]:
         words = "it came to another assembly than is drawn"
-        raise SolverStopped(f"scipy.optimize.{solver} at t = {instant:.6g} s: {words}")
+        raise NoNumbers(f"scipy.optimize.{solver} at t = {instant:.6g} s: {words}")
     work = Work(residuals=residuals, factorisations=jacobians)
     return with_rates(system, y, known, times, derivative, term, work, np.full(len(times), np.inf))
 

@@ -28,7 +28,7 @@ def _blocks(run: Run) -> Iterator[Block]:
     from validate.cost.findings import timed
     from validate.cost.looks import KEY, looks
 
-    accuracy = timed(cost.table, "accuracy")
+    accuracy = timed(cost.table)
     ways, scenes = looks(accuracy.way), list(dict.fromkeys(accuracy.scene))
     pictures = []
     for scene in scenes[:SCENES]:
