@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from validate.commands.usage import Command, given, require_results
+from validate.commands.usage import Command, require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -32,33 +32,21 @@ class Named:
     """A study on the command line.
 
     Attributes:
-        made_by: module and function of `validate.studies` that make it.
-        settings: what it is made of. counts: options among them that say which tasks, and may change from run
-            to run. choices: the option that takes one of some names, and these.
+        module, function: of `validate.studies`, that make it. options: what it is made of.
+        choices: the option that takes one of some names, and these.
     """
 
-    made_by: tuple[str, str]
-    settings: tuple[str, ...]
-    counts: tuple[str, ...]
+    module: str
+    function: str
+    options: tuple[str, ...]
     choices: tuple[str, Sequence[str]] = ("", ())
-
-    def made(self, settings: Mapping[str, Any]) -> Study:
-        """The study of these options, or of settings that were recorded."""
-        module, function = self.made_by
-        study: Study = getattr(needed("study", f"validate.studies.{module}"), function)(**settings)
-        return study
 
 
 STUDIES: Mapping[str, Named] = {
-    "random": Named(("random_cars", "random_cars"), ("count", "first"), ("--count",), ("--first", METHODS)),
-    "bounds": Named(("bounds", "bounds"), ("poses", "motions", "seed"), ("--poses", "--motions")),
-    "claims": Named(
-        ("claims", "claims"),
-        ("count", "first", "formulation"),
-        ("--count", "--first"),
-        ("--formulation", NAMES),
-    ),
-    "hard": Named(("hard_cases", "hard"), ("cases",), ("cases",)),
+    "random": Named("random_cars", "random_cars", ("count", "first"), ("--first", METHODS)),
+    "bounds": Named("bounds", "bounds", ("poses", "motions", "seed")),
+    "claims": Named("claims", "claims", ("count", "first", "formulation"), ("--formulation", NAMES)),
+    "hard": Named("hard_cases", "hard", ("cases",)),
 }
 
 
@@ -74,43 +62,18 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             f"--workers {options.workers} counts processes of this machine, a cluster at an address has its "
             "own; leave one of them out"
         )
-    if options.from_records and (counts := given(options, *named.counts)):
-        what = "CASE" if counts[0] == "cases" else counts[0]
-        raise UsageError(f"--from-records is about all that is recorded; leave {what} out")
     require_results({"--json": options.json}, (), options, console)
-    head = Head.of(options.study, options.command, timed=True)
     for package in ("mpmath", "flint", "pinocchio"):
         needed("study", package)
-    if options.from_records:
-        findings = _recorded(named, folder, options.study)
-        journal = Journal(options.json, head, console, lambda: findings.data, lambda: "the findings")
-        with journal.closing() as ending:
-            console.show(findings.parts)
-            ending.status = findings.status
-        return findings.status
-    values = {name: getattr(options, name) for name in named.settings}
-    study = named.made({name: value for name, value in values.items() if value is not None})
+    values = {name: getattr(options, name) for name in named.options}
+    make = getattr(needed("study", f"validate.studies.{named.module}"), named.function)
+    study: Study = make(**{name: value for name, value in values.items() if value is not None})
     if not study.tasks:
         raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
-    return _worked_out(study, folder, options, head, console)
+    return _worked_out(study, folder, options, console)
 
 
-def _recorded(named: Named, folder: Path, name: str) -> Findings:
-    """What all records in a folder come to."""
-    there = needed("study", "validate.studies.store").look(folder)
-    if there.study != name:
-        raise UsageError(
-            f"--records {shown(str(folder))} holds the study {there.study!r}, not {name!r}; "
-            f"try: pointcoord study {shown(there.study)} --from-records"
-        )
-    if not (rows := there.rows()):
-        raise UsageError(f"--records {shown(str(folder))} holds nothing yet; leave --from-records out")
-    return named.made(there.settings).summary(rows)
-
-
-def _worked_out(
-    study: Study, folder: Path, options: argparse.Namespace, head: Head, console: Console
-) -> ExitStatus:
+def _worked_out(study: Study, folder: Path, options: argparse.Namespace, console: Console) -> ExitStatus:
     """Work out what is missing, and say what the tasks that are asked for come to."""
     cluster, where = needed("study", "validate.studies.cluster"), shown(str(folder))
     local = options.scheduler == LOCAL
@@ -118,8 +81,8 @@ def _worked_out(
     # Found out before a folder is made.
     cluster.quiet_dask()
     with ExitStack() as stack:
-        store = needed("study", "validate.studies.store").adding_to(folder, study)
-        recorded = store.tasks()
+        store = needed("study", "validate.studies.store").records(folder, study)
+        recorded = store.rows()
         missing = [task for task in study.tasks if task not in recorded]
         before = there = len(study.tasks) - len(missing)
 
@@ -127,7 +90,8 @@ def _worked_out(
             return f"{there:,} of {counted_as(len(study.tasks), study.noun)}"
 
         def found() -> Findings:
-            return study.summary(store.rows(study.tasks))
+            rows = store.rows()
+            return study.summary([row for task in study.tasks for row in rows.get(task, ())])
 
         def tell(done: int) -> None:
             nonlocal there
@@ -140,6 +104,7 @@ def _worked_out(
             told = stack.enter_context(console.progress(f"{who} start" if local else f"{who} is asked", SOON))
             client = stack.enter_context(cluster.opened(options.scheduler, options.workers))
         console.note(f"{where} holds {held()}; a study that is stopped goes on with the same command")
+        head = Head.of(options.study, options.command, timed=True)
         journal = Journal(options.json, head, console, lambda: found().data, lambda: held() if there else "")
         with journal.closing() as ending:
             if missing:

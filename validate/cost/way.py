@@ -30,7 +30,7 @@ class LeftOut(Exception):
 
 
 class NoNumbers(Exception):
-    """A way gives no answer to what it was asked for: it stops, or a number is none or not there; says why."""
+    """A way does not answer what it was asked for: it stops, or a number is none or not there; says why."""
 
 
 @dataclass(frozen=True)

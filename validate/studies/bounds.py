@@ -20,7 +20,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import pandas as pd
@@ -45,19 +45,18 @@ DIGITS = 40  # of the reference: its error is 1e-20 of any error in double preci
 INSTANTS = 4  # per motion
 COMPANY = 63  # instants beside each
 CLOSE, NEARER = 1e-4, 1e-2  # s, and parts of the time that is left: how near they are to it
-LEVELS = (0.0, 0.01, 0.1, 0.5, 0.9, 0.99, 1.0)
 HELD, MOVING = "held", "moving"
 
 # Lengths in mm. A refused pose has a suspension, a distance and a refusal alone.
 COLUMNS: Mapping[str, str] = {
-    **dict.fromkeys(("suspension", "driven", "lock", "refusal"), "string"),  # driven, lock: of the `NearPose`
+    **dict.fromkeys(("suspension", "driven", "refusal"), "string"),  # driven: of the `NearPose`
     "distance": "float64",  # of the instant, from the end, in parts of the input's range
     "instant": "float64",  # s; 0 of a held pose
     "condition": "float64",  # of the Jacobian
     "size": "float64",  # of the mechanism, a power of two
     "far": "float64",  # largest coordinate of a point in the frame of the scene
     **dict.fromkeys(("error", "bound"), "float64"),  # of the solved points
-    **dict.fromkeys(("carried_error", "carried_bound"), "float64"),  # of those carried, where there are any
+    "share": "float64",  # the larger error, of the solved points or of those carried, in parts of its bound
 }
 
 
@@ -123,10 +122,8 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
     if not math.isfinite(bound):
         return {"distance": distance, "refusal": "pointcoord: no finite bound"}
 
-    def error(names: set[str]) -> float | None:
+    def error(names: set[str]) -> float:
         """The largest component of the distance of any of these points from the true one, mm."""
-        if not names:
-            return None
         # Where the reference has no such assembly, nothing bounds the error.
         if not isinstance(reference, Instant):
             return math.inf
@@ -134,18 +131,17 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
         return max(off_by(ours, exact) for pair in pairs for ours, exact in zip(*pair, strict=True))
 
     names = set(scene.mechanism.topology.carried)
+    solved = error(set(samples.position) - names)
     return {
         "driven": pose.driven,
-        "lock": pose.lock,
         "distance": distance,
         "instant": instant,
         "condition": float(proof.condition[0]),
         "size": motion.unit,
         "far": max(float(np.abs(place).max()) for place in samples.position.values()),
-        "error": error(set(samples.position) - names),
+        "error": solved,
         "bound": bound,
-        "carried_error": error(names),
-        "carried_bound": carried if names else None,
+        "share": max(solved / bound, error(names) / carried) if names else solved / bound,
     }
 
 
@@ -171,17 +167,13 @@ def measured(rows: Sequence[Row]) -> pd.DataFrame:
     """The rows that answer, with what is made of their columns.
 
     Returns:
-        Also `share`, the larger error in parts of its bound: above 1 the bound is broken; `loss`, the error
-        in parts of what rounding may do, eps (condition size + far); `loose`, bound over error of solved
-        points, which is infinite where the error is zero.
+        Also `loss`, the error in parts of what rounding may do, eps (condition size + far); `loose`, bound
+        over error of solved points, which is infinite where the error is zero.
     """
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(("part", "number", *COLUMNS))))
     table = table[table["refusal"].isna()].drop(columns="refusal").reset_index(drop=True)
     numbers = [name for name, kind in COLUMNS.items() if kind == "float64"]
     table[numbers] = table[numbers].astype(float)
-    # A mechanism without carried points has no share of them.
-    solved, carried = table["error"] / table["bound"], table["carried_error"] / table["carried_bound"]
-    table["share"] = np.where(table["carried_bound"].isna(), solved, np.maximum(solved, carried))
     table["loss"] = table["error"] / (EPS * (table["condition"] * table["size"] + table["far"]))
     table["loose"] = table["bound"] / table["error"]
     return table
@@ -192,18 +184,18 @@ def found(rows: Sequence[Row], seed: int) -> Findings:
     checks, refusals = measured(rows), [row for row in rows if row.get("refusal") is not None]
     reasons = Counter(row["refusal"] for row in refusals).most_common()
     broken = checks[~(checks["share"] <= 1.0)]
-    parts: list[Part] = [_summary(checks, Counter(row["suspension"] for row in refusals))]
-    data: dict[str, Any] = {
+    data = {
         "seed": seed,
+        "checked": len(checks),
         "refusals": [{"reason": reason, "poses": count} for reason, count in reasons],
         "broken": broken.astype(object).where(broken.notna(), None).to_dict("records"),
     }
+    parts: list[Part] = [_summary(checks, Counter(row["suspension"] for row in refusals))]
     for part, what in (
         (HELD, "poses held close to the end of an input"),
         (MOVING, "instants of motions that run towards the end of an input"),
     ):
         there = checks[checks["part"] == part]
-        data[part] = {str(words): _looseness(here) for words, here in there.groupby("suspension", sort=False)}
         parts += ["", f"{len(there)} {what}; medians, unless it says largest", _by_distance(there)]
     parts += [
         "",
@@ -246,15 +238,3 @@ def _by_distance(checks: pd.DataFrame) -> Table:
     )
     head = ("distance / range", "poses", "condition", "error / size", "loss", "largest loss")
     return Table((*head, "bound / error", "largest error / bound"), tuple(rows))
-
-
-def _looseness(checks: pd.DataFrame) -> dict[str, Any]:
-    """One set of poses of one suspension, as plain data."""
-    return {
-        "count": len(checks),
-        "bound_over_error": {
-            f"{level:g}": float(np.quantile(checks["loose"], level, method="nearest")) for level in LEVELS
-        },
-        "largest_loss": float(checks["loss"].max()),
-        "largest_error_over_bound": float(checks["share"].max()),
-    }

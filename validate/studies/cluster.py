@@ -68,7 +68,7 @@ def run(
 
     try:
         for future in distributed.as_completed(client.map(work, chunks, key=keys), loop=client.loop):
-            count, rows = _result(future, client)
+            count, rows = _result(future)
             # What is handed over is not to be worked out again when the worker that still has it dies.
             future.release()
             held, done = [*held, *rows], done + count
@@ -113,7 +113,7 @@ def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> li
     return [{**every, **row} for row in rows]
 
 
-def _result(future: Any, client: Any) -> tuple[int, list[Row]]:
+def _result(future: Any) -> tuple[int, list[Row]]:
     """What came of a future that is finished; it is worked out again if its worker has died since."""
     distributed = quiet_dask()
     try:
@@ -126,12 +126,13 @@ def _result(future: Any, client: Any) -> tuple[int, list[Row]]:
             f"{future.key} ended {error.allowed_failures + 1} workers one after the other, the last of "
             f"them {error.last_worker.address}; look into its log, and at its memory"
         )
+    # Whatever Dask says of a scheduler that is gone, or of a worker that has no such program.
     except Exception as error:
-        if client.status == "running" and not isinstance(error, distributed.CancelledError):
-            words = one_line(f"{type(error).__name__}: {error}")
-            need = "pip install 'pointcoord[validate,cluster]', of this version"
-            raise UsageError(f"a worker cannot run this program ({words}); it needs {need}") from None
-        problem = "the scheduler does not answer any more; the same command goes on elsewhere"
+        said = one_line(f"{type(error).__name__}: {error}")
+        problem = (
+            f"the cluster does not work any more ({said}); each worker needs pip install "
+            "'pointcoord[validate,cluster]', of this version; the same command goes on"
+        )
     raise StudyStopped(problem)
 
 

@@ -11,12 +11,11 @@ import json
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any
 
 import pandas as pd
 
 from pointcoord import SceneError
-from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.effects.registry import QUANTITIES
 from validate.cars.base_cars import variants
 from validate.cars.random_scenes import KINDS, SEED, RandomScene, random_scene
 from validate.comparison.compare import Outcome, compare_solutions
@@ -27,14 +26,7 @@ from validate.formulations.registry import formulation
 from validate.output.report import counted_as
 from validate.output.table import Part, Table
 from validate.studies.study import Findings, Row, Study, Task
-from validate.studies.verdicts import (
-    NEITHER_WRONG,
-    NO_OBSTACLE,
-    judged,
-    judged_alone,
-    obstacle,
-    unanswered,
-)
+from validate.studies.verdicts import NO_OBSTACLE, NONE_WRONG, judged, obstacle, unanswered
 
 PART = "scenes"
 OURS = "pointcoord"
@@ -42,29 +34,8 @@ OTHER = "absolute"
 ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
 HELD = 20  # every so many scenes are held to the reference although both models agree
 # What makes the status 1; an answer that stands alone and is wrong is one of them.
-FAULTY = (
-    "disagreed",
-    " fails: ",
-    "agreed, the reference: pointcoord",
-    "agreed, the reference: absolute",
-    "agreed, the reference: no such pose",
-    "answer wrong",
-)
-
-# What a share of a tolerance is told of: each quantity, and each number of the whole car.
-SHARED = tuple(
-    dict.fromkeys(
-        name
-        for effect in (*ALWAYS, *EFFECTS.values())
-        if not effect.base
-        for quantity in effect.quantities
-        for name in (effect.own_names if quantity.of == "car" else (quantity.name,))
-    )
-)
-COLUMNS: Mapping[str, str] = {
-    **dict.fromkeys(("suspension", "kind", "outcome", "reason", "scene"), "string"),
-    **{f"share_{quantity}": "float64" for quantity in SHARED},
-}
+FAULTY = ("disagreed", " fails: ", " wrong", "agreed, the reference: no such pose")
+COLUMNS = dict.fromkeys(("suspension", "kind", "outcome", "reason", "scene", "shares"), "string")
 # How outcomes begin, in the order in which they are shown.
 HEADS = ("agreed", "not tested", "not given", "both refuse", "only", "disagreed")
 
@@ -73,7 +44,7 @@ def random_cars(count: int = 20_000, first: str = OURS, seed: int = SEED) -> Stu
     """Random scenes of the numbers from 0 up through two models.
 
     A row is a scene: suspension, kind of scene, outcome, and where there is more to say reason and scene, as
-    JSON; `share_...`, the largest part of its tolerance that each quantity used up, where both models agree.
+    JSON; where both models agree shares, as JSON: the largest part of its tolerance that each quantity used.
 
     Args:
         first: by which of pointcoord's methods. seed: of the recipe of the scenes, which has one.
@@ -138,10 +109,10 @@ def _compared(car: RandomScene, first: Solution, second: Solution) -> Row:
     outcome = compare_solutions(car.scene, first, second, car.scene.title)
     if outcome.agreed:
         verdict = judged(car.scene, first, second) if car.number % HELD == 0 else None
-        if verdict in (None, NEITHER_WRONG):
+        if verdict in (None, NONE_WRONG):
             name = "agreed" if verdict is None else "agreed, and with the reference"
-            return {"outcome": name, **_shares(outcome)}
-        return _kept(car, f"agreed, the reference: {verdict}") | _shares(outcome)
+            return {"outcome": name, "shares": _shares(outcome)}
+        return _kept(car, f"agreed, the reference: {verdict}") | {"shares": _shares(outcome)}
     worst = (*outcome.disagreements, *outcome.undecided)[0]
     reason = (
         f"{worst.quantity} of {worst.name} differs by {worst.difference:.3g} {worst.unit}, "
@@ -156,25 +127,26 @@ def _compared(car: RandomScene, first: Solution, second: Solution) -> Row:
 def _one_sided(car: RandomScene, answers: Sequence[Solution | FormulationError]) -> Row:
     (error,) = (a for a in answers if isinstance(a, FormulationError))
     (answer,) = (a for a in answers if isinstance(a, Solution))
-    verdict = judged_alone(car.scene, answer)
-    if verdict == "answer right":
-        verdict += f", {obstacle(car.scene)}"
+    # Of what stands alone the positions count: they say which of the two is right.
+    verdict = judged(car.scene.model_copy(update={"effects": ()}), answer)
+    if verdict == NONE_WRONG:
+        verdict = f"answer right, {obstacle(car.scene)}"
     outcome = f"only {error.formulation} refuses, {why_refused(error)}: {verdict}"
     return _kept(car, outcome, " ".join(str(error.reason).split()))
 
 
-def _shares(outcome: Outcome) -> Row:
+def _shares(outcome: Outcome) -> str:
     """Largest share of each quantity, and of each number of the car, whichever wheel it is of.
 
     Where one model claims nothing, as of a point at rest, a share says nothing of what both claim.
     """
-    largest: Row = {}
+    largest: dict[str, float] = {}
     for row in outcome.rows:
         if row.part < ALONE:
             own = row.name.rpartition(".")[2]
-            name = f"share_{own if QUANTITIES[row.quantity].of == 'car' else row.quantity}"
+            name = own if QUANTITIES[row.quantity].of == "car" else row.quantity
             largest[name] = max(largest.get(name, 0.0), row.share)
-    return largest
+    return json.dumps(largest)
 
 
 def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
@@ -182,12 +154,10 @@ def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
     table = pd.DataFrame(rows, columns=["number", "seconds", *COLUMNS])
     kept = table[table["scene"].notna()]
     counts = table.groupby(["suspension", "kind", "outcome"]).size().reset_index(name="scenes")
-    shares: list[dict[str, Any]] = [
-        {"quantity": quantity, "share": float(worst[name]), "scene": int(worst["number"])}
-        for quantity in SHARED
-        if table[name := f"share_{quantity}"].notna().any()
-        for worst in [table.sort_values([name, "number"], na_position="first").iloc[-1]]
-    ]
+    largest: dict[str, tuple[float, int]] = {}
+    for number, shares in table.loc[table["shares"].notna(), ["number", "shares"]].itertuples(index=False):
+        for name, share in json.loads(shares).items():
+            largest[name] = max(largest.get(name, (0.0, 0)), (share, int(number)))
     names = ["number", "suspension", "kind", "outcome", "reason"]
     written = kept[names].astype(object).where(kept[names].notna(), None).to_dict("records")
     scenes = ({"scene": json.loads(scene)} for scene in kept["scene"])
@@ -195,14 +165,14 @@ def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
         **settings,
         "scenes": len(table),
         "outcomes": counts.to_dict("records"),
-        "largest_shares": shares,
+        "largest_shares": [
+            {"quantity": name, "share": share, "scene": scene} for name, (share, scene) in largest.items()
+        ],
         "written_down": [{**one, **scene} for one, scene in zip(written, scenes, strict=True)],
     }
-    parts: list[Part] = [_summary(table)]
-    for variant in variants():
-        parts += ["", f"{variant.words}:", _outcomes(table[table["suspension"] == variant.words])]
-    if shares:
-        lines = ((o["quantity"].replace("_", " "), f"{o['share']:.3g}", str(o["scene"])) for o in shares)
+    parts: list[Part] = [_summary(table), "", _outcomes(table)]
+    if largest:
+        lines = ((name.replace("_", " "), f"{one:.3g}", str(at)) for name, (one, at) in largest.items())
         head = ("quantity", "largest share of tolerance", "scene")
         parts += ["", "Where both agreed:", Table(head, tuple(lines))]
     last = (

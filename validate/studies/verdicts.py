@@ -17,34 +17,24 @@ from validate.formulations.reference_solution import (
 from validate.reference import InfeasibleError, NoReferenceError, instants_of
 
 NO_OBSTACLE = "no obstacle found"
-NEITHER_WRONG = "neither wrong by its own tolerance"
+NONE_WRONG = "none wrong by its own tolerance"
 DIGITS = 15  # of the reference where only whether there is a pose counts
 BETWEEN = 24  # instants between the first and the last at which a pose is looked for
 
 
-def judged(scene: Scene, one: Solution, two: Solution) -> str:
-    """Which of two disagreeing solutions the reference contradicts, or why that cannot be said."""
+def judged(scene: Scene, *answers: Solution) -> str:
+    """Which of some solutions the reference contradicts, or why that cannot be said."""
     try:
         reference = reference_solution(scene)
     except NoReferenceError as error:
         return _unproven(error)
-    wrong = [s.formulation for s in (one, two) if _is_wrong(scene, s, reference)]
-    return f"{' and '.join(wrong)} wrong" if wrong else NEITHER_WRONG
-
-
-def judged_alone(scene: Scene, answer: Solution) -> str:
-    """Whether the positions of a solution that stands alone are those of the reference."""
-    scene = scene.model_copy(update={"effects": ()})
-    try:
-        reference = reference_solution(scene)
-    except NoReferenceError as error:
-        return _unproven(error)
-    return "answer wrong" if _is_wrong(scene, answer, reference) else "answer right"
-
-
-def _is_wrong(scene: Scene, answer: Solution, reference: Solution) -> bool:
     asked = told_by(reference, scene)
-    return bool(compare_solutions(scene, answer, reference, "judged", asked).disagreements)
+    wrong = [
+        one.formulation
+        for one in answers
+        if compare_solutions(scene, one, reference, "judged", asked).disagreements
+    ]
+    return f"{' and '.join(wrong)} wrong" if wrong else NONE_WRONG
 
 
 def unanswered(scene: Scene) -> str:

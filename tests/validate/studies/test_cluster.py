@@ -21,7 +21,7 @@ from validate.cli import main
 from validate.errors import UsageError
 from validate.studies import cluster
 from validate.studies.hard_cases import hard
-from validate.studies.store import adding_to, look
+from validate.studies.store import records
 from validate.studies.study import StudyStopped, made_by
 
 
@@ -47,7 +47,7 @@ def test_a_worker_killed_in_the_middle_loses_and_repeats_nothing_that_was_record
     monkeypatch.setattr(cluster, "WRITTEN", 0.3)
     study = counted(60, tmp_path / "marks", pause=0.05)
     before = dict[Path, bytes]()
-    store = adding_to(tmp_path / "records", study)
+    store = records(tmp_path / "records", study)
     with cluster.opened("local", 2) as client:
         pids = client.run(os.getpid)
         assert len(set(pids.values())) == 2
@@ -55,13 +55,14 @@ def test_a_worker_killed_in_the_middle_loses_and_repeats_nothing_that_was_record
         def tell(done: int) -> None:
             if done and not before:
                 time.sleep(0.5)  # until the scheduler knows that these are handed over
-                os.kill(pids[store.rows()[0]["worker"]], signal.SIGKILL)
+                os.kill(pids[next(iter(store.rows().values()))[0]["worker"]], signal.SIGKILL)
                 before.update({file: file.read_bytes() for file in store.files()})
                 # Others can read what is there while the rest is worked out.
                 assert len(pandas.read_parquet(store.folder)) == done < 60
 
         cluster.run(study, study.tasks, store, client, tell)
-        rows = store.rows(study.tasks)
+        recorded = store.rows()
+        rows = [row for task in study.tasks for row in recorded[task]]
     assert [row["square"] for row in rows] == [number**2 for number in range(60)]
     assert len(pandas.read_parquet(store.folder)) == 60, "nothing is recorded twice"
     early = {number for file in before for number in pandas.read_parquet(file)["number"]}
@@ -89,7 +90,7 @@ def test_a_worker_of_another_version_records_nothing(
 
 def ran(study: Any, folder: Path, other: Any, told: Any = lambda done: None) -> None:
     with cluster.opened(other.scheduler_address) as client:
-        cluster.run(study, study.tasks, adding_to(folder, study), client, told)
+        cluster.run(study, study.tasks, records(folder, study), client, told)
 
 
 @pytest.mark.parametrize(
@@ -112,11 +113,12 @@ def test_a_cluster_that_cannot_work_a_study_out_is_refused(
 
 def test_an_error_of_a_task_names_it_and_leaves_what_was_recorded(address: str, tmp_path: Path) -> None:
     study, other = counted(6, tmp_path / "marks", wrong=5), SimpleNamespace(scheduler_address=address)
+    folder = tmp_path / "records"
     with pytest.raises(
         StudyStopped, match=r"^all 5: ZeroDivisionError: no square at counted_study\.py:\d+; "
     ):
-        ran(study, tmp_path / "records", other)
-    assert {task.number for task in look(tmp_path / "records").tasks()} == {0, 1, 2, 3}
+        ran(study, folder, other)
+    assert {task.number for task in records(folder, study).rows()} == {0, 1, 2, 3}
 
 
 def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
@@ -129,7 +131,7 @@ def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
             raise killed
 
     with pytest.raises(StudyStopped, match=r"-scenes-7 ended 4 workers .*, the last of them tcp://far:1;"):
-        cluster._result(Fatal(), None)
+        cluster._result(Fatal())
 
 
 def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
@@ -143,10 +145,9 @@ def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
             if done:
                 gone.close()
 
-        with pytest.raises(StudyStopped, match="does not answer any more; the same command goes on"):
+        with pytest.raises(StudyStopped, match=r"does not work any more .* the same command goes on"):
             ran(study, tmp_path / "records", gone, tell)
-    store = look(tmp_path / "records")
-    assert 0 < len(store.tasks()) == len(store.rows()) < 40
+    assert 0 < len(records(tmp_path / "records", study).rows()) < 40
 
 
 def test_an_address_that_does_not_answer_is_said_in_a_line(
@@ -172,12 +173,9 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
         (["random", "--scheduler", "nonsense"], "does not answer as a Dask scheduler"),
         (["random", "--count", "0"], "no scene is asked for"),
         (["random", "--records", " "], "names no folder"),
-        (["random", "--from-records", "--count", "3"], "leave --count out"),
-        (["random", "--from-records", "--records", "nowhere"], "holds no records of a study"),
         (["random", "--first", "absolute"], "invalid choice: 'absolute'"),
         (["bounds", "--seed", "-1"], "--seed: -1 is no whole number; allowed: 0 or more"),
         (["hard", "at-rests"], "near names: at-rest"),
-        (["hard", "at-rest", "--from-records"], "leave CASE out"),
     ],
 )
 def test_a_mistake_of_the_command_line_is_one_line(
@@ -203,7 +201,8 @@ def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(
     turns = ("quarter-turn-about-x", "quarter-turn-about-y", "quarter-turn-about-z", "turned-at-random")
     words = ["study", "hard", *names, *more, *turns, "far-in-time-wishbone"]
     words += ["--workers", "1", "--records", "kept"]
-    folder, every = tmp_path / "kept", len(hard(words[2:-4]).tasks)
+    folder, study = tmp_path / "kept", hard(words[2:-4])
+    every = len(study.tasks)
     process = subprocess.Popen(
         [*PROGRAM, *words],
         cwd=tmp_path,
@@ -220,8 +219,8 @@ def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    seen = {file: file.read_bytes() for file in look(folder).files()}
-    count = len(look(folder).tasks())
+    seen = {file: file.read_bytes() for file in records(folder, study).files()}
+    count = len(records(folder, study).rows())
     assert 0 < count < every
     # Before it may stand how far the study was.
     *_, line = err.splitlines()
@@ -236,7 +235,7 @@ def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(
     assert {file: file.read_bytes() for file in seen} == seen
     table = pandas.read_parquet(folder)
     assert len(table.drop_duplicates(["part", "number", "formulation"])) == len(table), "recorded twice"
-    assert set(few.tasks) <= look(folder).tasks()
-    some = replace(few, tasks=few.tasks[:2])
-    found = without_who_and_how_long(look(folder).rows(some.tasks))
+    recorded, some = records(folder, few).rows(), replace(few, tasks=few.tasks[:2])
+    assert set(few.tasks) <= set(recorded)
+    found = without_who_and_how_long([row for task in some.tasks for row in recorded[task]])
     assert found == without_who_and_how_long(worked_out(some))

@@ -16,7 +16,7 @@ from validate.output.table import text_of
 from validate.studies import random_cars as deep
 from validate.studies.random_cars import random_cars
 from validate.studies.study import Row
-from validate.studies.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
+from validate.studies.verdicts import NO_OBSTACLE, NONE_WRONG, judged, obstacle, unanswered
 
 
 def test_every_scene_has_one_outcome_and_it_is_counted() -> None:
@@ -35,8 +35,7 @@ def test_every_scene_has_one_outcome_and_it_is_counted() -> None:
     assert told.endswith("; 120 s of work, of all runs and processes.")
     for row in rows:
         assert set(row) <= {*study.columns, "part", "number", "seconds", "worker"}
-        shares = [name for name in row if name.startswith("share_")]
-        assert bool(shares) == row["outcome"].startswith("agreed")
+        assert bool(row.get("shares")) == row["outcome"].startswith("agreed")
     for one in data["written_down"]:
         assert Scene.from_mapping(one["scene"]) == random_scene(one["number"]).scene
 
@@ -78,9 +77,9 @@ def test_an_answer_that_stands_alone_is_held_to_the_reference() -> None:
     scene = Scene.load("bounce").model_copy(update={"effects": ()})
     scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 3})})
     answer = formulation("absolute").solve(scene)
-    assert judged_alone(scene, answer) == "answer right"
+    assert judged(scene, answer) == NONE_WRONG
     moved = {name: place + 1e-6 for name, place in answer.position.items()}
-    assert judged_alone(scene, answer.with_numbers({"position": moved})) == "answer wrong"
+    assert judged(scene, answer.with_numbers({"position": moved})) == "absolute wrong"
     reference: Solution = reference_solution(scene)
     assert reference.position["wheel_centre"] == pytest.approx(answer.position["wheel_centre"], abs=1e-10)
     assert obstacle(scene) == "no obstacle found"
@@ -105,7 +104,7 @@ def test_a_refused_scene_is_told_apart_from_one_that_need_not_be() -> None:
     assert unanswered(with_arm((0.8, -over * stop / 2, over / 2))) == "no pose between the instants"
 
 
-def row(number: int, outcome: str, **more: float) -> Row:
+def row(number: int, outcome: str, **more: str) -> Row:
     texts = {"suspension": variants()[0].words, "kind": KINDS[0], "outcome": outcome}
     every = {"part": "scenes", "number": number, "seconds": 1.0, "worker": "here"}
     return {**every, **texts, **more}
@@ -113,7 +112,7 @@ def row(number: int, outcome: str, **more: float) -> Row:
 
 def test_the_status_says_whether_any_disagreed() -> None:
     study = random_cars(2)
-    agreed = [row(0, "agreed", share_position=0.25), row(1, "agreed", share_position=0.125)]
+    agreed = [row(k, "agreed", shares=f'{{"position": {share}}}') for k, share in enumerate((0.25, 0.125))]
     findings = study.summary(agreed)
     assert findings.status == ExitStatus.AGREE
     assert re.search(r"^agreed +2 ", text_of(findings.parts), flags=re.M)
@@ -122,7 +121,7 @@ def test_the_status_says_whether_any_disagreed() -> None:
         "disagreed in wheel: absolute wrong",
         "pointcoord fails: TypeError",
         "agreed, the reference: pointcoord and absolute wrong",
-        "only absolute refuses, locked: answer wrong",
+        "only absolute refuses, locked: pointcoord wrong",
     ):
         wrong = study.summary([agreed[0], row(1, outcome)])
         assert wrong.status == ExitStatus.DISAGREE
