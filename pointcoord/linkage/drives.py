@@ -1,7 +1,8 @@
 r"""How an input of the user becomes a known coordinate of the map, and back.
 
-A coordinate is s f(x) of the input x, with f = x, x^2, cos x or sin x and a number s of the drawing. Values
-are power series of shape (..., order + 1); lengths are in units of the mechanism.
+A coordinate is s x or s cos(x - quarter pi / 2) of the input x, the cosine or with quarter = 1 the sine, with
+a number s of the drawing. Values are power series of shape (..., order + 1); lengths are in units of the
+mechanism.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import comb
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,151 +29,37 @@ Array = NDArray[np.float64]
 SIDEWAYS = {"right": "to the right", "left": "to the left"}
 EXTREME = 8.0
 """Sizes of the mechanism: no rod that is drawn within one size reaches as far."""
-
-
-class Function:
-    """A function f that inputs go through; this one is f = x.
-
-    Attributes:
-        rounded: how many units of rounding its computed value is off, at most.
-        of_a_term: by how many more each term of its series over a range is off than the one before.
-    """
-
-    rounded = 0.0
-    of_a_term = 0.0
-
-    def series(self, value: Array) -> Array:
-        """The series of f(x) from that of x."""
-        return value
-
-    def beyond(self, half: Array, order: int) -> Sequence[Array]:
-        """What its series in s up to an order leaves out of f(middle + half s), and of two derivatives by s.
-
-        Each (...), where |s| <= 1.
-        """
-        return [np.zeros(np.shape(half))] * 3
-
-    def change(self, value: Array, off: Array | float) -> Array:
-        """By how much f changes at most where x does by `off`, at a value of f."""
-        return np.broadcast_to(off, value.shape)
-
-    def enclosed(self, law: Sequence[Enclosed]) -> list[Enclosed]:
-        """Where f and its time derivatives exactly are, from those of x."""
-        return list(law)
-
-    def input_of(self, value: Array) -> Array:
-        """The input that gives a value of f."""
-        return value
-
-    def extremes(self, farthest: Array) -> tuple[Array, Array]:
-        """Two values of f beyond which no input makes sense, if no length is beyond `farthest`."""
-        return -farthest, farthest
-
-
-class Square(Function):
-    """f = x^2 for x > 0; its series over a range has three terms, each rounded once."""
-
-    rounded = 1.0
-
-    def series(self, value: Array) -> Array:
-        with np.errstate(over="ignore", invalid="ignore"):
-            terms = [np.sum(value[..., : k + 1] * value[..., k::-1], axis=-1) for k in range(value.shape[-1])]
-        return np.stack(terms, axis=-1)
-
-    def change(self, value: Array, off: Array | float) -> Array:
-        """(2 x + off) off."""
-        return np.asarray((2.0 * np.sqrt(np.abs(value)) + off) * off)
-
-    def enclosed(self, law: Sequence[Enclosed]) -> list[Enclosed]:
-        """x^2, 2 x x', 2 x'^2 + 2 x x'' and so on."""
-        return [_leibniz(law, law, order) for order in range(len(law))]
-
-    def input_of(self, value: Array) -> Array:
-        return np.asarray(np.sqrt(np.maximum(value, 0.0)))
-
-    def extremes(self, farthest: Array) -> tuple[Array, Array]:
-        return np.zeros_like(farthest), farthest**2
+# Of a computed cosine, in units of rounding: 1 unit in the last place, at worst. Of a term of its series by
+# so many more than of the one before: of the recursion only half / k times that is left, a product and a
+# quotient.
+ROUNDED, OF_A_TERM = 2.0, 2.0
 
 
 @dataclass(frozen=True)
-class Circle(Function):
-    """f = cos(x - quarter pi / 2): the cosine or, with quarter = 1, the sine; it changes no more than x."""
-
-    quarter: int
-    rounded = 2.0  # 1 unit in the last place, at worst
-    of_a_term = 2.0  # of the recursion only half / k times the term before is left: a product and a quotient
-
-    def series(self, value: Array) -> Array:
-        with np.errstate(over="ignore", invalid="ignore"):
-            return cosine_and_sine(value)[self.quarter]
-
-    def beyond(self, half: Array, order: int) -> Sequence[Array]:
-        """Of terms half^k / k! cos(middle + k pi / 2), |half| <= order.
-
-        What is left out falls faster than the powers of half / (order + 1), which is below 1.
-        """
-        found: list[Array] = []
-        for d in range(3):
-            first = half ** (order + 1) / float(np.prod(np.arange(1.0, order + 2.0 - d)))
-            found.append(1.01 * first / (1.0 - half / (order + 2.0 - d)))
-        return found
-
-    def enclosed(self, law: Sequence[Enclosed]) -> list[Enclosed]:
-        """f, g x' and so on, g the slope of f, whose own slope is -f."""
-        angle, *rates = law
-        cosine, sine = within_a_turn(angle).cosine_sine()
-        values, slopes = ([sine], [cosine]) if self.quarter else ([cosine], [-sine])
-        for order in range(len(rates)):
-            value, slope = _leibniz(slopes, rates, order), -_leibniz(values, rates, order)
-            values.append(value)
-            slopes.append(slope)
-        return values
-
-    def input_of(self, value: Array) -> Array:
-        """The angle between 0 and pi or, from a sine, between -pi / 2 and pi / 2."""
-        value = np.clip(value, -1.0, 1.0)
-        return np.asarray(np.arcsin(value) if self.quarter else np.arccos(value))
-
-    def extremes(self, farthest: Array) -> tuple[Array, Array]:
-        one = np.ones_like(farthest)
-        return one, -one
-
-
-def _leibniz(one: Sequence[Enclosed], other: Sequence[Enclosed], order: int) -> Enclosed:
-    """A time derivative of a product, from those of its factors."""
-    first, *others = ((one[i] * other[order - i]).times(comb(order, i)) for i in range(order + 1))
-    return sum(others, first)
-
-
 class Drive(ABC):
     """One driven coordinate and the input that drives it.
 
     Attributes:
         coordinate: name of the known coordinate. input: name of the input.
         unit: of the input, rad or mm.
-        function: what the input goes through.
         exact: whether s is a power of two, so that a product with it rounds nothing.
+        of_slide: whether it is the travel of a slide, by which a car is steered.
+        quarter: None where the coordinate is proportional to the input.
     """
 
     coordinate: str
     input: str
-    unit = "mm"
-    exact = True
 
-    @property
-    def function(self) -> Function:
-        """The input itself unless a kind says so."""
-        return Function()
+    unit: ClassVar[str] = "mm"
+    exact: ClassVar[bool] = True
 
     @property
     def of_slide(self) -> bool:
-        """Whether it is the travel of a slide, by which a car is steered."""
         return False
 
     @property
-    def pushes(self) -> str:
-        """The point that it slides along a direction, inboard of what is linked to it; empty if none."""
-        return ""
+    def quarter(self) -> int | None:
+        return None
 
     @property
     def travel(self) -> Drive:
@@ -197,7 +85,9 @@ class Drive(ABC):
         Raises:
             InputOutOfRange: a value that has no meaning for this kind.
         """
-        return np.asarray(self.scale(drawing)[0][..., None] * self.function.series(value))
+        with np.errstate(over="ignore", invalid="ignore"):
+            own = value if self.quarter is None else cosine_and_sine(value)[self.quarter]
+        return np.asarray(self.scale(drawing)[0][..., None] * own)
 
     def series_over(
         self, middle: Array, half: Array, order: int, drawing: Drawing
@@ -205,7 +95,7 @@ class Drive(ABC):
         """The coordinate's series where the input is middle + half s, for all of |s| <= 1.
 
         Args:
-            middle, half: shape (...). order: 3 or more.
+            middle, half: shape (...). order: 3 or more, and at least the largest half.
         Returns:
             The series, shape (..., order + 1), and how far it and its first and second derivative by s may be
             off anywhere there, each (...); what `rounding` says of its first term is lacking apart from that.
@@ -214,30 +104,36 @@ class Drive(ABC):
         value[..., 0], value[..., 1] = middle, half
         series, scale = self.series(value, drawing), self.scale(drawing)[0]
         # s is off by at most 2 units, and the product by one.
-        first = self.function.rounded + (0.0 if self.exact else 3.0)
-        rounded = _units(first + self.function.of_a_term * k.astype(float)) * np.abs(series)
+        units, left_out = np.full(order + 1, 0.0 if self.exact else 3.0), [0.0 * half] * 3
+        if self.quarter is not None:
+            units += ROUNDED + OF_A_TERM * k
+            # Terms half^k / k! cos(middle + k pi / 2): what is left out falls faster than the powers of
+            # half / (order + 1).
+            for d in range(3):
+                first = half ** (order + 1) / float(np.prod(np.arange(1.0, order + 2.0 - d)))
+                left_out[d] = 1.01 * first / (1.0 - half / (order + 2.0 - d))
+        rounded = _units(units) * np.abs(series)
         rounded[..., 0] = self.rounding(series[..., 0], drawing, 0.0)[1]
         value_off, rate_off, bend_off = (
             (rounded * falling).sum(axis=-1) + scale * left
-            for falling, left in zip(
-                (np.ones(order + 1), k, k * (k - 1.0)), self.function.beyond(half, order), strict=True
-            )
+            for falling, left in zip((np.ones(order + 1), k, k * (k - 1.0)), left_out, strict=True)
         )
         return series, (value_off, rate_off, bend_off)
 
     def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
         """What the computed coordinate of an input lacks, and how uncertain it is with that added.
 
-        The coordinate lacks in proportion what s does; f and the product are rounded.
+        The coordinate lacks in proportion what s does; a cosine and the product are rounded. It changes by no
+        more than s times what the input does.
 
         Args:
             law: how far the input's value may be off, in its unit.
         """
         scale, rest = self.scale(drawing)
-        change = scale * self.function.change(coordinate / scale, law)
-        if self.exact and not self.function.rounded:
+        change = np.broadcast_to(scale * law, coordinate.shape)
+        if self.exact and self.quarter is None:
             return np.zeros_like(coordinate), change
-        units = self.function.rounded + (0.0 if self.exact else 1.0)
+        units = (0.0 if self.quarter is None else ROUNDED) + (0.0 if self.exact else 1.0)
         return coordinate * (rest / scale), _units(units) * np.abs(coordinate) + 1.01 * change
 
     def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> list[Enclosed]:
@@ -246,7 +142,7 @@ class Drive(ABC):
         Args:
             law: the input's value and its time derivatives, each (N,), in its unit per s^d.
         """
-        values = self.function.enclosed(law)
+        values = list(law) if self.quarter is None else _cosine(law, self.quarter)
         scale, rest = self.scale(drawing)
         if self.exact:
             return [value.scaled(scale) for value in values]
@@ -256,14 +152,38 @@ class Drive(ABC):
         return [value * whole for value in values]
 
     def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
-        """The input that gives a coordinate."""
-        return self.function.input_of(coordinate / self.scale(drawing)[0])
+        """The input that gives a coordinate.
+
+        Of a cosine it is between 0 and pi, of a sine between -pi / 2 and pi / 2.
+        """
+        value = coordinate / self.scale(drawing)[0]
+        if self.quarter is None:
+            return value
+        value = np.clip(value, -1.0, 1.0)
+        return np.asarray(np.arcsin(value) if self.quarter else np.arccos(value))
 
     def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
         """Two values of the coordinate beyond which no input makes sense, each of shape (...)."""
-        scale = self.scale(drawing)[0]
-        one, other = self.function.extremes(EXTREME * drawing.unit)
-        return scale * one, scale * other
+        farthest = self.scale(drawing)[0] * (EXTREME * drawing.unit if self.quarter is None else 1.0)
+        return -farthest, farthest
+
+
+def _cosine(law: Sequence[Enclosed], quarter: int) -> list[Enclosed]:
+    """F = cos(x - quarter pi / 2), g x' and so on, g the slope of f, whose own slope is -f."""
+    angle, *rates = law
+    cosine, sine = within_a_turn(angle).cosine_sine()
+    values, slopes = ([sine], [cosine]) if quarter else ([cosine], [-sine])
+    for order in range(len(rates)):
+        value, slope = _leibniz(slopes, rates, order), -_leibniz(values, rates, order)
+        values.append(value)
+        slopes.append(slope)
+    return values
+
+
+def _leibniz(one: Sequence[Enclosed], other: Sequence[Enclosed], order: int) -> Enclosed:
+    """A time derivative of a product, from those of its factors."""
+    first, *others = ((one[i] * other[order - i]).times(comb(order, i)) for i in range(order + 1))
+    return sum(others, first)
 
 
 def _units(count: Array | float) -> Array:
@@ -282,14 +202,12 @@ class ArmAngle(Drive):
     The cosine tells angles apart between 0 and pi only, so only these are allowed.
     """
 
-    coordinate: str
-    input: str
     pivot: str
     point: str
     direction: str
 
     unit = "rad"
-    function = Circle(0)
+    quarter = 0
     exact = False
 
     @property
@@ -324,8 +242,6 @@ class Travel(Drive):
         slides: whether the point is pushed along a line, inboard of what is linked to it.
     """
 
-    coordinate: str
-    input: str
     origin: str
     point: str
     direction: str
@@ -339,10 +255,6 @@ class Travel(Drive):
     @property
     def of_slide(self) -> bool:
         return self.slides
-
-    @property
-    def pushes(self) -> str:
-        return self.point if self.slides else ""
 
     def scale(self, drawing: Drawing) -> Pair:
         """1 / unit."""
@@ -360,15 +272,10 @@ class TravelAlong(Drive):
     The coordinate is the place along a vector d of the line, travel / |d|, whose length is a constant.
     """
 
-    coordinate: str
-    input: str
     line: OnLine
 
     exact = False
-
-    @property
-    def of_slide(self) -> bool:
-        return True
+    of_slide = True
 
     @property
     def sign(self) -> str:
@@ -390,25 +297,16 @@ class Steered(Drive):
         of: the travel. per_turn: mm of it for a whole turn.
     """
 
-    coordinate: str
-    input: str
     of: Travel | TravelAlong
     per_turn: float
 
     unit = "rad"
     exact = False
+    of_slide = True
 
     @property
     def travel(self) -> Drive:
         return self.of
-
-    @property
-    def of_slide(self) -> bool:
-        return True
-
-    @property
-    def pushes(self) -> str:
-        return self.of.pushes
 
     @property
     def sign(self) -> str:
@@ -431,25 +329,21 @@ class Steered(Drive):
 
 @dataclass(frozen=True)
 class DistanceOf(Drive):
-    """The distance of two points; the coordinate is its square; mm."""
+    """The distance of two points; mm."""
 
-    coordinate: str
-    input: str
     start: str
     end: str
-
-    function = Square()
 
     @property
     def sign(self) -> str:
         return "apart"
 
     def scale(self, drawing: Drawing) -> Pair:
-        """1 / unit^2."""
-        return _exactly(1.0 / drawing.unit**2)
+        """1 / unit."""
+        return _exactly(1.0 / drawing.unit)
 
     def drawn(self, drawing: Drawing) -> Array:
-        return np.asarray(drawing.distance(self.start, self.end) ** 2)
+        return drawing.distance(self.start, self.end)
 
     def series(self, value: Array, drawing: Drawing) -> Array:
         if not (value[..., 0] > 0.0).all():
@@ -457,24 +351,26 @@ class DistanceOf(Drive):
             raise InputOutOfRange(self.input, worst, "a distance above 0 mm")
         return super().series(value, drawing)
 
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        _, farthest = super().extremes(drawing)
+        return 0.0 * farthest, farthest
+
 
 @dataclass(frozen=True)
 class TurnedBy(Drive):
     """A turn from the drawing on; one of its coordinates is the cosine, another the sine; rad.
 
     Attributes:
-        quarter: 0 for the cosine, 1 for the sine: cos(angle - quarter pi / 2).
+        part: 0 for the cosine, 1 for the sine.
     """
 
-    coordinate: str
-    input: str
-    quarter: int
+    part: int
 
     unit = "rad"
 
     @property
-    def function(self) -> Function:
-        return Circle(self.quarter)
+    def quarter(self) -> int:
+        return self.part
 
     @property
     def sign(self) -> str:
@@ -484,4 +380,4 @@ class TurnedBy(Drive):
         return _exactly(np.ones_like(drawing.unit))
 
     def drawn(self, drawing: Drawing) -> Array:
-        return (0.0 if self.quarter else 1.0) * np.ones_like(drawing.unit)
+        return (1.0 - self.part) * np.ones_like(drawing.unit)

@@ -28,11 +28,11 @@ ONE: Pair = np.array(1.0), np.array(0.0)
 
 @dataclass(frozen=True)
 class ScalarProduct(Constraint):
-    r"""u . v - k - x = 0, with k as drawn and x driven, where the row has such. One row.
+    r"""u . v - k - x = 0, with k as drawn and x driven, where the row has such; or u . u - x^2 = 0. One row.
 
     An edge runs from its second point to its first; with an empty second name it is a direction of the car
     or the place of a point. So x is the height of a point over another, with d cos(theta) the paper's arm
-    angle, eq. (12), or over where it is drawn, with k; or the square of a distance.
+    angle, eq. (12), or over where it is drawn, with k. Of an edge with itself it is a distance.
 
     Attributes:
         what: its name in messages.
@@ -62,8 +62,9 @@ class ScalarProduct(Constraint):
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         zeros: Triple = (layout.zero, layout.zero, layout.zero)
         a, b, c, d = (layout.vector(name) if name else zeros for name in (*self.one, *self.other))
-        scalars = (layout.scalar(name) for name in (self.drawn, self.driven) if name)
-        less = (Product(-1.0, (scalar, layout.zero), (layout.one, layout.zero)) for scalar in scalars)
+        scalars = [(layout.scalar(name), layout.zero) for name in (self.drawn, self.driven) if name]
+        one = (layout.one, layout.zero)
+        less = (Product(-1.0, x, x if self.one == self.other else one) for x in scalars)
         return ((*dot(a, b, c, d), *less),)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:

@@ -47,8 +47,8 @@ CASES: dict[str, tuple[Drive, Equation, tuple[float, float, float]]] = {
         (200.0, 400.0, 8.0),
     ),
     "distance": (
-        DistanceOf("square", "apart", "pivot", "ball"),
-        lambda x: (x / UNIT) ** 2,
+        DistanceOf("distance", "apart", "pivot", "ball"),
+        lambda x: x / UNIT,
         (200.0, 400.0, 8.0),
     ),
     "cosine of a turn": (TurnedBy("cosine", "turn", 0), mpmath.cos, (-9.0, 9.0, 0.5)),
