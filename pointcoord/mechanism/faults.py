@@ -1,31 +1,32 @@
-"""What is wrong with a mechanism's tables: where, what, and what is allowed."""
+"""What is wrong with a file's tables: where, what, and what is allowed; and what pydantic says, likewise."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 from pointcoord.wording import meant, shown
 
-# What pydantic says in Python's terms, in those of a file.
+# What pydantic says in Python's terms, and a file in its own.
 WORDS = {
-    "bool_type": "true or false",
-    "dataclass_type": "a table",
-    "dict_type": "a table",
-    "model_type": "a table",
-    "string_too_short": "a name",
-    "string_type": "a name",
-    "too_short": "one name or more",
-    "tuple_type": "a list of names",
+    "missing": "this key is missing",
+    "dataclass_type": "Input should be a table",
+    "dict_type": "Input should be a table",
+    "model_type": "Input should be a table, such as { constant = 0.0 } for an input",
+    "string_too_short": "Input should be a name",
+    "tuple_type": "Input should be a list",
 }
+# Faults that say themselves what is given.
+COMPLETE = ("missing", "too_short", "too_long", "value_error")
 
 
 class TableFault(ValueError):
-    """A table of a mechanism is not as it must be.
+    """A table is not as it must be.
 
     Args:
-        place: keys from the top of the mechanism's tables. problem: with the value. allowed: what would be.
+        place: keys from the top of the tables. problem: with the value. allowed: what would be.
     """
 
     def __init__(self, place: Iterable[str | int], problem: str, allowed: str = "") -> None:
@@ -33,33 +34,40 @@ class TableFault(ValueError):
         super().__init__(problem)
 
 
-def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str | int]) -> TableFault:
+def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str | int] = ()) -> TableFault:
     """The fault of a name that nothing has."""
     there = tuple(known)
     hint = meant(name, there) if isinstance(name, str) else ""
     return TableFault(place, f"no {kind} is called {shown(name)}{hint}", ", ".join(there) or "none")
 
 
-def known_keys(table: object, known: Collection[str], what: str) -> object:
+def known_keys(table: object, known: Collection[str]) -> object:
     """A table that has no other keys than the known ones.
 
     Raises:
         TableFault: it has.
     """
-    for key in table if isinstance(table, Mapping) else ():
+    given = table if isinstance(table, Mapping) else {}
+    for key in given:
         if key not in known:
-            raise no_such(f"key of {what}", key, known, (key,))
+            hint = meant(str(key), (name for name in known if name not in given))
+            raise TableFault((key,), f"there is no such key{hint}", ", ".join(known))
     return table
 
 
-def fault_of(error: ValidationError, place: Sequence[str | int] = ()) -> TableFault:
-    """What pydantic found first, in a table at a place."""
-    first = error.errors(include_url=False)[0]
-    where = (*place, *first["loc"])
-    cause = first.get("ctx", {}).get("error")
+def faults_of(error: ValidationError, place: Sequence[str | int] = ()) -> list[TableFault]:
+    """What pydantic found in a table at a place."""
+    return [_fault(found, place) for found in error.errors(include_url=False)]
+
+
+def _fault(found: ErrorDetails, place: Sequence[str | int]) -> TableFault:
+    where, value = (*place, *found["loc"]), found["input"]
+    cause: object = found.get("ctx", {}).get("error")
     if isinstance(cause, TableFault):
         return TableFault((*where, *cause.place), cause.problem, cause.allowed)
-    if first["type"] == "missing":
-        return TableFault(where, "this key is missing")
-    allowed = WORDS.get(first["type"]) or first["msg"].removeprefix("Input should be ")
-    return TableFault(where, f"is {shown(first['input'])}", allowed)
+    if found["type"] == "missing" and isinstance(where[-1], int):
+        return TableFault(where, f"a number is missing: there are {where[-1]} where three belong")
+    said = str(cause) if cause else found["msg"].replace("Tuple", "List").replace(" after validation", "")
+    words = WORDS.get(found["type"]) or said
+    told = found["type"] in COMPLETE or isinstance(value, Mapping | BaseModel)
+    return TableFault(where, words if told else f"{words}, not {shown(value)}")

@@ -14,7 +14,7 @@ from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
 from pointcoord.mechanism.compiled import Place, choices_of, compiled
-from pointcoord.mechanism.faults import TableFault, fault_of, known_keys, no_such
+from pointcoord.mechanism.faults import TableFault, faults_of, known_keys, no_such
 from pointcoord.mechanism.freedoms import Freedoms, settled
 from pointcoord.mechanism.inputs import CHASSIS, Name
 from pointcoord.mechanism.structure import CLOSING, TABLES, Structure, structure_of
@@ -57,9 +57,7 @@ class _Part(BaseModel, defer_build=True):
 
 class _Others(BaseModel, defer_build=True):
     closures: dict[Name, Annotated[dict[Name, dict[Name, Any]], AfterValidator(_closing)]] = {}
-    parts: dict[
-        Name, Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields, "a part"))]
-    ] = {}
+    parts: dict[Name, Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields))]] = {}
 
 
 @dataclass(frozen=True)
@@ -198,7 +196,7 @@ class MechanismFile:
         try:
             others = _Others.model_validate({key: given[key] for key in OTHERS if key in given})
         except ValidationError as error:
-            raise fault_of(error) from None
+            raise faults_of(error)[0] from None
         title = str(given.get("title") or name)
         parts = {f"{part}.": _part(part, table) for part, table in others.parts.items()}
         sides = {part: str(table.side) for part, table in others.parts.items()}

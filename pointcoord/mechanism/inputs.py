@@ -321,7 +321,7 @@ def input_of(table: object) -> object:
         counted = f"is of {len(found)} kinds" if found else "is of no kind"
         raise TableFault((), counted, f"one of {', '.join(TELLING)}")
     kind = KINDS[found[0]] if found[0] != "angle" else Turn if table.get("from") == "drawing" else Arm
-    known_keys(table, [own.alias or key for key, own in kind.model_fields.items()], f"an input by {found[0]}")
+    known_keys(table, [own.alias or key for key, own in kind.model_fields.items()])
     return kind.model_validate(table)
 
 

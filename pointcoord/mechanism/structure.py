@@ -16,7 +16,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator, StrictBool, TypeAdapter, ValidationError
 
 from pointcoord.linkage.directions import DIRECTIONS
-from pointcoord.mechanism.faults import TableFault, fault_of, known_keys, no_such
+from pointcoord.mechanism.faults import TableFault, faults_of, known_keys, no_such
 from pointcoord.mechanism.inputs import CHASSIS, Distinct, Input, Name, Names, Pair, Role, input_of, renamed
 
 CLOSING = ("bodies", "rods", "slides", "inputs", "roles", "stand_ins")
@@ -41,7 +41,7 @@ def _read(kind: Any, value: object, *key: str) -> Any:
     try:
         return _reader(kind).validate_python(value)
     except ValidationError as error:
-        raise fault_of(error, key) from None
+        raise faults_of(error, key)[0] from None
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Slide:
 
 def _slide(table: object) -> object:
     """With `points`, where there is one `point`."""
-    known_keys(table, ("point", "points", "body", "through", "along", "turns"), "a slide")
+    known_keys(table, ("point", "points", "body", "through", "along", "turns"))
     if not isinstance(table, Mapping):
         return table
     if ("point" in table) == ("points" in table):

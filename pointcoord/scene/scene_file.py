@@ -24,7 +24,7 @@ from pointcoord.errors import MechanismError, SceneError
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.mechanism.faults import TableFault
+from pointcoord.mechanism.faults import TableFault, no_such
 from pointcoord.mechanism.file import (
     MechanismFile,
     is_path,
@@ -33,7 +33,7 @@ from pointcoord.mechanism.file import (
     shipped,
     whole_tables,
 )
-from pointcoord.mechanism.freedoms import askew_hinges, free_directions
+from pointcoord.mechanism.freedoms import free_directions
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
@@ -68,14 +68,6 @@ PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
 FARTHEST = 1e15
 # Where an axle lies, seen from the car's middle.
 AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
-# How a mechanism has the inputs of the chassis that many ask for by these names.
-MOVES = {
-    name: f" (to have it, write {name} = {{ {words} }} under [inputs] of a mechanism file of your own)"
-    for name, words in {
-        "roll": 'turns = "chassis", about = "POINT", along = "forward"',
-        "pitch": 'turns = "chassis", about = "POINT", along = "left"',
-    }.items()
-}
 # Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
 MOST_SAMPLES = 10_000_000
 
@@ -194,9 +186,6 @@ class MechanismPart(Part):
     points: dict[str, Vector]
 
     short_forms = ("axes",)
-    elsewhere = dict.fromkeys(
-        ("units", "effects", "tolerance", "convention"), "at the top, above [mechanism]"
-    )
 
     _driven: tuple[str, ...] | None = PrivateAttr(None)
 
@@ -228,12 +217,8 @@ class MechanismPart(Part):
     @field_validator("type")
     @classmethod
     def _known_type(cls, type: str | None) -> str | None:
-        if type is not None and type not in shipped():
-            hint = meant(type, shipped())
-            raise ValueError(
-                f"no mechanism is called {shown(type)}{hint}; allowed: {', '.join(shipped())}, or a path "
-                "to a mechanism file that ends in .toml"
-            )
+        if type is not None:
+            mechanism_file(type)
         return type
 
     @field_validator("closure")
@@ -241,9 +226,7 @@ class MechanismPart(Part):
     def _known_closure(cls, closure: str, others: ValidationInfo) -> str:
         file = _file_of(others.data)
         if file is not None and closure not in file.closures:
-            raise ValueError(
-                f"a {file.name} has no closure called {shown(closure)}; allowed: {', '.join(file.closures)}"
-            )
+            raise no_such(f"closure of a {file.name}", closure, file.closures)
         return closure
 
     @field_validator("points")
@@ -254,19 +237,12 @@ class MechanismPart(Part):
             return points
         structure = file.structures[others.data["closure"]]
         points = _of_every_part(points, file, structure, others.data["right"])
-        extra = [name for name in points if name not in structure.points]
-        missing = [name for name in structure.required_points if name not in points]
-        if extra:
-            elsewhere = [one for one in shipped() if extra[0] in mechanism_file(one).points]
-            hint = (
-                f", which is a point of a {elsewhere[0]}" if elsewhere else meant(extra[0], structure.points)
-            )
-            raise ValueError(
-                f"no point of a {file.name} is called {shown(extra[0])}{hint}; "
-                f"allowed: {', '.join(structure.points)}"
-            )
-        if missing:
-            raise ValueError(f"{missing[0]!r} is missing; needed: {', '.join(structure.required_points)}")
+        for name in points:
+            if name not in structure.points:
+                raise no_such(f"point of a {file.name}", name, structure.points)
+        for name in structure.required_points:
+            if name not in points:
+                raise ValueError(f"{name!r} is missing; needed: {', '.join(structure.required_points)}")
         standing = {
             name: points[other]
             for name, other in structure.stand_ins.items()
@@ -505,9 +481,6 @@ class Scene(Part):
     points: Annotated[tuple[Text, ...], AS_LIST] | None = None
 
     short_forms = ("units",)
-    elsewhere = dict.fromkeys(TimePart.model_fields, "under [time]") | dict.fromkeys(
-        (*MechanismPart.model_fields, *MechanismPart.short_forms), "under [mechanism]"
-    )
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
@@ -546,11 +519,12 @@ class Scene(Part):
                     effect.name for effect in EFFECTS.values() if name.rpartition(".")[2] in effect.own_names
                 ]
                 hint = f" ({givers[0]!r} gives it)" if givers else no_such_derivative(name)
-                hint = hint or meant(name, EFFECTS)
                 allowed = [name for name, effect in EFFECTS.items() if not effect.base]
-                raise ValueError(
-                    f"no effect is called {shown(name)}{hint}; allowed: {', '.join(allowed)}, "
-                    f"{FIRST_NUMBERED} to {STATES[-1]}, and gradients"
+                more = f"{FIRST_NUMBERED} to {STATES[-1]}, and gradients"
+                raise TableFault(
+                    (),
+                    f"no effect is called {shown(name)}{hint or meant(name, EFFECTS)}",
+                    ", ".join((*allowed, more)),
                 )
         return effects
 
@@ -568,10 +542,7 @@ class Scene(Part):
             )
         for place, name in enumerate(points):
             if name not in there:
-                raise ValueError(
-                    f"no point of this car is called {shown(name)}{meant(name, there)}; "
-                    f"allowed: {', '.join(there)}"
-                )
+                raise no_such("point of this car", name, there)
             if name in points[:place]:
                 raise ValueError(f"{name!r} is named twice; allowed: each point once")
         return points
@@ -590,9 +561,7 @@ class Scene(Part):
         known = self.mechanism.structure.inputs
         for name in self.inputs:
             if name not in known:
-                hint = MOVES.get(name) or meant(name, known)
-                problem = f"no input is called {shown(name)}{hint}"
-                raise TableFault(("inputs",), problem, ", ".join(known))
+                raise no_such("input", name, known, ("inputs",))
         self.mechanism._driven = tuple(name for name in known if name in self.inputs)
         self._inputs_hold_the_mechanism()
         for name, law in self.inputs.items():
@@ -617,55 +586,33 @@ class Scene(Part):
         except MechanismError as error:
             of_points = ("points",) if set(error.names) <= set(part.points) else ()
             raise TableFault(("mechanism", *of_points), error.problem) from None
-        missing = topology.layout.unknowns - len(topology.labels)
-        if not missing and topology.fighting:
-            self._name_what_fights(topology)
-        if not missing and topology.required_inputs:
+        missing, fighting = topology.layout.unknowns - len(topology.labels), topology.fighting
+        if not missing and not fighting and topology.required_inputs:
             return
-        if not missing:
+        if not part.freedoms:
             raise TableFault(
                 ("mechanism",),
-                f"the {part.name} has no freedom and no input is driven: a structure that nothing moves",
-                "a mechanism with one freedom or more, so leave a rod out or give it an input",
+                f"the {part.name} is locked: it has no freedom as drawn, a structure that nothing moves",
+                "one freedom or more, so leave a rod or a slide out, or draw hinges that are meant to be "
+                "parallel exactly so",
             )
-        inputs = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
-        told = [name for name in inputs if name in self.inputs]
-        others = ", ".join(name for name in inputs if name not in told)
-        count = part.freedoms
-        words = f"the {part.name} has {count} freedom{'' if count == 1 else 's'}, and {len(told)} "
-        words += f"{'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
-        if not count:
-            askew = askew_hinges(part.structure, part.points)
-            exact = f"; if the hinges {', '.join(askew)} are meant to be parallel, draw them exactly so"
-            allowed = f"one freedom or more, so leave a rod or a slide out{exact if askew else ''}"
-            driven = f"{', '.join(told)} {'is' if len(told) == 1 else 'are'}" if told else "nothing is"
-            locked = f"the {part.name} is locked: it has no freedom as drawn, and {driven} driven"
-            raise TableFault(("mechanism",), locked, allowed)
-        if count < len(told):
-            allowed = f"{count} input{'' if count == 1 else 's'}, so leave {len(told) - count} out"
-            raise TableFault(("inputs",), words, allowed)
-        named = free_directions(part.topology, part.points, {"up": part.up, "right": part.right})
-        more = f"{count - len(told)} more{f' of {others}' if others else ': a new one in [mechanism.inputs]'}"
-        allowed = f"{count} input{'' if count == 1 else 's'}, so drive {more}"
-        raise TableFault(("inputs",), f"{words}; free are {', '.join(named)}", allowed)
-
-    def _name_what_fights(self, topology: Topology) -> None:
-        part, inputs = self.mechanism, ", ".join(topology.fighting)
-        named = free_directions(topology, part.points, {"up": part.up, "right": part.right})
-        others = ", ".join(
-            name
-            for name, one in part.structure.inputs.items()
-            if not (one.moves_the_chassis or name in topology.required_inputs)
+        names = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
+        told = [name for name in names if name in self.inputs]
+        others = ", ".join(name for name in names if name not in told) or "new ones in [mechanism.inputs]"
+        words = f"the {part.name} has {part.freedoms} freedom{'' if part.freedoms == 1 else 's'}, and "
+        words += (
+            f"{len(told)} {'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
         )
-        instead = (
-            f"instead one of {others}" if others else "a new one, of what is free, in [mechanism.inputs]"
-        )
-        raise TableFault(
-            ("inputs",),
-            f"the inputs {inputs} drive more of the {part.name} than it lets them, and leave free "
-            f"{', '.join(named)}",
-            f"one of them less, and {instead}",
-        )
+        more = part.freedoms - len(told)
+        if more < 0:
+            raise TableFault(("inputs",), words, f"as many inputs as freedoms, so leave {-more} out")
+        free = ", ".join(free_directions(topology, part.points, {"up": part.up, "right": part.right}))
+        if not missing:
+            words = f"the inputs {', '.join(fighting)} drive more of the {part.name} than it lets them"
+            allowed = f"one of them less, and instead one of {others}"
+            raise TableFault(("inputs",), f"{words}, and leave free {free}", allowed)
+        allowed = f"as many inputs as freedoms, so drive {more} more of {others}"
+        raise TableFault(("inputs",), f"{words}; free are {free}", allowed)
 
     @property
     def reported_points(self) -> tuple[str, ...]:

@@ -22,26 +22,12 @@ from pydantic import (
     ValidationError,
     model_validator,
 )
-from pydantic_core import ErrorDetails
 
 from pointcoord.errors import SceneError
-from pointcoord.mechanism.faults import TableFault
-from pointcoord.wording import meant, shown, shown_key
+from pointcoord.mechanism.faults import faults_of, known_keys
+from pointcoord.wording import shown_key
 
 Place = tuple[int | str, ...]
-
-# Faults that are named in one message beside the first; more are counted.
-NAMED = 5
-
-# What pydantic says in Python's terms, and a scene file in its own.
-WORDS = {
-    "missing": "this key is missing",
-    "model_type": "Input should be a table, such as { constant = 0.0 } for an input",
-    "dict_type": "Input should be a table",
-    "tuple_type": "Input should be a list",
-}
-# Faults that say themselves what is given.
-COMPLETE = ("missing", "too_short", "too_long", "value_error")
 
 
 def own_number(value: object) -> object:
@@ -99,8 +85,6 @@ class Part(BaseModel):
 
     short_forms: ClassVar[tuple[str, ...]] = ()
     """Keys that `completed` puts others in place of."""
-    elsewhere: ClassVar[Mapping[str, str]] = {}
-    """Keys of other tables of a scene, and where they stand."""
 
     _checked: dict[str, Any] | None = PrivateAttr(None)
 
@@ -109,7 +93,7 @@ class Part(BaseModel):
         """The part as plain data or as an object, checked.
 
         Raises:
-            SceneError: the first fault, with its key; some further ones are named, and the others counted.
+            SceneError: the first fault, with its key; further ones are counted.
         """
         if type(content) is cls and content.unchanged:
             return content
@@ -131,26 +115,11 @@ class Part(BaseModel):
             content = content._as_given()
         if isinstance(content, Mapping):
             content = cls.completed(dict(content))
-            cls._require_known(content)
+            known_keys(content, (*cls.model_fields, *cls.short_forms))
         part = by_keys(content)
         part.agree()
         part._checked = part.model_dump()
         return part
-
-    @classmethod
-    def _require_known(cls, content: Mapping[Any, Any]) -> None:
-        known = (*cls.model_fields, *cls.short_forms)
-        free = [name for name in known if name not in content]
-        others = [key for key in content if key not in cls.model_fields]
-        if others:
-            places = [cls.elsewhere.get(str(key)) for key in others[:NAMED]]
-            hints = [
-                f" (it stands {place})" if place else meant(str(key), free)
-                for key, place in zip(others, places, strict=False)
-            ]
-            more = zip(others[1:NAMED], hints[1:], strict=True)
-            problem = f"there is no such key{hints[0]}" + "".join(f", nor {shown_key(k)}{h}" for k, h in more)
-            raise TableFault((others[0],), problem, ", ".join(known))
 
     def agree(self) -> None:
         """Check what the keys make together.
@@ -180,37 +149,7 @@ class Part(BaseModel):
 
 
 def scene_error(error: ValidationError, source: str) -> SceneError:
-    """What pydantic found in a part as one line: the first fault, some others, and a count of the rest."""
-    (place, problem, allowed), *others = map(_fault, error.errors(include_url=False))
-    if others:
-        named = [f"{_dotted(place)}: {problem}" for place, problem, _ in others[:NAMED]]
-        if len(others) > NAMED:
-            named.append(f"{len(others) - NAMED} others")
-        problem += f" (and {len(others)} more: {'; '.join(named)})"
-    return SceneError(source, _dotted(place), problem, allowed)
-
-
-def _fault(fault: ErrorDetails) -> tuple[Place, str, str]:
-    """A fault's place, problem and what is allowed there."""
-    if fault["type"] != "value_error":
-        return fault["loc"], _problem(fault), ""
-    problem = fault["ctx"]["error"]
-    return (
-        (*fault["loc"], *getattr(problem, "place", ())),
-        str(problem),
-        getattr(problem, "allowed", ""),
-    )
-
-
-def _problem(fault: ErrorDetails) -> str:
-    """What is wrong with a value, with the value unless it is a table."""
-    place, value = fault["loc"], fault["input"]
-    if fault["type"] == "missing" and isinstance(place[-1], int):
-        return f"a number is missing: there are {place[-1]} where three belong"
-    words = WORDS.get(fault["type"]) or fault["msg"].replace("Tuple", "List").replace(" after validation", "")
-    told = fault["type"] in COMPLETE or isinstance(value, dict | Part)
-    return words if told else f"{words}, not {shown(value)}"
-
-
-def _dotted(place: Place) -> str:
-    return ".".join(map(shown_key, place))
+    """What pydantic found in a part as one line: the first fault, and a count of the rest."""
+    first, *others = faults_of(error)
+    more = f" (and {len(others)} more)" if others else ""
+    return SceneError(source, ".".join(map(shown_key, first.place)), first.problem + more, first.allowed)

@@ -43,7 +43,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from pointcoord import Scene, SceneError
 from pointcoord.effects.conventions import CONVENTIONS, ConventionName
-from pointcoord.mechanism.faults import fault_of
+from pointcoord.mechanism.faults import faults_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
 from validate.formulations.asked_numbers import per_second
@@ -123,7 +123,7 @@ class MapSaid(BaseModel):
                 known = [field.alias or name for name, field in fields]
                 problem = f"no key is called {key!r}{meant(key, known)}"
                 raise FileError(where, ".".join(place), problem, ", ".join(known)) from None
-            fault = fault_of(error)
+            fault = faults_of(error)[0]
             raise FileError(where, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
 
 

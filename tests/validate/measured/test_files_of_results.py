@@ -228,7 +228,7 @@ def slope(head: str) -> tuple[str, dict[str, object]]:
         (TEXT, {"colums": {}}, ("'colums'", "did you mean 'columns'?")),
         (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not said", "deg")),
         (TEXT, {"columns": {"camber": {"sign": 2}, "time": {}}}, ("columns.camber.sign", "1 or -1")),
-        (TEXT, {"held": {"rack": -1e308}}, ("held.rack: is -1e+308", "greater than")),
+        (TEXT, {"held": {"rack": -1e308}}, ("held.rack: Input should be", "greater than")),
         (TEXT, {"independent": "camber"}, ("'camber' is wheel.camber", "a time, an input or a travel")),
         (TEXT.replace("time [s]", "tyme [s]"), {}, ("no column says at which pose",)),
         (TEXT.replace("camber", "cmaber"), {}, ("nothing to compare",)),
