@@ -198,11 +198,13 @@ def compiled(
         lengths: that driven inputs need beside the points, by name, mm.
         puts_in_place: whether closing a drawing moves points on purpose.
     """
-    return _Compiler(structure, tuple(driven), choices, lengths or {}).topology(puts_in_place)
+    return Compiler(structure, tuple(driven), choices, lengths or {}).topology(puts_in_place)
 
 
 @dataclass(frozen=True, eq=False)
-class _Compiler:
+class Compiler:
+    """A structure on its way to a topology, as its inputs see it."""
+
     structure: Structure
     driven: tuple[str, ...]
     choices: Choices
@@ -346,13 +348,12 @@ class _Compiler:
             )
         return self.lengths[name]
 
-    def shared(self, body: str, other: str) -> tuple[str, ...]:
-        return self.structure.shared(body, other)
-
     def driven_line(self, slide: str) -> OnLine:
+        """The line of a slide's first point."""
         return self._on_line(slide, self.structure.slides[slide].points[0])
 
     def normal(self, body: str) -> Normal:
+        """The triangle that stands for a body, with its normal."""
         return Normal(f"normal of the {body}", *self.choices.triangles[body])
 
     def _bodies(self, solved: Collection[str]) -> Iterator[Constraint]:

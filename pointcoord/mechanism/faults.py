@@ -14,7 +14,7 @@ WORDS = {
     "missing": "this key is missing",
     "dataclass_type": "Input should be a table",
     "dict_type": "Input should be a table",
-    "model_type": "Input should be a table, such as { constant = 0.0 } for an input",
+    "model_type": "Input should be a table",
     "string_too_short": "Input should be a name",
     "tuple_type": "Input should be a list",
 }

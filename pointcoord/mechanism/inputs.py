@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
@@ -11,14 +11,15 @@ from pointcoord.linkage import drives
 from pointcoord.linkage.constraints import turn
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
-from pointcoord.linkage.constraints.ground import CHASSIS_ITSELF, Ground
-from pointcoord.linkage.constraints.in_body import Normal
-from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.ground import CHASSIS_ITSELF
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.directions import DIRECTIONS
 from pointcoord.linkage.drives import Drive
 from pointcoord.mechanism.faults import TableFault, known_keys, no_such
 from pointcoord.wording import shown
+
+if TYPE_CHECKING:
+    from pointcoord.mechanism.compiled import Compiler
 
 LENGTHS = {
     "wheel_radius": ("the height of the wheel's contact point", 300.0),
@@ -67,27 +68,32 @@ Bodies = Mapping[str, Sequence[str]]
 Made = tuple[list[Constraint], list[Drive]]
 
 
-class Compiled(Protocol):
-    """What an input is made with."""
+class Entry(BaseModel):
+    """An entry of a table; its types say of which of its values are names of points, bodies or slides."""
 
-    def length(self, name: str, input: str) -> float:
-        """A length that the scene says beside its points and that an input needs, mm."""
+    model_config = ConfigDict(frozen=True, defer_build=True)
 
     @property
-    def ground(self) -> tuple[Ground, list[Drive]]:
-        """The ground as the driven chassis sees it, and what drives it."""
+    def table(self) -> dict[str, Any]:
+        """As written, with what may be left out filled in."""
+        return self.model_dump(by_alias=True)
 
-    def shared(self, body: str, other: str) -> tuple[str, ...]:
-        """Points of two bodies, as the first lists them."""
+    def named(self, what: str) -> tuple[str, ...]:
+        """The names of points, bodies or slides that it mentions."""
+        values = [getattr(self, key) for key in self._naming(what)]
+        return tuple(n for value in values for n in (value if isinstance(value, tuple) else (value,)))
 
-    def normal(self, body: str) -> Normal:
-        """The triangle that stands for a body, with its normal."""
+    def renamed(self, rename: Mapping[str, Mapping[str, str]]) -> Self:
+        """With other names of points, bodies or slides."""
+        keys = ((key, names) for what, names in rename.items() for key in self._naming(what))
+        return self.model_copy(update={key: renamed(getattr(self, key), names) for key, names in keys})
 
-    def driven_line(self, slide: str) -> OnLine:
-        """The line of a slide's first point."""
+    @classmethod
+    def _naming(cls, what: str) -> list[str]:
+        return [key for key, own in cls.model_fields.items() if what in own.metadata]
 
 
-class Input(BaseModel):
+class Input(Entry):
     """Something that can be driven, as its table says.
 
     Attributes:
@@ -96,7 +102,6 @@ class Input(BaseModel):
         moves_the_chassis: whether it moves the whole car, so that it holds no freedom of the mechanism.
     """
 
-    model_config = ConfigDict(frozen=True, defer_build=True)
     unit: ClassVar[str] = "mm"
     length: ClassVar[str] = ""
     moves_the_chassis: ClassVar[bool] = False
@@ -107,28 +112,9 @@ class Input(BaseModel):
         return type(self).__name__.lower()
 
     @property
-    def table(self) -> dict[str, Any]:
-        """As written, with what may be left out filled in."""
-        return self.model_dump(by_alias=True)
-
-    @property
     def directions(self) -> tuple[str, ...]:
         """Directions of the car that its rows need."""
         return ()
-
-    def named(self, what: str) -> tuple[str, ...]:
-        """The names of points, bodies or slides that it mentions."""
-        values = [getattr(self, key) for key in self._naming(what)]
-        return tuple(n for value in values for n in (value if isinstance(value, tuple) else (value,)))
-
-    def renamed(self, rename: Mapping[str, Mapping[str, str]]) -> Input:
-        """With other names of points, bodies or slides."""
-        keys = ((key, names) for what, names in rename.items() for key in self._naming(what))
-        return self.model_copy(update={key: renamed(getattr(self, key), names) for key, names in keys})
-
-    @classmethod
-    def _naming(cls, what: str) -> list[str]:
-        return [key for key, own in cls.model_fields.items() if what in own.metadata]
 
     def check(self, bodies: Bodies) -> None:
         """Check what its names, which are known, mean together.
@@ -137,7 +123,7 @@ class Input(BaseModel):
             TableFault: they make no input; its place is below the input's own.
         """
 
-    def made(self, name: str, of: Compiled) -> Made:
+    def made(self, name: str, of: Compiler) -> Made:
         """Rows and drives of the input where it is driven; none of one that moves the chassis."""
         return [], []
 
@@ -164,7 +150,7 @@ class Arm(Input):
             if point not in bodies[self.angle]:
                 raise no_such(f"point of {self.angle}", point, bodies[self.angle], (key,))
 
-    def made(self, name: str, of: Compiled) -> Made:
+    def made(self, name: str, of: Compiler) -> Made:
         value, edge = f"{name} rise", (self.of, self.about)
         rise = ScalarProduct(f"rise of {self.of} over {self.about}", edge, (self.from_, ""), "", value)
         return [rise], [drives.ArmAngle(value, name, self.about, self.of, self.from_)]
@@ -185,9 +171,9 @@ class Turn(Input):
             problem = f"{self.angle} and {self.on} share {points}, which is no hinge"
             raise TableFault((), problem, "two bodies that share two points")
 
-    def made(self, name: str, of: Compiled) -> Made:
+    def made(self, name: str, of: Compiler) -> Made:
         triangle = of.normal(self.angle)
-        tail, head = of.shared(self.angle, self.on)
+        tail, head = of.structure.shared(self.angle, self.on)
         corners = (triangle.base, triangle.first, triangle.second)
         point = next(corner for corner in corners if corner not in (tail, head))
         cosine, sine = f"cosine of {name}", f"sine of {name}"
@@ -201,7 +187,7 @@ class Travel(Input):
 
     travel: SlideNames
 
-    def made(self, name: str, of: Compiled) -> Made:
+    def made(self, name: str, of: Compiler) -> Made:
         return [], [*_travels(name, self.travel, of)]
 
 
@@ -212,13 +198,13 @@ class Steers(Input):
     length = "rack_per_turn"
     steers: SlideNames
 
-    def made(self, name: str, of: Compiled) -> Made:
+    def made(self, name: str, of: Compiler) -> Made:
         per_turn = of.length(self.length, name)
         travels = _travels(name, self.steers, of)
         return [], [drives.Steered(one.coordinate, name, one, per_turn) for one in travels]
 
 
-def _travels(name: str, slides: Names, of: Compiled) -> list[drives.Travel | drives.TravelAlong]:
+def _travels(name: str, slides: Names, of: Compiler) -> list[drives.Travel | drives.TravelAlong]:
     found: dict[str, drives.Travel | drives.TravelAlong] = {}
     for line in map(of.driven_line, slides):
         if line.head in DIRECTIONS:
@@ -239,7 +225,7 @@ class Height(Input):
     def directions(self) -> tuple[str, ...]:
         return (self.along,)
 
-    def made(self, name: str, of: Compiled) -> Made:
+    def made(self, name: str, of: Compiler) -> Made:
         value, point = f"value of {name}", self.height
         drawn = f"drawn height of {point} {self.along}"
         rows = ScalarProduct(f"height of {point}", (point, ""), (self.along, ""), drawn, value)
@@ -262,7 +248,7 @@ class Contact(Input):
             problem = f"{' and '.join(self.contact)} are of no one body, so they are not the axis of a wheel"
             raise TableFault((), problem, "two points of one body")
 
-    def made(self, name: str, of: Compiled) -> Made:
+    def made(self, name: str, of: Compiler) -> Made:
         value, (inner, centre) = f"value of {name}", self.contact
         ground, moves = of.ground if self.over == "ground" else (CHASSIS_ITSELF, [])
         rows = ContactHeight(inner, centre, value, of.length(self.length, name), ground)
@@ -274,7 +260,7 @@ class Distance(Input):
 
     distance: Pair
 
-    def made(self, name: str, of: Compiled) -> Made:
+    def made(self, name: str, of: Compiler) -> Made:
         value, (start, end) = f"value of {name}", self.distance
         rows = ScalarProduct(f"distance of {start} and {end}", self.distance, self.distance, "", value)
         return [rows], [drives.DistanceOf(value, name, start, end)]

@@ -13,11 +13,31 @@ from functools import cache, cached_property
 from itertools import combinations
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, StrictBool, TypeAdapter, ValidationError
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    StrictBool,
+    TypeAdapter,
+    ValidationError,
+    model_validator,
+)
 
 from pointcoord.linkage.directions import DIRECTIONS
 from pointcoord.mechanism.faults import TableFault, faults_of, known_keys, no_such
-from pointcoord.mechanism.inputs import CHASSIS, Distinct, Input, Name, Names, Pair, Role, input_of, renamed
+from pointcoord.mechanism.inputs import (
+    CHASSIS,
+    Body,
+    Distinct,
+    Entry,
+    Input,
+    Name,
+    Names,
+    Pair,
+    Point,
+    Role,
+    input_of,
+    renamed,
+)
 
 CLOSING = ("bodies", "rods", "slides", "inputs", "roles", "stand_ins")
 """Tables with entries by name, which a closure may put others in place of."""
@@ -44,28 +64,24 @@ def _read(kind: Any, value: object, *key: str) -> Any:
         raise faults_of(error, key)[0] from None
 
 
-@dataclass(frozen=True)
-class Slide:
+class Slide(Entry):
     """Points on a line of a body, through one of its points and along a direction or towards a point."""
 
-    points: Names
-    through: Name
-    along: Name
-    body: Name = CHASSIS
+    points: Annotated[Names, "point"]
+    through: Point
+    along: Point
+    body: Body = CHASSIS
     turns: StrictBool = True
 
-
-def _slide(table: object) -> object:
-    """With `points`, where there is one `point`."""
-    known_keys(table, ("point", "points", "body", "through", "along", "turns"))
-    if not isinstance(table, Mapping):
-        return table
-    if ("point" in table) == ("points" in table):
-        raise TableFault((), "needs a point", "either point or points")
-    if "points" in table:
-        return table
-    others = {key: value for key, value in table.items() if key != "point"}
-    return {"points": (_read(Name, table["point"], "point"),), **others}
+    @model_validator(mode="before")
+    @classmethod
+    def _point_or_points(cls, table: object) -> object:
+        known_keys(table, ("point", *cls.model_fields))
+        if not isinstance(table, Mapping):
+            return table
+        if ("point" in table) == ("points" in table):
+            raise TableFault((), "needs a point", "either point or points")
+        return {"points": (table["point"],), **table} if "point" in table else table
 
 
 def _roles(roles: Mapping[str, Any]) -> dict[str, Role]:
@@ -93,7 +109,7 @@ class Structure:
     name: str = ""
     bodies: dict[Name, Distinct] = field(default_factory=dict)
     rods: dict[Name, Pair] = field(default_factory=dict)
-    slides: dict[Name, Annotated[Slide, BeforeValidator(_slide)]] = field(default_factory=dict)
+    slides: dict[Name, Slide] = field(default_factory=dict)
     inputs: dict[Name, Annotated[Input, BeforeValidator(input_of)]] = field(default_factory=dict)
     roles: Annotated[dict[Name, Any], AfterValidator(_roles)] = field(default_factory=dict)
     stand_ins: dict[Name, Name] = field(default_factory=dict)
@@ -195,6 +211,7 @@ class Structure:
             prefix: before the names of rods, inputs and roles.
         """
         p, b, s = points or {}, bodies or {}, slides or {}
+        rename = {"point": p, "body": b, "slide": s}
         return replace(
             self,
             bodies={
@@ -202,20 +219,8 @@ class Structure:
                 for body, names in self.bodies.items()
             },
             rods={prefix + rod: renamed(ends, p) for rod, ends in self.rods.items()},
-            slides={
-                s.get(name, name): replace(
-                    slide,
-                    points=renamed(slide.points, p),
-                    through=renamed(slide.through, p),
-                    along=renamed(slide.along, p),
-                    body=renamed(slide.body, b),
-                )
-                for name, slide in self.slides.items()
-            },
-            inputs={
-                prefix + name: one.renamed({"point": p, "body": b, "slide": s})
-                for name, one in self.inputs.items()
-            },
+            slides={s.get(name, name): slide.renamed(rename) for name, slide in self.slides.items()},
+            inputs={prefix + name: one.renamed(rename) for name, one in self.inputs.items()},
             roles={prefix + role: renamed(who, {**p, **b}) for role, who in self.roles.items()},
             # A point that another takes the place of is gone.
             stand_ins={p.get(a, a): p.get(z, z) for a, z in self.stand_ins.items() if prefix or a not in p},
@@ -249,7 +254,7 @@ class Structure:
     def plain(self, driven: Collection[str]) -> dict[str, Any]:
         """Bodies, rods, slides, driven inputs, roles and the sides of parts as plain data."""
         inputs = {name: one.table for name, one in self.inputs.items() if name in driven}
-        slides = {name: vars(slide) for name, slide in self.slides.items()}
+        slides = {name: slide.table for name, slide in self.slides.items()}
         tables = {"bodies": self.bodies, "rods": self.rods, "slides": slides, "inputs": inputs}
         others = {"roles": _with_lists(self.roles), "sides": dict(self.sides)}
         return {"name": self.name, **_with_lists(tables), **others}
