@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, designs_of
 from validate.measured.mapping import Measured
-from validate.measured.poses import Driven, Found, of_a_pose, ours_of, poses_of
+from validate.measured.poses import Driven, Found, ours_of
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -68,18 +68,14 @@ class Curves:
         Raises:
             PointcoordError: the design cannot be solved.
         """
-        design, numbers = self.design(amounts), self.measured.numbers
-        if values is None:
-            values = [s.values for s in self.measured.independent]
-        if all(of_a_pose(s.meaning) for s in numbers):
-            driven = self.driven.redrawn(design, self.design(amounts, self.driven.scene))
-            return driven.poses(values, TIGHT)
-        return poses_of(design, self.measured).at(values, [s.values for s in self.measured.rates])
+        driven = self.driven.redrawn(self.design(amounts), self.design(amounts, self.driven.scene))
+        values = [s.values for s in self.measured.independent] if values is None else values
+        return driven.at(values, TIGHT, bounded=False)
 
     def numbers(self, found: Found) -> Array:
         """Every column one after the other, (columns * rows,), in our units; NaN where there is no pose."""
         nothing = np.full(len(found.reached), np.nan)
-        columns = [ours_of(s, found, self.scene)[0] for s in self.measured.numbers]
+        columns = [ours_of(s, found)[0] for s in self.measured.numbers]
         return np.concatenate([nothing if c is None else c for c in columns])
 
     def at(self, amounts: Array, values: Sequence[Array] | None = None) -> Array:

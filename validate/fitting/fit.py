@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
@@ -42,7 +42,6 @@ from validate.errors import UsageError
 from validate.fitting.curves import Curves
 from validate.measured.mapping import Measured
 from validate.measured.poses import Found, at_either_end
-from validate.plain_text import shown
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -205,7 +204,6 @@ def fit_hardpoints(
         PointcoordError: the scene as drawn cannot be solved.
     """
     require_limits(bounds, prior, accuracy)
-    measured, left_out = _without_derivatives(measured)
     curves = Curves(scene, measured, free_coordinates(scene, free))
     zero = np.zeros(len(curves.free))
     start = curves.solved(zero)
@@ -291,23 +289,8 @@ def fit_hardpoints(
         converged=bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),
         solves=int(solved.nfev),
         failures=tuple(failures),
-        notes=(*left_out, *_notes(curves, start)),
+        notes=_notes(curves, start),
     )
-
-
-def _without_derivatives(measured: Measured) -> tuple[Measured, tuple[str, ...]]:
-    """The file without columns that are derivatives, and that they are left out.
-
-    Raises:
-        FileError: there are no others.
-    """
-    curves = tuple(s for s in measured.numbers if not s.meaning.per)
-    slopes = ", ".join(shown(s.column) for s in measured.numbers if s.meaning.per)
-    if not curves:
-        problem = f"holds derivatives only ({slopes})"
-        raise FileError(measured.source, "", problem, "the curves themselves, such as an angle over travel")
-    notes = (f"{slopes} is not fitted to: derivatives are not, their curves are",) if slopes else ()
-    return replace(measured, numbers=curves), notes
 
 
 def _notes(curves: Curves, start: Found) -> tuple[str, ...]:

@@ -19,13 +19,12 @@ from validate.diagnosis.evidence import Evidence, Solved, numbers_not_given
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
-from validate.measured.mapping import Measured
-from validate.measured.meanings import PLACES, TIME
-from validate.measured.poses import Driven, poses_of
-from validate.measured.supposed import meant_otherwise, suppositions
+from validate.measured.mapping import Measured, Series
+from validate.measured.meanings import PLACES
+from validate.measured.poses import Driven
+from validate.measured.supposed import meant_otherwise
 from validate.measured.tolerances import NO_NUMBERS, OURS, Held, held_of, rounded
 from validate.plain_text import shown
-from validate.tables.errors import FileError
 from validate.tables.units import named
 
 Array = NDArray[np.float64]
@@ -36,7 +35,6 @@ TOO_COARSE = (
     "what its rows are taken by is rounded so coarsely that no number could tell its curve from a level line"
 )
 FEWEST = 5  # rows that other cars are solved at
-MOST = 400  # of a grid, along which the motion turns back and forth
 
 
 @dataclass(frozen=True)
@@ -81,18 +79,12 @@ def compare_results(
             what a map says of a column goes before it. None: not said, see `tolerances`.
         factor: how many times the tolerance to hold differences to.
     Raises:
-        FileError: no row can be reached, or nothing can be compared.
-        MissingPackage: digits in full without an accuracy need the extra `validate`.
+        FileError: no row can be reached.
+        MissingPackage: it needs the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
-    poses = poses_of(scene, measured)
-    try:
-        held, ours, notes = held_of(measured, scene, accuracy, poses)
-    except FileError as error:
-        if not (likely := next(suppositions(scene, measured, poses.driven), None)):
-            raise
-        allowed = f"{error.allowed}; they nearly are if {likely.words}"
-        raise FileError(error.source, error.place, error.problem, allowed) from None
+    driven = Driven.of(scene, measured)
+    held, ours, notes = held_of(measured, scene, accuracy, driven)
     by_row: dict[Row, list[Held]] = {}
     # What neither has anywhere, such as Ackermann of wheels that are not steered, is no difference.
     there = [h for h in held if np.isfinite(h.series.values).any() or np.isfinite(h.ours).any() or h.unknown]
@@ -103,17 +95,16 @@ def compare_results(
     rows = tuple(_judged(name, measured, *row, columns, factor) for row, columns in by_row.items())
     lacking, absent = _lacking(scene, measured)
     compared = int(np.any([np.isfinite(h.share) for h in held], axis=0).sum())
-    faults = _too_few(scene, measured, poses.driven, held, compared)
+    faults = _too_few(held, compared)
     solutions = _solution(measured, by_row), ours
     coarse = ", ".join(row.name for row in rows if row.why == TOO_COARSE)
     notes = (*notes, *([f"{coarse} is not tested: {TOO_COARSE}"] if coarse else []), *faults)
     outcome = Outcome(name, rows, solutions, notes, lacking, factor, faults=faults, compared=compared)
     wrong = [(row.quantity, row.name) for row in outcome.disagreements]
-    explanations = _explained(poses.driven, scene, measured, by_row, ours, wrong, factor)
-    if wrong and (other := meant_otherwise(scene, measured, held, accuracy, factor, poses.driven)):
+    explanations = _explained(driven, scene, measured, by_row, ours, wrong, factor)
+    if wrong and (other := meant_otherwise(scene, measured, held, accuracy, factor)):
         # What explains the whole file leaves nothing for what explains a part of some difference.
-        first = Explanation(other.words, other.kind, tuple(map(".".join, wrong)), other.leftover)
-        explanations = (first, *(one for one in explanations if one.leftover <= 1.0))
+        explanations = (other, *(one for one in explanations if one.leftover <= 1.0))
     one, *others = measured.independent
     over = "row" if others else f"{one.column} [{one.meaning.unit}]"
     outcome = replace(outcome, explanations=explanations)
@@ -122,7 +113,7 @@ def compare_results(
 
 def _row_of(held: Held) -> Row:
     """Under which quantity and name a column is compared."""
-    return held.series.meaning.quantity, held.series.meaning.label
+    return held.series.meaning.quantity, held.series.meaning.name
 
 
 def _judged(
@@ -163,15 +154,11 @@ def _judged(
     )
 
 
-def _too_few(
-    scene: Scene, measured: Measured, driven: Driven, held: Sequence[Held], compared: int
-) -> tuple[str, ...]:
-    """That most of what is given cannot be compared, and what the file may be meant as, if that is so."""
+def _too_few(held: Sequence[Held], compared: int) -> tuple[str, ...]:
+    """That most of what is given cannot be compared."""
     there = int(np.any([np.isfinite(h.series.values) for h in held], axis=0).sum())
     if 2 * compared < there:
-        one = next(suppositions(scene, measured, driven), None)
-        more = f"; nearly all can if {one.words}" if one else ""
-        return (f"only {compared} of {there} rows that hold numbers can be compared{more}",)
+        return (f"only {compared} of {there} rows that hold numbers can be compared",)
     return tuple(
         f"only {h.counts[0]} of {h.counts[1]} numbers of {shown(h.series.column)} can be compared"
         for h in held
@@ -192,18 +179,15 @@ def _explained(
     whole = {
         row: sorted(columns, key=lambda h: h.series.meaning.axis or 0)
         for row, columns in by_row.items()
-        if len(columns) == (1 if _of_car(row) else 3)
-        # Of points kinds of faults read where they are, by name.
-        and not (columns[0].series.meaning.per and not _of_car(row))
-        and any(np.isfinite(h.gap).any() for h in columns)
+        if len(columns) == (1 if _of_car(row) else 3) and any(np.isfinite(h.gap).any() for h in columns)
     }
     if not whole.keys() & wrong:
         return ()
     told = np.flatnonzero(np.all([np.isfinite(h.gap) for columns in whole.values() for h in columns], axis=0))
-    over_time = measured.independent[0].meaning.kind == TIME
+    over_time = driven.over_time
     there = _on_the_grid(scene, measured.instants[told]) if over_time else None
     if not over_time:
-        told, there = _by_rows(driven, [s.values for s in measured.independent], told)
+        told, there = _by_rows(driven, measured.independent, told)
 
     def of(number: Callable[[Held], Array]) -> dict[Row, Array]:
         stacked = {
@@ -260,23 +244,13 @@ def _on_the_grid(scene: Scene, times: Array) -> Scene | None:
     return there if times[-1] > times[0] and even else None
 
 
-def _by_rows(driven: Driven, values: Sequence[Array], rows: Rows) -> tuple[Rows, Scene | None]:
-    """Some rows of a file as a motion, one at each whole second, and their order in it.
-
-    From row to row what they are taken by goes along smoothly, so rows are put in order where they are not:
-    of a grid to and fro by turns.
-    """
-    if len(rows) < FEWEST or (len(values) > 1 and len(rows) > MOST):
+def _by_rows(driven: Driven, independent: Sequence[Series], rows: Rows) -> tuple[Rows, Scene | None]:
+    """Some rows of a file as a motion, one at each whole second, and their order in it: along one column."""
+    one, *others = independent
+    if others or len(rows) < FEWEST:
         return rows, None
-    first = values[0][rows]
-    steps = np.diff(first)
-    if len(values) > 1:
-        _, line = np.unique(first, return_inverse=True)
-        to_and_fro = np.where(line % 2, -1.0, 1.0) * values[1][rows]
-        rows = rows[np.lexsort((to_and_fro, line))]
-    elif not ((steps >= 0.0).all() or (steps <= 0.0).all()):
-        rows = rows[np.argsort(first, kind="stable")]
-    inputs, _ = driven.inputs([one[rows] for one in values])
+    rows = rows[np.argsort(one.values[rows], kind="stable")]
+    inputs, _ = driven.inputs([one.values[rows]])
     laws = {name: _from_row_to_row(value) for name, value in inputs.items()}
     content = driven.scene.model_dump(exclude_none=True, exclude={"points"})
     effects = [
@@ -318,7 +292,7 @@ def _lacking(scene: Scene, measured: Measured) -> tuple[tuple[str, ...], tuple[s
     """What the scene asks for and the file does not give, in lines; and quantities of which it gives none."""
     given: dict[str, set[str]] = {}
     for s in measured.numbers:
-        given.setdefault(s.meaning.quantity, set()).add(s.meaning.label)
+        given.setdefault(s.meaning.quantity, set()).add(s.meaning.name)
     lines, absent = [], []
     for quantity, names in asked_numbers(scene).items():
         words, of_car = QUANTITIES[quantity].words, QUANTITIES[quantity].of == "car"

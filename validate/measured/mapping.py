@@ -4,29 +4,21 @@ A map is TOML:
 
     independent = "bump"          # the column that the others are given over; found by itself where it can be
     rolling_radius = 270.0        # mm; for travel.contact only
-    solve_for = "arm_angle"       # the input that a travel is reached by; found by itself
     convention = "adams"          # whose names they are: adams, optimumk, lotus; as the scene if not said
 
     [held]                        # what is the same in every row; inputs that nothing is said of: as drawn
     rack = 0.0
 
     [columns.camber]              # by the name in the file
-    is = "wheel.camber"           # time, input.NAME, travel.POINT or .contact, QUANTITY.NAME[.AXIS], ignore;
-                                  # input.NAME.rate or .acceleration, travel.POINT.rate or .acceleration;
-                                  # d(QUANTITY.NAME)/d(COLUMN)
+    is = "wheel.camber"           # time, input.NAME, travel.POINT or .contact, QUANTITY.NAME[.AXIS], ignore
     unit = "deg"                  # if the file does not say it
     sign = -1                     # ours = sign * theirs + offset, the offset in the column's unit
     offset = 0.0
-    definition = "arcsine"        # of camber or toe, the same as camber_by_arcsine; projected if not said
     printed = 0.0001              # unit of the last digit, in the column's unit; 0: written in full or exact
     accuracy = 0.001              # how far its numbers may be off beside that, in the column's unit
 
-An angle or a coordinate in its unit by that of the independent column, such as "toe [deg/mm]" over a travel,
-is the derivative by that one, others as they are; d(toe)/d(bump) says the same where several could be meant.
-Rates by time are there over time, or where every input that is no constant has its own rate in the file.
-
-Columns that a map does not name are found by their own names all the same: numbers whose unit the file says
-and which no other column is said to be, and times, inputs and travels by their whole names.
+Columns that a map does not name are found by their own names all the same, where the file says their unit and
+no other column is said to be that.
 """
 
 from __future__ import annotations
@@ -46,7 +38,6 @@ from pointcoord.effects.conventions import CONVENTIONS, ConventionName
 from pointcoord.mechanism.faults import faults_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
-from validate.formulations.asked_numbers import per_second
 from validate.measured.meanings import (
     CONTACT,
     IGNORE,
@@ -55,19 +46,17 @@ from validate.measured.meanings import (
     TIME,
     TRAVEL,
     Meaning,
-    angle_of,
     meanings_of,
     named,
 )
 from validate.measured.reading import Columns, read_columns
 from validate.plain_text import shown
 from validate.tables.errors import FileError
-from validate.tables.units import allowed_units, below_of, factor_of, is_unit
+from validate.tables.units import allowed_units, factor_of
 from validate.toml_written import key_of, value_of
 
 Array = NDArray[np.float64]
 
-ARCSINE = "arcsine"
 # Values in even steps that are taken as set exactly: two always are.
 FEWEST = 3
 BY_CHANCE = 1e-3  # of a step or a last digit: what is even to less is hardly so by chance
@@ -89,7 +78,6 @@ class ColumnSaid(BaseModel):
     unit: str | None = None
     sign: Literal[1, -1] = 1
     offset: Number = 0.0
-    definition: Literal["projected", "arcsine"] = "projected"
     printed: Size | None = None
     accuracy: Size | None = None
 
@@ -101,7 +89,6 @@ class MapSaid(BaseModel):
 
     independent: str | None = None
     rolling_radius: Number = math.nan
-    solve_for: str = ""
     convention: ConventionName | None = None
     held: dict[str, Number] = {}
     columns: dict[str, ColumnSaid] = {}
@@ -188,11 +175,9 @@ class Measured:
         independent: what the others are given over: the time, a travel and inputs, or inputs.
         numbers: what is to be compared.
         held: inputs and travels that are the same in every row, in our units.
-        rolling_radius: mm; NaN if not said. solve_for: the input that reaches a travel; empty if not said.
+        rolling_radius: mm; NaN if not said.
         rows: what to call each row.
         notes: what was left out.
-        rates: of inputs and travels by time, where rows are not taken by it.
-        held_rates: likewise, that are the same in every row.
     """
 
     source: str
@@ -200,11 +185,8 @@ class Measured:
     numbers: tuple[Series, ...]
     held: Mapping[str, float] = field(default_factory=dict)
     rolling_radius: float = math.nan
-    solve_for: str = ""
     rows: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    rates: tuple[Series, ...] = ()
-    held_rates: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def instants(self) -> Array:
@@ -218,7 +200,6 @@ class Measured:
             self,
             independent=tuple(s.taken(keep) for s in self.independent),
             numbers=tuple(s.taken(keep) for s in self.numbers),
-            rates=tuple(s.taken(keep) for s in self.rates),
             rows=tuple(row for row, kept in zip(self.rows, keep, strict=True) if kept),
         )
 
@@ -258,9 +239,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     independent = map.independent(found)
     even = [s.column for s in independent if not s.said and s.off.any() and s.even]
     independent = tuple(replace(s, off=0.0 * s.off) if s.column in even else s for s in independent)
-    rates = tuple(s for s in found if s.meaning.kind == "rate" and independent[0].meaning.kind != TIME)
-    taken = {s.column for s in (*independent, *rates)}
-    numbers = tuple(s for s in found if s.meaning.kind == "number" and s.column not in taken)
+    numbers = tuple(s for s in found if s.meaning.kind == "number")
     if not numbers:
         allowed = f"columns such as {', '.join(map.known[:4])}"
         raise FileError(columns.source, "", "holds nothing to compare", allowed)
@@ -270,7 +249,8 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     if even:
         names = listed(even, " and ")
         notes.append(f"{names}: in even steps, taken as exact; if rounded, say printed = STEP of it in a map")
-    if beside := [s.column for s in found if s.meaning.kind != "number" and s.column not in taken]:
+    taken = {s.column for s in (*independent, *numbers)}
+    if beside := [s.column for s in found if s.column not in taken]:
         over = listed((s.column for s in independent), " and ")
         notes.append(f"{listed(beside)} is not compared: rows are taken by {over}")
     for s in numbers:
@@ -286,13 +266,10 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
         source=columns.source,
         independent=independent,
         numbers=numbers,
-        held=map.held(rates=False),
+        held=map.held,
         rolling_radius=map.said.rolling_radius,
-        solve_for=map.said.solve_for,
         rows=columns.rows,
         notes=tuple(notes),
-        rates=rates,
-        held_rates=map.held(rates=True),
     ).taken(~lost)
 
 
@@ -311,8 +288,8 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
         f"# What the columns of {columns.source} are. Fill in what is missing, and take its # away.",
         f"# is: time, {inputs}, travel.POINT, travel.{CONTACT}, QUANTITY.NAME[.AXIS], ignore",
         f"#     such as {PLACES}.{topology.wheel_centre}.z, {', '.join(map.known[:5])}",
-        "# unit: mm, deg, rad, s and the like. More keys: sign = -1, offset = 0.5, definition = 'arcsine',",
-        "#     printed = 0.01 (the unit of the last digit; 0: exact as written), accuracy = 0.001",
+        "# unit: mm, deg, rad, s and the like. More keys: sign = -1, offset = 0.5, accuracy = 0.001,",
+        "#     printed = 0.01 (the unit of the last digit; 0: exact as written)",
         f"# rolling_radius = 300.0    # mm, of travel.{CONTACT}",
         "",
         "[columns]",
@@ -356,10 +333,9 @@ class _Map:
 
     def __post_init__(self) -> None:
         self._require("columns", self.said.columns, self.columns.names, f"column of {self.columns.source}")
-        self._require("held", self.said.held, self._may_be_held, "input or travel")
-        if self.said.solve_for:
-            inputs = self.scene.mechanism.topology.required_inputs
-            self._require("solve_for", [self.said.solve_for], inputs, "input that a travel is reached by")
+        travels = (words for words, one in self.meanings.items() if one.kind == TRAVEL)
+        held = (*self.scene.mechanism.topology.inputs, *travels)
+        self._require("held", self.said.held, held, "input or travel")
 
     def _require(self, place: str, names: Iterable[str], known: Sequence[str], what: str) -> None:
         for name in names:
@@ -380,22 +356,15 @@ class _Map:
         return meanings_of(self.scene.mechanism.topology)
 
     @property
-    def _may_be_held(self) -> tuple[str, ...]:
-        whole = tuple(words for words, one in self.meanings.items() if one.kind in (TRAVEL, "rate"))
-        return (*self.scene.mechanism.topology.inputs, *whole)
-
-    def held(self, rates: bool) -> dict[str, float]:
-        """Inputs and travels that every row has, or rates of these, by their whole names."""
-        whole = {n if n in self.meanings else f"{INPUT}.{n}": value for n, value in self.said.held.items()}
-        return {n: value for n, value in whole.items() if (self.meanings[n].kind == "rate") is rates}
+    def held(self) -> dict[str, float]:
+        """Inputs and travels that every row has, by their whole names."""
+        return {n if n in self.meanings else f"{INPUT}.{n}": value for n, value in self.said.held.items()}
 
     @property
     def known(self) -> tuple[str, ...]:
         """Names of what can be compared, the car's own numbers first."""
         numbers = [one for one in self.meanings.values() if one.kind == "number"]
         return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
-
-    # The map as it would be if it said everything.
 
     def _lookup(self, name: str) -> tuple[Meaning | None, int]:
         """Its meaning and sign; of a name that is no whole one of ours, by the convention."""
@@ -416,31 +385,16 @@ class _Map:
         taken = [self._lookup(name if part.is_ is None else part.is_)[0] for name, part in every.items()]
         found: dict[str, Column | None] = {}
         for at, name in enumerate(self.columns.names):
-            part, own, base = every.get(name) or ColumnSaid(), _unit_at_the_end(name), name.removeprefix("-")
-            unit = (self.columns.units[at] or own) if part.unit is None else part.unit
-            meaning, sign = self._lookup(base if part.is_ is None else part.is_)
-            if part.is_ is None and meaning is None:
-                meaning, sign = self._lookup(base.removesuffix(f"_{own}"))
+            part = every.get(name) or ColumnSaid()
+            unit = self.columns.units[at] if part.unit is None else part.unit
+            meaning, sign = self._lookup(name.removeprefix("-") if part.is_ is None else part.is_)
             if part.is_ not in (None, IGNORE) and meaning is None:
                 raise self._unknown(name, part.is_)
-            if part.definition == ARCSINE and meaning is not None:
-                meaning = self._by_arcsine(name, meaning)
-            if every and name not in every and name not in self.meanings and meaning is not None:
-                # Beside columns that a map names, a number goes along that no other is said to be.
-                along = meaning.kind == "number" and meaning not in taken and unit
-                meaning = meaning if along else None
+            if every and name not in every and (not unit or meaning in taken):
+                meaning = None
             sign = -1 if name.startswith("-") and part.is_ is None else sign
             sign = part.sign if "sign" in part.model_fields_set else sign
             found[name] = None if meaning is None else Column(name, at, meaning, unit, sign, part)
-        return found
-
-    def _by_arcsine(self, column: str, meaning: Meaning) -> Meaning:
-        """The angle as an arcsine, which is a number of its own."""
-        name = meaning.words.removesuffix(f"_by_{ARCSINE}") + f"_by_{ARCSINE}"
-        found = self.meanings.get(name)
-        if found is None:
-            allowed = f"projected: there is no {name}"
-            raise self._wrong(f"columns.{column}.definition", f"is {ARCSINE!r}", allowed)
         return found
 
     def _unknown(self, column: str, said: str | None) -> FileError:
@@ -453,23 +407,12 @@ class _Map:
     # Columns in our units.
 
     def series(self) -> list[Series]:
-        """Every column that means something, in our units; derivatives after what they are by."""
+        """Every column that means something, in our units."""
         found: dict[str, Series] = {}
-        there = [one for one in self.filled.values() if one is not None]
-        slopes = {
-            one.name
-            for one in there
-            if one.meaning.kind == "number" and (one.meaning.per or below_of(one.unit, one.meaning.unit))
-        }
-        signs = {one.meaning.words: one.sign for one in there}
-        for one in sorted(there, key=lambda one: one.name in slopes):
-            column = one
-            if one.name in slopes:
-                column = replace(one, meaning=self._derivative(one, self.independent([*found.values()])))
-                # A derivative is by its own column, which goes the other way than ours where the map says so.
-                column = replace(column, sign=column.sign * signs.get(column.meaning.per, 1))
-            words = column.meaning.words
-            if words in found:
+        for column in self.filled.values():
+            if column is None:
+                continue
+            if (words := column.meaning.words) in found:
                 both = f"columns {shown(found[words].column)!r} and {shown(column.name)!r}"
                 raise self._wrong("columns", f"{both} are both {words}", "one column for each")
             found[words] = self._in_ours(column)
@@ -480,31 +423,6 @@ class _Map:
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return list(found.values())
 
-    def _derivative(self, column: Column, independent: Sequence[Series]) -> Meaning:
-        """What a derivative is by, of the columns that rows are taken by."""
-        meaning, unit = column.meaning, column.unit
-        of = replace(meaning, per="")
-        if "/" in meaning.unit or (meaning.quantity != PLACES and angle_of(meaning) is None):
-            problem, allowed = f"is a derivative of {of.words}", "one of a coordinate or an angle of a line"
-            raise self._column(column.name, problem, allowed)
-        below, by = below_of(unit, meaning.unit), meaning.per
-        fitting = [
-            s
-            for s in independent
-            if s.meaning.unit == below and by in ("", s.column, s.meaning.name, s.meaning.words)
-        ]
-        if len(fitting) > 1:
-            problem = f"{shown(unit)!r} may be by {listed((s.column for s in fitting), ' or by ')}"
-            say = f'is = "d({of.words})/d({shown(fitting[0].column)})" in a map'
-            raise self._column(column.name, problem, say)
-        if not fitting:
-            what = f"a derivative of {of.words}" + (f" by {shown(by)!r}" if by else "")
-            problem = f"{shown(unit)!r} is no unit of {what}" if unit else f"{what} has no unit"
-            every = ", ".join(f"{meaning.unit}/{s.meaning.unit} by {shown(s.column)}" for s in independent)
-            raise self._column(column.name, problem, f"{every}, or deg/m and the like, as rows are taken")
-        found = fitting[0].meaning
-        return replace(meaning, per=found.words, unit=f"{meaning.unit}/{found.unit}")
-
     def _in_ours(self, column: Column) -> Series:
         name, meaning, part = column.name, column.meaning, column.said
         if holds := self.columns.words.get(name):
@@ -513,8 +431,7 @@ class _Map:
         theirs, steps = self.columns.values[column.at], self.columns.steps[column.at]
         with np.errstate(over="ignore"):
             values = factor * (column.sign * theirs + part.offset)
-        seconds = per_second(meaning.quantity) if meaning.quantity else 0
-        farthest = FARTHEST ** max(1.0, seconds / 2.0)
+        farthest = FARTHEST ** max(1.0, meaning.per_second / 2.0)
         for row in np.flatnonzero(np.abs(values) > farthest)[:1].tolist():
             where = f"{self.columns.rows[row]}, column {shown(name)!r}"
             problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
@@ -537,34 +454,28 @@ class _Map:
         return factor
 
     def independent(self, found: list[Series]) -> tuple[Series, ...]:
-        """What the rows are taken by: as the map says it, or time, or a travel and inputs, or inputs."""
+        """What the rows are taken by: as the map says it, or time, or a travel and inputs."""
         said = self.said.independent
+        kinds = {kind: [s for s in found if s.meaning.kind == kind] for kind in (TIME, TRAVEL, INPUT)}
         chosen = [s for s in found if said in (s.column, s.meaning.words)]
-        if said is None:
-            chosen = [s for s in found if s.meaning.kind == TIME]
-        elif not chosen:
+        if said is not None and not chosen:
             every = [s.column for s in found]
             problem = f"no column that we know is called {shown(said)!r}{meant(said, every)}"
             raise self._wrong("independent", problem, listed(every))
-        elif chosen[0].meaning.kind == "number":
-            problem = f"{shown(said)!r} is {chosen[0].meaning.words}"
+        if chosen and chosen[0].meaning.kind == "number":
+            problem = f"{shown(said or '')!r} is {chosen[0].meaning.words}"
             raise self._wrong("independent", problem, "a time, an input or a travel")
+        chosen = chosen or kinds[TIME]
         if chosen and chosen[0].meaning.kind == TIME:
             return tuple(chosen)
-        travels = [s for s in found if s.meaning.kind == TRAVEL] if said is None else chosen
-        if len([s for s in travels if s.meaning.kind == TRAVEL]) > 1:
-            problem = f"{listed(s.column for s in travels)} could each be it"
+        chosen = chosen or kinds[TRAVEL]
+        if len(chosen) > 1:
+            problem = f"{listed(s.column for s in chosen)} could each be it"
             raise self._wrong("independent", problem, "independent = NAME in a map")
-        inputs = [s for s in found if s.meaning.kind == INPUT and s not in travels]
-        if not travels and not inputs:
+        inputs = [s for s in kinds[INPUT] if s not in chosen]
+        if not chosen and not inputs:
             names = ", ".join(f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs)
             allowed = f"a column of {TIME}, {names}, or {TRAVEL}.POINT (in a map)"
             problem = "no column says at which pose a row is"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
-        return (*travels, *inputs)
-
-
-def _unit_at_the_end(column: str) -> str:
-    """The unit of a name such as camber_deg; empty if there is none."""
-    end = column.rpartition("_")[2]
-    return end if end != column and is_unit(end) else ""
+        return (*chosen, *inputs)

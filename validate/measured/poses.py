@@ -1,15 +1,12 @@
-r"""Our own numbers at the poses of a file: over time by the motion, over inputs and travels by the map.
+r"""Our own numbers at the rows of a file: over time by the motion, over inputs and travels pose by pose.
 
 A travel is an input of the same car: one that holds the height of its point in place of the input that moves
-that point most. So rows over travels are rows over inputs, and their rates and derivatives are those of
-inputs. A pose is the one that is reached from the drawing; where the travel turns back there is none beyond.
-
-A derivative by an independent column is the rate where that goes at 1 per unit and the others stand still.
+that point most. So rows over travels are rows over inputs. A pose is the one that is reached from the
+drawing; where the travel turns back there is none beyond.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -18,22 +15,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import KinematicMap, Motion, Scene, kinematic_map, simulate, solve_poses
+from pointcoord import Motion, Scene, simulate, solve_poses
 from pointcoord.drawing_stands import drawn_inputs
-from pointcoord.effects.angle import Angle
-from pointcoord.effects.corner import Wheel
-from pointcoord.effects.effect import Effect
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.mapping.kinematic_map import mapped_instead_of
 from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
-from validate.diagnosis.evidence import axes_of
-from validate.formulations.asked_numbers import per_second
+from validate.formulations.asked_numbers import is_force
 from validate.measured.mapping import Measured, Series
-from validate.measured.meanings import CONTACT, INPUT, PLACES, RATES, TIME, TRAVEL, Meaning, angle_of
+from validate.measured.meanings import CONTACT, INPUT, PLACES, TIME, TRAVEL, Meaning
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -43,10 +35,7 @@ Numbers = dict[str, dict[str, Array]]
 # How far an input goes to either side of the drawing at most: an angle, and a length in parts of the car's
 # size. No suspension goes farther, and a slip in one row must not cost a search.
 WIDEST = {"rad": 1.2, "mm": 0.5}
-# Part of that by which an input that stands still is moved: to see what it moves, and for its rates.
-LITTLE = 1e-3
-OF_A_POSE = ("car", "joint")  # what numbers belong to that single poses give where a map does not
-SPEED = next(q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 1)
+LITTLE = 1e-3  # part of that by which an input is moved to see what it moves
 
 
 @dataclass(frozen=True)
@@ -57,23 +46,14 @@ class Found:
         numbers, bounds: by quantity and name, (N, 3) or (N,); NaN where there is no pose.
         reached: at which rows there is a pose, (N,).
         reasons: by row, why there is none.
-        inputs: at each row, (N,), as far as they are known; none over time.
-        laws: their rates and second derivatives likewise, (N, 2), 0 as far as they are not known.
-        slopes: by column that derivatives are by, the velocities where that goes at 1 per s and others rest.
-        unrated: why there are no rates, in words; empty where there are.
+        inputs: at each row, (N,); over time that.
     """
 
     numbers: Numbers
     bounds: Numbers
     reached: Bools
-    reasons: Mapping[int, str] = field(default_factory=dict)
-    inputs: Mapping[str, Array] = field(default_factory=dict)
-    laws: Mapping[str, Array] = field(default_factory=dict)
-    slopes: Mapping[str, Found] = field(default_factory=dict)
-    unrated: str = ""
-
-
-NOTHING = Found({}, {}, np.zeros(0, dtype=bool))
+    reasons: Mapping[int, str]
+    inputs: Mapping[str, Array]
 
 
 @dataclass(frozen=True)
@@ -87,16 +67,14 @@ class Driven:
         as_drawn: those of which nothing is said.
         drawn: the inputs of the closed drawing, from which a travel counts.
         by_scene: those that the scene holds.
-        home: where the points of the closed drawing are, mm.
     """
 
     scene: Scene
     columns: tuple[str, ...]
-    said: Mapping[str, float]
-    as_drawn: tuple[str, ...]
+    said: Mapping[str, float] = field(default_factory=dict)
+    as_drawn: tuple[str, ...] = ()
     drawn: Mapping[str, float] = field(default_factory=dict)
     by_scene: tuple[str, ...] = ()
-    home: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scene: Scene, measured: Measured) -> Driven:
@@ -104,19 +82,20 @@ class Driven:
 
         Raises:
             FileError: a travel without what it needs, or of which no input can be solved for.
+            PointcoordError: the drawing cannot be closed.
         """
-        scene = asked_scene(scene, measured)
+        scene = _asked(scene, measured)
         columns = tuple(input_of(s.meaning.words) for s in measured.independent)
-        said = {input_of(name): value for name, value in measured.held.items()}
         if columns == (TIME,):
-            return cls(scene, columns, {}, ())
+            return cls(scene, columns)
+        said = {input_of(name): value for name, value in measured.held.items()}
         given = (*columns, *said)
         travels = [name for name in given if name.startswith(f"{TRAVEL}.")]
         if len(travels) > 1:
             problem = f"{' and '.join(travels)} are travels of the same rows"
             raise FileError(measured.source, "", problem, "one travel, given or held")
         driven = _driven_by(scene, travels[0], given, measured) if travels else scene
-        car = cls(driven, columns, said, ()).redrawn(scene, driven)
+        car = cls(driven, columns, said).redrawn(scene, driven)
         rests, left = {}, [name for name in driven.mechanism.topology.required_inputs if name not in given]
         for name in left:
             law = driven.functions[name].series(driven.instants, 0)[:, 0]
@@ -125,23 +104,33 @@ class Driven:
         as_drawn = tuple(name for name in left if name not in rests)
         return replace(car, said={**said, **rests}, as_drawn=as_drawn, by_scene=tuple(rests))
 
+    @property
+    def over_time(self) -> bool:
+        """Whether rows are instants of the scene's own motion."""
+        return self.columns == (TIME,)
+
     def redrawn(self, drawn: Scene, driven: Scene) -> Driven:
         """A design of the same car, driven by the same.
 
         Args:
             drawn: the design by the scene's own inputs, which say where its drawing closes.
         """
-        if self.columns == (TIME,):
+        if self.over_time:
             return replace(self, scene=driven)
-        inputs, home = _closed(drawn)
-        known = {name: inputs.get(name, 0.0) for name in driven.mechanism.topology.required_inputs}
-        part = driven.mechanism
+        mechanism, part = scene_mechanism(drawn), driven.mechanism
+        y, unit = close_drawing(mechanism).y, float(mechanism.unit)
+        inputs = mechanism.input_values(y[mechanism.map.unknowns :])
+        home = {name: place * unit + mechanism.origin for name, place in mechanism.places(y).items()}
         there = {point: np.array(place) for point, place in part.points.items()}
-        for name in known.keys() - inputs.keys():
+        known: dict[str, float] = {}
+        for name in part.topology.required_inputs:
+            if name in mechanism.topology.required_inputs:
+                known[name] = float(inputs[name]) + 0.0
+                continue
             # As an input it counts from the drawing as it stands, which need not close.
-            rises = (height_of(part, name.partition(".")[2], part.wheel_radius, at) for at in (home, there))
-            known[name] = float(next(rises) - next(rises))
-        return replace(self, scene=driven, drawn=known, home=home)
+            closed, as_it_stands = (_height(part, name.partition(".")[2], at) for at in (home, there))
+            known[name] = closed - as_it_stands
+        return replace(self, scene=driven, drawn=known)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -155,9 +144,13 @@ class Driven:
             for name, value in held.items()
         )
 
+    def level(self, name: str) -> float:
+        """From where an input's column counts: a travel from the closed drawing."""
+        return self.drawn.get(name, 0.0) if name.startswith(f"{TRAVEL}.") else 0.0
+
     def inputs(self, values: Sequence[Array]) -> tuple[dict[str, Array], dict[int, str]]:
         """Every input at values of the independent columns, each (N,), and why a row has none."""
-        if self.columns == (TIME,):
+        if self.over_time:
             (times,) = values
             start, stop = self.scene.time.start, self.scene.time.stop
             outside = np.flatnonzero(~((times >= start) & (times <= stop)))
@@ -178,37 +171,94 @@ class Driven:
             found[name] = np.where(inside, value, self.drawn[name])
         return found, reasons
 
-    def level(self, name: str) -> float:
-        """From where an input's column counts: a travel from the closed drawing."""
-        return self.drawn.get(name, 0.0) if name.startswith(f"{TRAVEL}.") else 0.0
-
     @cached_property
     def sensible(self) -> dict[str, tuple[float, float]]:
         """Between which values inputs have a meaning and are no slip."""
         mechanism, found = scene_mechanism(self.scene), {}
         for drive in mechanism.topology.drives:
-            name, wide = drive.input, widest(mechanism, drive.input)
+            name, wide = drive.input, _widest(mechanism, drive.input)
             beyond = drive.extremes(mechanism.drawing)
             ends = [float(np.ravel(drive.input_value(end, mechanism.drawing))[0]) for end in beyond]
             low, high = sorted(ends) if np.isfinite(ends).all() else (-np.inf, np.inf)
             found[name] = max(low, self.drawn[name] - wide), min(high, self.drawn[name] + wide)
         return found
 
-    def poses(self, values: Sequence[Array], tolerance: float | None = None) -> Found:
-        """Numbers of poses solved one by one; without bounds."""
-        return self.solved(*self.inputs(values), tolerance)
+    # Our numbers.
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The scene's own."""
+        return simulate(self.scene)
+
+    def at(self, values: Sequence[Array], tolerance: float | None = None, bounded: bool = True) -> Found:
+        """Our numbers at values of the independent columns, each (N,).
+
+        Args:
+            tolerance: of poses, mm; the scene's own unless given.
+            bounded: whether each number is to have its bound.
+        """
+        inputs, reasons = self.inputs(values)
+        if self.over_time:
+            return self._over_time(values[0], reasons, bounded)
+        return self.solved(inputs, reasons, tolerance, bounded)
+
+    def _over_time(self, times: Array, reasons: Mapping[int, str], bounded: bool) -> Found:
+        reached: Bools = np.ones(len(times), dtype=bool)
+        inputs = {TIME: times}
+        reached[[*reasons]] = False
+        if not reached.any():
+            return Found({}, {}, reached, reasons, inputs)
+        # Samples want their instants in order and once each.
+        instants, rows = np.unique(times[reached], return_inverse=True)
+        samples = self.motion.at(instants)
+        proven = self.motion.proof_of(samples, rates=True).proven if bounded else {}
+        bounds = spread({q: proven[q] for q in samples.numbers if q in proven}, reached, rows)
+        return Found(spread(samples.numbers, reached, rows), bounds, reached, reasons, inputs)
 
     def solved(
-        self, inputs: Mapping[str, Array], reasons: Mapping[int, str], tolerance: float | None = None
+        self,
+        inputs: Mapping[str, Array],
+        reasons: Mapping[int, str],
+        tolerance: float | None = None,
+        bounded: bool = False,
     ) -> Found:
-        """The same at inputs; where there is a reason there is no pose."""
+        """The same at inputs, pose by pose; where there is a reason there is no pose."""
         poses = solve_poses(self.scene, inputs, tolerance)
         failed = {row: f"is out of reach: {error}" for row, error in poses.failures.items()}
-        reasons = {**failed, **reasons}
         reached = poses.solved
         reached[[*reasons]] = False
         computed = {quantity: channel for quantity, channel in poses.numbers.items() if channel.computed}
-        return Found(spread(computed, reached, reached), {}, reached, reasons, inputs)
+        found = Found(spread(computed, reached, reached), {}, reached, {**failed, **reasons}, inputs)
+        if not (bounded and reached.any()):
+            return found
+        off = np.maximum(poses.bound, poses.carried_bound)
+        return replace(found, bounds=self.within(found, np.where(reached, off, 0.0)))
+
+    def within(self, found: Found, off: Array) -> Numbers:
+        """How far numbers may be off whose points are off by so much, (N,), mm.
+
+        NaN where that may be another pose. Of forces over inputs nothing is known.
+        """
+        # Their packages are an extra.
+        from validate.formulations.input_rates import laws_of
+        from validate.formulations.stated_accuracy import accuracy_at
+
+        rows, scene = found.reached, self.scene
+        places = {name: place[rows] for name, place in found.numbers[PLACES].items()}
+        if self.over_time:
+            laws = laws_of(scene, found.inputs[TIME][rows])
+        else:
+            own = [name for name in scene.effects if not _of_forces(name)]
+            scene = scene.model_copy(update={"effects": own})
+            still = np.zeros((int(rows.sum()), 2))
+            laws = {name: np.column_stack([value[rows], still]) for name, value in found.inputs.items()}
+        stated = accuracy_at(scene, off[rows], places, laws)
+        blind = np.zeros(len(rows), dtype=bool)
+        blind[rows] = False if stated.blind is None else stated.blind
+        bounds = spread(stated.claims, rows)
+        for claim in (claim for part in bounds.values() for claim in part.values()):
+            claim[blind] = np.nan
+        return bounds
 
 
 def at_either_end(
@@ -226,154 +276,16 @@ def input_of(words: str) -> str:
     return words.removeprefix(f"{INPUT}.")
 
 
-def words_of(name: str) -> str:
-    """What a column of an input is called, the other way."""
-    return name if name.startswith(f"{TRAVEL}.") else f"{INPUT}.{name}"
-
-
-def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
+def ours_of(series: Series, found: Found) -> tuple[Array | None, Array | None]:
     """Our numbers of a column and their bounds, (N,); None if not known."""
-    meaning, angle = series.meaning, angle_of(series.meaning)
-    of, quantity = found, meaning.quantity
-    if meaning.per and angle is None:
-        of, quantity = found.slopes.get(meaning.per, NOTHING), SPEED
-    if meaning.name not in of.numbers.get(quantity, {}) or (meaning.per and meaning.per not in found.slopes):
+    meaning = series.meaning
+    value = found.numbers.get(meaning.quantity, {}).get(meaning.name)
+    if value is None:
         return None, None
-    if angle is not None and meaning.per:
-        return _slope_of_an_angle(meaning, angle, found, scene)
-    value = of.numbers[quantity][meaning.name]
-    bound = of.bounds.get(quantity, {}).get(meaning.name, np.zeros_like(value))
-    return (value, bound) if meaning.axis is None else (value[:, meaning.axis], bound[:, meaning.axis])
-
-
-def _slope_of_an_angle(meaning: Meaning, angle: Angle, found: Found, scene: Scene) -> tuple[Array, Array]:
-    """An angle's derivative, and how far it may be off.
-
-    With s and c the components that an angle f is the atan2 of, f' = (s' c - c' s) / (s^2 + c^2).
-    """
-    wheel = Wheel.of(scene.mechanism.topology, meaning.name)
-    axes, (start, end) = axes_of(scene).on(wheel.side), angle.ends(wheel)
-
-    def line(of: Found, quantity: str) -> tuple[Array, Array, Array]:
-        """Both components from end to end, and how far they may be off: each end may be along each axis."""
-        places, bounds = of.numbers[quantity], of.bounds[quantity]
-        ends = [np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds]
-        along, off = places[end] - places[start], 2.0 * math.sqrt(3.0) * np.max(ends, axis=0)
-        return axes.component(along, angle.sine), axes.component(along, angle.cosine), np.asarray(off)
-
-    s, c, off = line(found, PLACES)
-    s_, c_, off_ = line(found.slopes[meaning.per], SPEED)
-    square = s**2 + c**2
-    value = (s_ * c - c_ * s) / square
-    changed = (np.abs(c) + np.abs(s)) * off_ + (np.abs(s_) + np.abs(c_)) * off
-    # To first order; what is left is smaller by the bound / the line's length.
-    return value, 1.001 * (changed / square + 2.0 * np.abs(value) * off / np.sqrt(square))
-
-
-def of_a_pose(meaning: Meaning) -> bool:
-    """Whether a number is one of places alone."""
-    return not meaning.per and (meaning.quantity == PLACES or angle_of(meaning) is not None)
-
-
-def widest(mechanism: Mechanism, name: str) -> float:
-    """How far an input goes to either side at most, rad or mm."""
-    unit = mechanism.topology.input_units[name]
-    return WIDEST[unit] * (float(mechanism.unit) if unit == "mm" else 1.0)
-
-
-def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:
-    """A scene that drives a travel in place of one of its inputs."""
-    part, point = scene.mechanism, travel.partition(".")[2]
-    topology = part.topology
-    table: dict[str, Any] = {"height": point}
-    radius = part.wheel_radius
-    if point == CONTACT:
-        if not topology.wheel_axis:
-            problem = f"{travel} needs the role wheel_axis, which {topology.name!r} does not have"
-            allowed = f"{TRAVEL}.POINT, or wheel_axis under [roles] of the mechanism"
-            raise FileError(measured.source, "", problem, allowed)
-        table = {"contact": list(topology.wheel_axis)}
-        radius = measured.rolling_radius if measured.rolling_radius > 0.0 else radius
-        if radius is None:
-            problem = f"{travel} needs the wheel's rolling radius"
-            raise FileError(measured.source, "", problem, "rolling_radius = MM in a map, above 0")
-    open_ = [name for name in topology.required_inputs if name not in given]
-    rising = topology.wheel_centre if point == CONTACT else point
-    solved = measured.solve_for or _strongest(scene, rising, open_)
-    if solved not in open_:
-        problem = f"{travel} is to be reached by an input, and all are given"
-        raise FileError(measured.source, "", problem, "a travel, or the inputs")
-    content = scene.model_dump(exclude_none=True)
-    own = content["mechanism"]
-    if "type" in own:
-        own |= read_tables(MECHANISMS / f"{own.pop('type')}.toml")
-    own["inputs"] = own.get("inputs", {}) | {travel: table}
-    if radius is not None:
-        own["wheel_radius"] = radius
-    content["inputs"] = {n: law for n, law in content["inputs"].items() if n != solved}
-    content["inputs"][travel] = {"constant": 0.0}
-    return Scene.from_mapping(content, scene.title or "scene")
-
-
-def _closed(scene: Scene) -> tuple[dict[str, float], dict[str, Array]]:
-    """The inputs of a closed drawing and where its points are, mm."""
-    mechanism = scene_mechanism(scene)
-    y, unit = close_drawing(mechanism).y, float(mechanism.unit)
-    read = mechanism.input_values(y[mechanism.map.unknowns :])
-    inputs = {name: float(read[name]) + 0.0 for name in mechanism.topology.required_inputs}
-    return inputs, {name: place * unit + mechanism.origin for name, place in mechanism.places(y).items()}
-
-
-def height_of(part: MechanismPart, point: str, radius: float | None, places: Mapping[str, Array]) -> Array:
-    """How high a point is, or the contact: the lowest point of a thin disc about the wheel's centre, mm."""
-    up = np.array(part.up)
-    if point != CONTACT:
-        return np.asarray(places[point] @ up)
-    inner, outer = part.topology.wheel_axis
-    spin = places[outer] - places[inner]
-    lean = (spin @ up) / np.linalg.norm(spin, axis=-1)
-    return np.asarray(places[part.topology.wheel_centre] @ up - (radius or 0.0) * np.sqrt(1.0 - lean**2))
-
-
-def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
-    """The input by which a point rises most, each moved by the same part of its widest range."""
-    drawn, up, found = drawn_inputs(scene), np.array(scene.mechanism.up), {}
-    for name in inputs:
-        step = LITTLE * widest(scene_mechanism(scene), name)
-        place = solve_poses(scene, drawn | {name: drawn[name] + np.array([-step, step])}).position[point]
-        found[name] = float(np.abs(np.nan_to_num(np.diff(place @ up)))[0])
-    return max(found, key=lambda name: found[name], default="")
-
-
-def poses_of(scene: Scene, measured: Measured) -> OverTime | OverMap:
-    """What gives our numbers at a file's rows.
-
-    Raises:
-        FileError: a travel cannot be followed.
-        PointcoordError: the scene cannot be solved.
-    """
-    driven = Driven.of(scene, measured)
-    if driven.columns == (TIME,):
-        return OverTime(driven, simulate(driven.scene))
-    return OverMap.of(driven, measured)
-
-
-def asked_scene(scene: Scene, measured: Measured) -> Scene:
-    """The scene with the effects that a file's columns need, and with all points."""
-    effects, available = dict.fromkeys(scene.effects), scene.mechanism.effects
-    for s in measured.numbers:
-        giving = [effect.name for effect in EFFECTS.values() if _gives(effect, s.meaning, scene)]
-        # Where the car has none of them, one says what is missing.
-        effects |= dict.fromkeys([name for name in giving if name in available] or giving)
-    content = scene.model_dump(exclude_none=True, exclude={"points"})
-    return Scene.from_mapping(content | {"effects": tuple(effects)}, scene.title or "scene")
-
-
-def _gives(effect: Effect, meaning: Meaning, scene: Scene) -> bool:
-    """Whether a number needs an effect; a derivative needs velocities."""
-    numbers = effect.gives_numbers(scene.mechanism.topology)
-    names = numbers.get(meaning.quantity, ())
-    return bool(meaning.per and SPEED in numbers) or names is None or meaning.name in names
+    bound = found.bounds.get(meaning.quantity, {}).get(meaning.name)
+    if meaning.axis is not None:
+        value, bound = value[:, meaning.axis], None if bound is None else bound[:, meaning.axis]
+    return value, bound
 
 
 def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Bools, rows: Any = slice(None)) -> Numbers:
@@ -388,168 +300,83 @@ def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Bools, rows: Any =
     return found
 
 
-@dataclass(frozen=True, repr=False)
-class OverTime:
-    """By the motion of the scene's own laws."""
-
-    driven: Driven
-    motion: Motion
-
-    def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
-        """Inside the scene's time; each number with its proven bound."""
-        (times,) = values
-        _, reasons = self.driven.inputs(values)
-        reached: Bools = np.ones(len(times), dtype=bool)
-        reached[[*reasons]] = False
-        if not reached.any():
-            return Found({}, {}, reached, reasons)
-        # Samples want their instants in order and once each.
-        instants, rows = np.unique(times[reached], return_inverse=True)
-        samples = self.motion.at(instants)
-        proven = self.motion.proof_of(samples, rates=True).proven
-        found = Found(
-            spread(samples.numbers, reached, rows),
-            spread({quantity: proven[quantity] for quantity in samples.numbers}, reached, rows),
-            reached,
-            reasons,
-        )
-        return replace(found, slopes={TIME: found})
+def _widest(mechanism: Mechanism, name: str) -> float:
+    """How far an input goes to either side at most, rad or mm."""
+    unit = mechanism.topology.input_units[name]
+    return WIDEST[unit] * (float(mechanism.unit) if unit == "mm" else 1.0)
 
 
-@dataclass(frozen=True, repr=False)
-class OverMap:
-    """By the kinematic map, over inputs.
-
-    Attributes:
-        map: of the driven car, about all of the file's poses.
-        measured: the file, which says what rates there are and by what derivatives are asked.
-        by_pose: the scene with the effects of the file's columns that a map does not give and a pose does,
-            such as gradients and roll centres; None if there are none.
-    """
-
-    driven: Driven
-    measured: Measured
-    map: KinematicMap
-    by_pose: Scene | None
-
-    @classmethod
-    def of(cls, driven: Driven, measured: Measured) -> OverMap:
-        """Makes a map that reaches from the drawing to all that a file asks for and the car has."""
-        rates = (*(s.meaning.words for s in measured.rates), *measured.held_rates)
-        sides = [[s.values + side * s.off for s in measured.independent] for side in (-1.0, 0.0, 1.0)]
-        solved = [driven.poses(side) for side in sides]
-        required = driven.scene.mechanism.topology.required_inputs
-        ranges: dict[str, tuple[float, float]] = {}
-        for name in required:
-            there = np.concatenate([found.inputs[name][found.reached] for found in solved])
-            if name in driven.columns or not len(there):
-                there = np.append(there, driven.drawn[name])
-            low, high = float(there.min()), float(there.max())
-            # A map takes no rate of an input that it holds.
-            moving = any(f"{words_of(name)}.{word}" in rates for word in RATES)
-            # Every row may have the same pose, by a heave or by held inputs alone; a map wants a free input.
-            alone = name == required[0] and not any(n in driven.columns for n in required)
-            if low == high and (name in driven.columns or moving or alone):
-                wide = LITTLE * widest(scene_mechanism(driven.scene), name)
-                low, high = low - wide, high + wide
-            ranges[name] = low, high
-        scene = driven.scene
-        others = [EFFECTS[name] for name in scene.effects if mapped_instead_of(EFFECTS[name])]
-        told = (
-            effect.name
-            for effect in others
-            if not effect.derivative and any(_gives(effect, s.meaning, scene) for s in measured.numbers)
-        )
-        by_pose = scene.model_copy(update={"effects": effects}) if (effects := tuple(told)) else None
-        mapped = tuple(name for name in scene.effects if EFFECTS[name] not in others)
-        map = kinematic_map(scene.model_copy(update={"effects": mapped}), ranges)
-        return cls(driven, measured, map, by_pose)
-
-    def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
-        """Where the map is proven; each number with its proven bound."""
-        inputs, reasons = self.driven.inputs(values)
-        covered = np.ones(len(values[0]), dtype=bool)
-        for name, (low, high) in self.map.ranges.items():
-            covered &= (inputs[name] >= low) & (inputs[name] <= high)
-        covered[[*reasons]] = False
-        if covered.any():
-            covered[covered] = self.map.covers({name: inputs[name][covered] for name in self.map.inputs})
-        if len(lost := np.flatnonzero(~covered)):
-            why = self.driven.poses([value[lost] for value in values]).reasons
-            unproven = "is out of reach: no pose is proven there, a fold is near"
-            reasons = {int(row): why.get(i, unproven) for i, row in enumerate(lost)}
-        if not covered.any():
-            return Found({}, {}, covered, reasons)
-        mine = {name: value[covered] for name, value in inputs.items()}
-        laws, unrated = self._laws(mine, [rate[covered] for rate in rates])
-        found = self._found(mine, laws, covered)
-        if self.by_pose is not None:
-            found = _with_poses(found, self.by_pose, mine)
-        slopes = {}
-        for words in dict.fromkeys(s.meaning.per for s in self.measured.numbers if s.meaning.per):
-            law = {n: np.full(covered.sum(), float(n == input_of(words))) for n in mine if n in self._free}
-            slopes[words] = self._found(mine, [law], covered)
-        return replace(found, reasons=reasons, inputs=inputs, slopes=slopes, unrated=unrated)
-
-    def _found(self, here: Mapping[str, Array], laws: Sequence[Mapping[str, Array]], covered: Bools) -> Found:
-        """What the map has at inputs with their time derivatives, as far as these are known."""
-        rates, bends = (*laws, None, None)[:2]
-        poses = self.map(here, rates, bends, bounds=True)
-        computed = {quantity: channel for quantity, channel in poses.numbers.items() if channel.computed}
-        known = {name: np.zeros((len(covered), 2)) for name in here}
-        for order, law in enumerate(laws):
-            for name, rate in law.items():
-                known[name][covered, order] = rate
-        return Found(spread(computed, covered), spread(poses.bounds, covered), covered, laws=known)
-
-    def _laws(self, here: Mapping[str, Array], rates: Sequence[Array]) -> tuple[list[dict[str, Array]], str]:
-        """Time derivatives of what the map takes as far as they are known, and why there are no more."""
-        count = len(next(iter(here.values())))
-        told = {name: np.full(count, value) for name, value in self.measured.held_rates.items()}
-        told |= {s.meaning.words: rate for s, rate in zip(self.measured.rates, rates, strict=True)}
-        found: list[dict[str, Array]] = []
-        for word in RATES:
-            known = {n: told[f"{words_of(n)}.{word}"] for n in here if f"{words_of(n)}.{word}" in told}
-            lacking = [words_of(n) for n in self.driven.columns if n not in known]
-            if lacking:
-                what = "rates need" if not found else "second derivatives need"
-                said = " and ".join(f"{name}.{word}" for name in sorted(lacking))
-                return found, f"{what} a column of {TIME}, or {said}: a column, or held by a map"
-            found.append({n: known.get(n, np.zeros(count)) for n in here if n in self._free})
-        return found, ""
-
-    @property
-    def _free(self) -> frozenset[str]:
-        """Inputs that the map does not hold."""
-        return frozenset(n for n, (low, high) in self.map.ranges.items() if low != high)
+def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:
+    """A scene that drives a travel in place of the input that moves it most."""
+    part, point = scene.mechanism, travel.partition(".")[2]
+    topology, radius = part.topology, part.wheel_radius
+    table: dict[str, Any] = {"height": point}
+    if point == CONTACT:
+        if not topology.wheel_axis:
+            problem = f"{travel} needs the role wheel_axis, which {topology.name!r} does not have"
+            allowed = f"{TRAVEL}.POINT, or wheel_axis under [roles] of the mechanism"
+            raise FileError(measured.source, "", problem, allowed)
+        table = {"contact": list(topology.wheel_axis)}
+        radius = measured.rolling_radius if measured.rolling_radius > 0.0 else radius
+        if radius is None:
+            problem = f"{travel} needs the wheel's rolling radius"
+            raise FileError(measured.source, "", problem, "rolling_radius = MM in a map, above 0")
+    rising = topology.wheel_centre if point == CONTACT else point
+    solved = _strongest(scene, rising, [name for name in topology.required_inputs if name not in given])
+    if not solved:
+        problem = f"{travel} is to be reached by an input, and all are given"
+        raise FileError(measured.source, "", problem, "a travel, or the inputs")
+    content = scene.model_dump(exclude_none=True)
+    own = content["mechanism"]
+    if "type" in own:
+        own |= read_tables(MECHANISMS / f"{own.pop('type')}.toml")
+    own["inputs"] = own.get("inputs", {}) | {travel: table}
+    if radius is not None:
+        own["wheel_radius"] = radius
+    content["inputs"] = {n: law for n, law in content["inputs"].items() if n != solved}
+    content["inputs"][travel] = {"constant": 0.0}
+    return Scene.from_mapping(content, scene.title or "scene")
 
 
-def _with_poses(found: Found, scene: Scene, here: Mapping[str, Array]) -> Found:
-    """With the numbers of effects that single poses give, at the rows that are reached, and their bounds.
-
-    Where that may be off is what points that are as far off as the poses are make of a number.
-    """
-    # Their packages are an extra that files without such columns need not.
-    from validate.formulations.stated_accuracy import accuracy_at
-
-    rows = found.reached
-    poses = solve_poses(scene, here)
-    still = {name: np.stack([value, *np.zeros((2, len(value)))], axis=-1) for name, value in here.items()}
-    places = {name: place[rows] for name, place in found.numbers[PLACES].items()}
-    off = np.maximum(poses.bound, poses.carried_bound)
-    claims = accuracy_at(scene, np.where(np.isfinite(off), off, 0.0), places, still).claims
-    given = {
-        q: {n: array for n, array in channel.items() if n in claims.get(q, {})}
-        for q, channel in poses.numbers.items()
-        if QUANTITIES[q].of in OF_A_POSE and channel.computed
-    }
-    numbers, bounds = spread(given, rows), spread({q: claims[q] for q in given if q in claims}, rows)
-    return replace(
-        found,
-        numbers={q: found.numbers.get(q, {}) | numbers.get(q, {}) for q in {**found.numbers, **numbers}},
-        bounds={q: found.bounds.get(q, {}) | bounds.get(q, {}) for q in {**found.bounds, **bounds}},
+def _height(part: MechanismPart, point: str, places: Mapping[str, Array]) -> float:
+    """How high a point is, or the contact: the lowest point of a thin disc about the wheel's centre, mm."""
+    up = np.array(part.up)
+    if point != CONTACT:
+        return float(places[point] @ up)
+    inner, outer = part.topology.wheel_axis
+    spin = places[outer] - places[inner]
+    lean = (spin @ up) / np.linalg.norm(spin)
+    return float(
+        places[part.topology.wheel_centre] @ up - (part.wheel_radius or 0.0) * np.sqrt(1.0 - lean**2)
     )
 
 
-Poses = OverTime | OverMap
-"""Our numbers over what a file is over: by the car that `driven` says, `at` values of its columns."""
+def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
+    """The input by which a point rises most, each moved by the same part of its widest range."""
+    drawn, up, found = drawn_inputs(scene), np.array(scene.mechanism.up), {}
+    for name in inputs:
+        step = LITTLE * _widest(scene_mechanism(scene), name)
+        place = solve_poses(scene, drawn | {name: drawn[name] + np.array([-step, step])}).position[point]
+        found[name] = float(np.abs(np.nan_to_num(np.diff(place @ up)))[0])
+    return max(found, key=lambda name: found[name], default="")
+
+
+def _asked(scene: Scene, measured: Measured) -> Scene:
+    """The scene with the effects that a file's columns need, and with all points."""
+    effects, available = dict.fromkeys(scene.effects), scene.mechanism.effects
+    for s in measured.numbers:
+        giving = [effect.name for effect in EFFECTS.values() if _gives(effect.name, s.meaning, scene)]
+        # Where the car has none of them, one says what is missing.
+        effects |= dict.fromkeys([name for name in giving if name in available] or giving)
+    content = scene.model_dump(exclude_none=True, exclude={"points"})
+    return Scene.from_mapping(content | {"effects": tuple(effects)}, scene.title or "scene")
+
+
+def _gives(effect: str, meaning: Meaning, scene: Scene) -> bool:
+    numbers = EFFECTS[effect].gives_numbers(scene.mechanism.topology)
+    names = numbers.get(meaning.quantity, ())
+    return names is None or meaning.name in names
+
+
+def _of_forces(effect: str) -> bool:
+    return any(is_force(quantity.name) for quantity in EFFECTS[effect].quantities)

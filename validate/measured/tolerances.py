@@ -6,7 +6,8 @@ A number q of a file at an independent value x agrees with ours if they differ b
 
 h_q and h_x half a unit of the last digit as written, S what the rounding of x may do to the quantity, taken
 at both ends of all x that are written so (to first order |q'| h_x, and monotonic over such a width), a the
-accuracy that the user says the file has, b our own proven bound; and reading, changing the unit and turning
+accuracy that the user says the file has, b our own bound (proven over time; over inputs what the proven bound
+of a pose makes of the number, of forces nothing); and reading, changing the unit and turning
 the sign round four times at most, a component being no more exact than the largest of its quantity, Q, from
 which it is computed. So T is 0 only where the car gives nothing but zeros and the user says that these are
 exact.
@@ -26,7 +27,7 @@ little tested in a file of them alone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,8 +37,8 @@ from pointcoord import Scene
 from validate.comparison.compare import SMALLEST
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured, Series
-from validate.measured.meanings import PLACES, TIME, TRAVEL
-from validate.measured.poses import Driven, Found, Numbers, Poses, at_either_end, ours_of, poses_of, spread
+from validate.measured.meanings import TRAVEL
+from validate.measured.poses import Driven, Found, at_either_end, ours_of
 from validate.plain_text import shown, some_of
 from validate.tables.errors import FileError
 from validate.toml_written import key_of
@@ -47,6 +48,7 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 OURS = "pointcoord"
 NO_NUMBERS = "no row has a number of it that can be compared with anything"
+NO_RATES = "rates need a column of time"
 # A verdict may not rest on a rounding that nobody states and that widens the tolerance by more than this.
 WIDER = 10.0
 # Rows out of reach, or columns, that are named one by one.
@@ -108,59 +110,61 @@ class Held:
 
 
 def held_of(
-    measured: Measured, scene: Scene, accuracy: float | None, poses: Poses | None = None
+    measured: Measured, scene: Scene, accuracy: float | None, driven: Driven | None = None
 ) -> tuple[list[Held], Solution, tuple[str, ...]]:
     """Every column beside ours, our solution, and notes.
 
     Raises:
         FileError: no row can be reached.
-        MissingPackage: digits in full without an accuracy need the extra `validate`.
+        MissingPackage: what digits in full and numbers over inputs need, the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
-    poses = poses_of(scene, measured) if poses is None else poses
-    given, first = (*measured.independent, *measured.rates), len(measured.independent)
-    values = [s.values for s in given]
-    here = poses.at(values[:first], values[first:])
-    notes = [*measured.notes, *poses.driven.notes, *_out_of_reach(measured, here)]
+    driven = Driven.of(scene, measured) if driven is None else driven
+    values = [s.values for s in measured.independent]
+    here = driven.at(values)
+    notes = [*measured.notes, *driven.notes, *_out_of_reach(measured, here)]
     if not here.reached.any():
         row = min(here.reasons)
         problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[row]})"
         raise FileError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
     unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
-    stated = _taken_for_granted(measured, poses.driven, here) if unsaid else here
+    granted = here
     if unsaid:
+        off = np.full(len(values[0]), driven.scene.tolerance)
+        granted = replace(here, bounds=driven.within(here, off))
         notes.append(_granted(unsaid, measured, scene))
     reached_to = [
         s.off + scene.tolerance if unsaid and s.meaning.kind == TRAVEL and not s.off.any() else s.off
-        for s in given
+        for s in measured.independent
     ]
-    around = [
-        (not given[i].said and bool(given[i].off.any()), [poses.at(e[:first], e[first:]) for e in ends])
-        for i, ends in at_either_end(values, reached_to)
-    ]
-    largest: dict[tuple[str, str], float] = {}
+    around = []
+    for i, ends in at_either_end(values, reached_to):
+        one = measured.independent[i]
+        around.append((bool(one.off.any()) and not one.said, [driven.at(e, bounded=False) for e in ends]))
+    largest: dict[str, float] = {}
     for s in measured.numbers:
-        of = s.meaning.quantity, s.meaning.per
-        largest[of] = max(largest.get(of, 0.0), float(np.nanmax(np.abs(s.values), initial=0.0)))
-    found, nothing = [], np.zeros(len(values[0]))
+        size = float(np.nanmax(np.abs(s.values), initial=0.0))
+        largest[s.meaning.quantity] = max(largest.get(s.meaning.quantity, 0.0), size)
+    found, nothing, notested = [], np.zeros(len(values[0])), dict[str, list[str]]()
     for s in measured.numbers:
-        mine, bound = ours_of(s, here, scene)
+        mine, bound = ours_of(s, here)
         if mine is None or bound is None:
+            why = NO_RATES if s.meaning.per_second and not driven.over_time else NO_NUMBERS
             nan = np.full(len(nothing), np.nan)
-            found.append(Held(s, nan, nan, nothing, nothing, nothing, here.unrated or NO_NUMBERS))
+            found.append(Held(s, nan, nan, nothing, nothing, nothing, why))
+            notested.setdefault(why, []).append(shown(s.column))
             continue
         swing, supposed = nothing, nothing
         for unstated, sides in around:
-            there = (ours_of(s, side, scene)[0] for side in sides)
+            there = (ours_of(s, side)[0] for side in sides)
             gaps = [np.nan_to_num(np.abs(s.apart(other, mine))) for other in there if other is not None]
             change = np.max([nothing, *gaps], axis=0)
             swing, supposed = swing + change, supposed + unstated * change
-        own = ours_of(s, stated, scene)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
-        rounding = 4.0 * EPS * largest[s.meaning.quantity, s.meaning.per]
+        own = ours_of(s, granted)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
+        rounding = 4.0 * EPS * largest[s.meaning.quantity]
         allowed = s.off + swing + rounding + (0.0 if own is None else own) + bound
         found.append(Held(s, mine, np.where(np.isfinite(mine), allowed, np.nan), swing, supposed, bound))
-    if unknown := [shown(h.series.column) for h in found if h.unknown]:
-        notes.append(f"{', '.join(unknown)} is not tested: {here.unrated or NO_NUMBERS}")
+    notes += [f"{', '.join(names)} is not tested: {why}" for why, names in notested.items()]
     # Which columns have a wider tolerance by an independent one's rounding than by their own digits.
     wide = [h for h in found if np.nanmax(h.supposed, initial=0.0) > np.nanmax(h.series.off, initial=0.0)]
     if wide:
@@ -177,44 +181,10 @@ def held_of(
 
 def rounded(measured: Measured) -> str:
     """Which columns that poses are taken from are taken as rounded unasked, and what to say of them."""
-    some = [s for s in (*measured.independent, *measured.rates) if not s.said and s.off.any()]
+    some = [s for s in measured.independent if not s.said and s.off.any()]
     given = (f"{shown(s.column)} is given to +-{np.max(s.off) / s.factor:.3g}" for s in some)
     lines = ", ".join(f"columns.{key_of(shown(s.column))}.printed = 0" for s in some)
     return f"{' and '.join(given)}; if that is exact as written, add this line to a map: {lines}"
-
-
-def _taken_for_granted(measured: Measured, driven: Driven, here: Found) -> Found:
-    """Ours, held to what placing every point to the scene's tolerance makes of each number.
-
-    Where that says nothing of a number, its bound is NaN.
-    """
-    # Their packages are an extra that printed files need not.
-    from validate.formulations.input_rates import laws_of
-    from validate.formulations.stated_accuracy import accuracy_at
-
-    rows, scene = here.reached, driven.scene
-    places = {name: place[rows] for name, place in here.numbers[PLACES].items()}
-    over_time = measured.independent[0].meaning.kind == TIME
-
-    def bounds(going: Mapping[str, Array]) -> Numbers:
-        """By inputs with their first and second derivatives, (rows, 3)."""
-        stated = accuracy_at(scene, scene.tolerance, places, going)
-        blind = np.zeros(len(rows), dtype=bool)
-        blind[rows] = False if stated.blind is None else stated.blind
-        found = spread(stated.claims, rows)
-        for claim in (claim for part in found.values() for claim in part.values()):
-            claim[blind] = np.nan
-        return found
-
-    def by(laws: Mapping[str, Array]) -> Numbers:
-        return bounds({n: np.column_stack([at[rows], laws[n][rows]]) for n, at in here.inputs.items()})
-
-    if not over_time:
-        slopes = {per: replace(slope, bounds=by(slope.laws)) for per, slope in here.slopes.items()}
-        return replace(here, bounds=by(here.laws), slopes=slopes)
-    times = measured.independent[0].values[rows]
-    own = replace(here, bounds=bounds(laws_of(scene, times)))
-    return replace(own, slopes={TIME: own})
 
 
 def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:

@@ -66,18 +66,6 @@ def factor_of(unit: str, ours: str) -> float | None:
     return theirs[0] / own[0]
 
 
-def below_of(unit: str, ours: str) -> str:
-    """By what a unit is that is one of ours by something: mm, s or rad; empty where it is none such.
-
-    >>> below_of("deg/m", "rad"), below_of("deg", "rad")
-    ('mm', '')
-    """
-    theirs, own = _taken_apart(unit), _taken_apart(ours)
-    if theirs is None or own is None or own[3] or theirs[1] != own[1] or theirs[3] != 1:
-        return ""
-    return theirs[2]
-
-
 def named(factor: float, ours: str) -> str:
     """The unit of which one is so many of ours; empty if none is known.
 

@@ -86,24 +86,6 @@ def test_a_misread_hardpoint_is_named_though_one_number_has_a_fault_of_its_own()
     assert sign == "toe: the other sign"
 
 
-def test_a_grid_of_travel_and_rack_in_any_order_has_its_misread_hardpoint() -> None:
-    scene = asked("double-wishbone", "wheel_travel")
-    rows = []
-    for rack in (-20.0, 0.0, 20.0):
-        held = scene.model_copy(update={"inputs": {**scene.inputs, "rack": {"constant": rack}}})
-        wheel = simulate(moved(held, upper_ball_joint__y=-3.0)).numbers["wheel"]
-        travels = np.linspace(*RANGES["wheel_travel"], ROWS)
-        rows += list(zip(travels, np.full(ROWS, rack), *map(np.degrees, wheel.values()), strict=True))
-    order = np.random.default_rng(3).permutation(len(rows))
-    lines = [",".join(["wheel_travel", "rack", *wheel])]
-    lines += [",".join(f"{x:.4f}" for x in rows[i]) for i in order]
-    columns: Content = {n: {"is": f"wheel.{n}", "unit": "deg"} for n in wheel}
-    columns |= {n: {"is": is_, "unit": "mm", "printed": 0} for n, is_ in COLUMNS.items()}
-    found = compared("\n".join(lines), {"columns": columns}, scene).outcome
-    (said,) = (one.words for one in found.explanations)
-    assert "upper_ball_joint.y drawn 3 mm too far in" in said
-
-
 def test_a_fault_of_the_numbers_alone_is_named() -> None:
     scene = asked("double-wishbone", "wheel_travel")
     found = explained(scene, scene, "wheel_travel", 4, lambda t: t | {"toe": t["toe"] + 0.3})

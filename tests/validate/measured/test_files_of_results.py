@@ -21,7 +21,7 @@ from validate.exit_status import ExitStatus
 from validate.fitting.curves import Curves
 from validate.measured.comparing import DataOutcome
 from validate.measured.mapping import understood
-from validate.measured.poses import poses_of
+from validate.measured.poses import Driven
 from validate.measured.reading import columns_of_text
 from validate.output.document import schema_text
 from validate.tables.errors import FileError
@@ -215,17 +215,12 @@ CONTACT, CENTRE = (
 TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
 
 
-def slope(head: str) -> tuple[str, dict[str, object]]:
-    """A derivative over a travel."""
-    columns: dict[str, object] = {"bump": {"is": "travel.wheel_centre"}, head.partition(" [")[0]: {}}
-    return f"bump [mm],{head}\n0,0.01\n10,0.02\n", {"columns": columns}
-
-
 @pytest.mark.parametrize(
     ("text", "content", "words"),
     [
         (TEXT + "0.3,1e308", {}, ("mine.csv: line 4, column 'camber': is 1e+308",)),
         (TEXT, {"colums": {}}, ("'colums'", "did you mean 'columns'?")),
+        (TEXT.replace("deg", "deg/mm"), {}, ("'deg/mm' is no unit of wheel.camber",)),
         (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not said", "deg")),
         (TEXT, {"columns": {"camber": {"sign": 2}, "time": {}}}, ("columns.camber.sign", "1 or -1")),
         (TEXT, {"held": {"rack": -1e308}}, ("held.rack: Input should be", "greater than")),
@@ -234,11 +229,6 @@ def slope(head: str) -> tuple[str, dict[str, object]]:
         (TEXT.replace("camber", "cmaber"), {}, ("nothing to compare",)),
         (BUMP + "0,1\n", CONTACT, ("rolling_radius",)),
         (BUMP + "900,1\n", CENTRE, ("line 2", "none of its 1 rows can be reached", "out of reach")),
-        (*slope("toe [deg/s]"), ("'deg/s' is no unit of a derivative of wheel.toe", "rad/mm by bump")),
-        (*slope("d(toe)/d(rack) [deg/mm]"), ("a derivative of wheel.toe by 'rack'", "by bump")),
-        (*slope("d(toe)/d(bump)"), ("has no unit", "deg/m")),
-        (*slope("d(toe)/d(bump) [deg]"), ("'deg' is no unit of a derivative of wheel.toe", "rad/mm")),
-        (*slope("d(velocity.wheel_centre.x)/d(bump) [mm/mm]"), ("is a derivative of velocity", "coordinate")),
     ],
 )
 def test_a_wrong_map_or_file_is_refused_with_its_place(
@@ -318,7 +308,7 @@ def test_a_travel_counts_from_the_closed_drawing_and_the_rack_as_drawn(point: st
         found = Curves(car, measured, ("wheel_centre.x",)).at(np.zeros(1))
     else:
         found = (
-            poses_of(car, measured)
+            Driven.of(car, measured)
             .at([s.values for s in measured.independent])
             .numbers["position"]["wheel_centre"][:, 0]
         )

@@ -66,24 +66,6 @@ def test_a_column_that_a_map_does_not_name_goes_along_by_its_own_name_or_is_told
     assert "caster_deg, vorspur, kingpin (name not recognised, without a unit" in note
 
 
-def test_bump_at_the_contact_called_travel_of_the_centre_is_told_as_such() -> None:
-    bump = {"is": "travel.wheel_centre", "printed": 0}
-    found = compared(CSV, {"columns": {**CONTENT["columns"], "bump": bump}})
-    first = found.outcome.explanations[0]
-    assert first.words.startswith("bump is travel.contact with a rolling radius of 2")
-    assert first.words.endswith("not travel.wheel_centre")
-    assert first.leftover <= 1.0
-    given = float(first.words.partition("radius of ")[2].split()[0])
-    # Four digits of angles over 37.5 mm leave the radius open by some millimetres.
-    assert given == pytest.approx(ROLLING_RADIUS, abs=5.0)
-    # Toe of the other sign is no such fault.
-    lines = [line.split(",") for line in CSV.splitlines()]
-    turned = "\n".join(
-        ",".join([*c[:2], c[2] if i == 0 else str(-float(c[2])), *c[3:]]) for i, c in enumerate(lines)
-    )
-    assert not any(e.kind == "travel" for e in compared(turned).outcome.explanations)
-
-
 def test_sign_offset_and_unit_of_a_column_are_undone() -> None:
     lines = CSV.replace("camber [deg]", "camber [mrad]").splitlines()
     for i, (_, camber, *_) in enumerate(BUMP):
@@ -113,7 +95,7 @@ def test_an_arcsine_is_told_from_a_projected_angle() -> None:
         "columns": {"rack": {"is": "input.rack", "printed": 0}, "camber": camber},
     }
     assert disagreeing("\n".join(lines), content, CAR) == ["wheel.camber"]
-    camber["definition"] = "arcsine"
+    camber["is"] = "camber_by_arcsine"
     assert disagreeing("\n".join(lines), content, CAR) == []
 
 

@@ -87,6 +87,13 @@ def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
     assert wrong.endswith(".ackermann")
 
 
+def test_rates_over_an_input_are_not_tested_and_say_what_they_need() -> None:
+    scene = Scene.load("double-wishbone")
+    text = "rack [mm],toe [deg],velocity.wheel_centre.z [mm/s]\n0,0.0000,1.0\n5,0.0,1.0\n"
+    (row,) = (row for row in compared(text, {}, scene).outcome.rows if row.quantity == "velocity")
+    assert (row.verdict, row.why) == ("not tested", "rates need a column of time")
+
+
 @pytest.mark.parametrize(("name", "order"), [("jerk", 3), ("derivative_12", 12)])
 def test_derivatives_over_time_are_read_in_their_unit_and_a_wrong_one_is_seen(name: str, order: int) -> None:
     scene = asking("bounce-and-steer", (name,), 21)
