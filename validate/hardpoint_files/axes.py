@@ -10,7 +10,6 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from itertools import permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,12 +68,6 @@ class Axes:
         return ",".join(self.directions)
 
     @property
-    def other_handed(self) -> Axes:
-        """The same axes with left for right."""
-        other = {"left": "right", "right": "left"}
-        return Axes(tuple(other.get(word, word) for word in self.directions))
-
-    @property
     def right_handed(self) -> bool:
         """Whether x, y and z are right-handed, as the scene's are."""
         return bool(np.linalg.det(self.matrix) > 0.0)
@@ -95,23 +88,3 @@ class Axes:
 
 OUR_AXES = Axes(("rearward", "right", "up"))
 """The scene's."""
-
-
-def axes_seen(forward: Place, upward: Place) -> Axes | None:
-    """The right-handed axes of a file in which a car's own directions are these; None if that is not plain.
-
-    Of all axes at right angles, those along which the two directions reach the furthest together; which way
-    is left follows from them. Nothing that points outboard is asked: the top of a strut, the only point of
-    the chassis beside its arm, lies further above the wheel than inboard of it.
-
-    Args:
-        forward, upward: differences of points in the file's axes that point mostly so.
-    """
-    ahead, above = max(permutations(range(3), 2), key=lambda at: abs(forward[at[0]] * upward[at[1]]))
-    if not forward[ahead] * upward[above]:
-        return None
-    words = ["left", "left", "left"]
-    words[ahead] = "forward" if forward[ahead] > 0 else "rearward"
-    words[above] = "up" if upward[above] > 0 else "down"
-    left = Axes.of(words)
-    return left if left.right_handed else left.other_handed

@@ -27,7 +27,7 @@ class FilePoint:
         line: where it is, counted from 1; 0 where a file has no lines to speak of.
         side: the wheel that the file says it belongs to, left or right; empty if it does not say.
         part: the axle that the file says it belongs to, front or rear; empty if it does not say.
-        heading: of the lines among which it stands, such as LOWER A-ARM; empty if there is none.
+        wheel: the plain words in a column of corners; empty if there is none.
     """
 
     name: str
@@ -35,7 +35,7 @@ class FilePoint:
     line: int = 0
     side: str = ""
     part: str = ""
-    heading: str = ""
+    wheel: str = ""
 
     def of(self, part: str, side: str) -> bool:
         """Whether it may belong to that wheel; an empty axle or side leaves it open."""
@@ -84,14 +84,13 @@ class Contents:
     Attributes:
         points: in the order of the file.
         axles: by part; what is said of the whole file under the empty one.
-        unit: of its lengths, if it says so. axes: where x, y and z point, if it says so.
+        unit: of its lengths, if it says so.
         lines: those that name something and are no points, in words.
     """
 
     points: tuple[FilePoint, ...]
     axles: Mapping[str, Axle] = field(default_factory=dict)
     unit: str = ""
-    axes: tuple[str, ...] = ()
     lines: tuple[str, ...] = ()
 
     def axle(self, part: str) -> Axle:
@@ -133,11 +132,6 @@ def place_of(numbers: Sequence[object], source: str, line: int, name: str) -> Pl
 def plain(name: str) -> str:
     """A name without capitals and signs: `CHAS_LowFor` and `chas lowfor` are one."""
     return " ".join(re.findall(r"[^\W_]+", name.casefold()))
-
-
-def words_of(name: str) -> list[str]:
-    """The words of a name, of which `lowerWishbone` has two."""
-    return plain(re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)).split()
 
 
 def short(text: str) -> str:

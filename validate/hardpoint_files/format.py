@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Mapping
-from functools import cached_property, lru_cache
+from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated
 
@@ -16,19 +16,15 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict
 
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file
-from validate.hardpoint_files import chrono_json, columns, lotus_report
+from validate.hardpoint_files import chrono_json, lotus_report, table
 from validate.hardpoint_files.axes import Axes
-from validate.hardpoint_files.contents import Contents, plain, words_of
+from validate.hardpoint_files.contents import Contents, plain
 from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
-FORMS: Mapping[str, Callable[..., Contents]] = {
-    "lotus_report": lotus_report.read,
-    "columns": columns.read,
-    "chrono_json": chrono_json.read,
-}
-"""How a text becomes points, by the form that a format names."""
-
+READERS = {"lotus_report": lotus_report.read, "chrono_json": chrono_json.read}
+"""How a text becomes points, by the form that a format names; of a table it is said below."""
+TABLE = "table"
 MJCF = "mjcf"
 """The form of files that are whole mechanisms and no points."""
 
@@ -42,17 +38,15 @@ class Format(BaseModel):
     Attributes:
         name: what the command line calls it. words: the same for people.
         known_by: a pattern by which the beginning of a file shows it; empty fits every file.
-        axes: of a file that does not say, by a pattern of names that tell them; empty if every file has them.
+        axes: of a file, by a pattern of names that tell them; empty if every file has them.
         unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
-        vocabulary: by words of its names, others for these; words that say nothing are others for the empty
-            text. None at all if names are as they are listed.
         angles: for our names, a pattern of its own words for a static angle.
-        our_own_names: whether its points may have our own names, and words for a wheel before or after a
-            name; where all have our own, its axes are ours as well.
         names: what it calls our points in every suspension that has them.
         suspensions: the same by our type of suspension. called: our type, by a pattern of its own words for
             it. notes: what the user should know of the points of each.
+        titles: of a table, what its columns are called. wheels: side and axle, by what names begin or end
+            with.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -68,41 +62,31 @@ class Format(BaseModel):
     notes: dict[str, str] = {}
     names: dict[str, tuple[str, ...]] = {}
     side: str = ""
-    vocabulary: dict[str, tuple[str, ...]] = {}
     angles: dict[str, str] = {}
-    our_own_names: bool = False
+    titles: dict[str, tuple[str, ...]] = {}
+    wheels: dict[str, tuple[str, str]] = {}
 
     def names_of(self, kind: str) -> dict[str, tuple[str, ...]]:
-        """What it calls each point of a suspension of ours."""
-        if kind not in self.suspensions:
-            return {}
-        shared = {ours: self.names[ours] for ours in mechanism_file(kind).points if ours in self.names}
-        return shared | self.suspensions[kind]
+        """What it calls each point of a suspension of ours; in a table our own names will do."""
+        points = mechanism_file(kind).points
+        shared = {ours: self.names[ours] for ours in points if ours in self.names}
+        found = shared | self.suspensions.get(kind, {})
+        return {ours: (*found.get(ours, ()), ours) for ours in points} if self.form == TABLE else found
 
-    @cached_property
-    def _phrases(self) -> dict[tuple[str, ...], tuple[str, ...]]:
-        """Words of the vocabulary for others, each a few."""
-        return {
-            tuple(plain(theirs).split()): tuple(ours.split())
-            for ours, others in self.vocabulary.items()
-            for theirs in others
-        }
+    def ours(self, name: str, known: Mapping[str, str]) -> tuple[str, tuple[str, str]] | None:
+        """Our name of a point and its wheel, side and axle; None if it is none of ours.
 
-    def in_our_words(self, name: str) -> tuple[str, ...]:
-        """A name in few words: `LCA_IN_FRONT` and `Lower wishbone, front pivot` are one point.
-
-        They are in the order of the alphabet; numbers count where there is nothing else. Two names are one if
-        these are the same: a word too many, such as that of a damper, is another point, and so is one said
-        twice, as in `Rear upper rear pivot`.
+        Args:
+            known: our names, by plain ones of the file.
         """
-        left, found = words_of(name), list[str]()
-        longest = max(map(len, self._phrases), default=1)
-        while left:
-            phrases = (tuple(left[:size]) for size in range(longest, 0, -1))
-            known = next((phrase for phrase in phrases if phrase in self._phrases), None)
-            found += left[:1] if known is None else self._phrases[known]
-            left = left[1 if known is None else len(known) :]
-        return tuple(sorted([word for word in found if not word.isdigit()] or found))
+        whole = plain(name)
+        if whole in known:
+            return known[whole], ("", "")
+        for words, wheel in self.wheels.items():
+            for base in (whole.removesuffix(f" {words}"), whole.removeprefix(f"{words} ")):
+                if base != whole and base in known:
+                    return known[base], wheel
+        return None
 
     def kind_called(self, said: str) -> str | None:
         """Our type of the suspension that a file calls so; None if it is none of ours."""
@@ -117,9 +101,11 @@ class Format(BaseModel):
         Raises:
             FileError: it is not written as it must be.
         """
-        if said and self.form != "columns":
+        if self.form == TABLE:
+            return table.read(text, source, self.titles, said)
+        if said:
             raise FileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
-        return FORMS[self.form](text, source, *([said] if said else []))
+        return READERS[self.form](text, source)
 
 
 @lru_cache

@@ -7,7 +7,7 @@ without a name of ours, points of ours that the file lacks.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from decimal import Decimal
 from functools import cached_property, partial
@@ -22,11 +22,10 @@ from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.file import AS_DRAWN
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, Axes, axes_seen
-from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
+from validate.hardpoint_files.axes import ALLOWED, DIRECTIONS, OUR_AXES, Axes
 from validate.hardpoint_files.contents import Axle, Contents, FilePoint, Place, SpinAxis, plain, short
 from validate.hardpoint_files.derived import derived
-from validate.hardpoint_files.format import MJCF, Format, format_of
+from validate.hardpoint_files.format import MJCF, TABLE, Format, format_of
 from validate.hardpoint_files.mjcf import read_mjcf
 from validate.hardpoint_files.mjcf_mechanism import mechanism_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
@@ -225,11 +224,6 @@ class _Wheel:
         """Where its points are, in the file's axes and unit."""
         return {name: point.place for name, point in self.ours.items()}
 
-    def difference(self, one: str, other: str) -> Place:
-        """From a point to another."""
-        x, y, z = (b - a for a, b in zip(self.ours[one].place, self.ours[other].place, strict=True))
-        return x, y, z
-
 
 @dataclass(frozen=True)
 class _Import:
@@ -255,11 +249,9 @@ class _Import:
         axle = self.contents.axle(wheel.part)
         axis = self.spin_axis(axle)
         self.require_all(wheel, axis)
-        axes, axes_by, doubts = self.axes(wheel)
+        axes, axes_by = self.axes(wheel)
         unit, unit_by = self.unit()
-        doubts += self.against_unit(unit, wheel)
-        if not axes.right_handed:
-            doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
+        doubts = [*self.against_axes(axes, axes_by, wheel), *self.against_unit(unit, wheel)]
         turned = {name: axes.to_scene(place, unit) for name, place in wheel.places.items()}
         side = self.side(wheel, turned, axes)
         points = self.placed(wheel, turned, axis, side)
@@ -335,41 +327,22 @@ class _Import:
 
     def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
         """The file's points that are ours, by our names and with the wheels of theirs, and the others."""
-        ours = {plain(their): our for our, names in self.format.names_of(kind).items() for their in names}
-        if self.format.our_own_names:
-            ours |= {plain(name): name for name in mechanism_file(kind).points}
         # What the user says goes before what the format says, of this point and of that name.
         taken = self.own.names.keys() | self.own.points.keys()
-        ours = {their: our for their, our in ours.items() if our not in taken}
+        every = {our: names for our, names in self.format.names_of(kind).items() if our not in taken}
+        ours = {plain(their): our for our, names in every.items() for their in names}
         ours |= {plain(their): our for our, their in self.own.names.items()}
-        in_words = self.format.in_our_words
-        worded = {in_words(their): our for their, our in ours.items()} if self.format.vocabulary else {}
         known, others = [], []
         for point in self.contents.points:
-            # Under a heading a name may be half of one: LOWER A-ARM over Front inboard.
-            names = [point.name, *([f"{point.heading} {point.name}"] if point.heading else [])]
-            for name, (base, (side, part)) in ((n, reading) for n in names for reading in self.readings(n)):
-                if our := ours.get(plain(base)) or worded.get(in_words(base), ""):
-                    if side and point.side and side != point.side:
-                        told = f"has {short(name)} for the {point.side} wheel"
-                        raise self.refuse(told, "one side", point.line)
-                    side, part = side or point.side, part or point.part
-                    known.append((our, replace(point, name=name, side=side, part=part)))
-                    break
-            else:
+            found = self.format.ours(point.name, ours)
+            if found is None:
                 others.append(point)
+                continue
+            our, (side, part) = found
+            of_line = self.format.wheels.get(point.wheel, ("", ""))
+            side, part = side or of_line[0] or point.side, part or of_line[1] or point.part
+            known.append((our, replace(point, side=side, part=part)))
         return known, others
-
-    def readings(self, name: str) -> Iterator[tuple[str, Wheel]]:
-        """A name whole, and without words of a wheel that it begins or ends with, and the wheel."""
-        yield name, NO_WHEEL
-        words = re.findall(r"[^\W_]+", name) if self.format.our_own_names else []
-        # Two behind come last: the axle of an arm's rear pivot is no axle of the car.
-        for ahead, behind in ((0, 1), (1, 0), (1, 1), (2, 0), (2, 1), (0, 2)):
-            base = words[ahead : len(words) - behind]
-            edge = [plain(word) for word in (*words[:ahead], *words[len(words) - behind :])]
-            if base and all(word in WHEELS for word in edge):
-                yield " ".join(base), wheel_of(edge)
 
     def chosen(self) -> _Wheel:
         """The points of the wheel that is asked for."""
@@ -445,49 +418,57 @@ class _Import:
 
     # Axes, unit and side, and what speaks against them.
 
-    def axes(self, wheel: _Wheel) -> tuple[Axes, str, list[str]]:
-        """Where x, y and z point, who says so, and the doubts of it.
-
-        Axes that nobody said and the car's points speak against are refused; those of the user are doubted.
-        Which way is left no point shows: it decides which wheel this is.
-        """
-        topology, both, words = self.topology, list[Axes](), ""
-        # The mechanism need not say which of its points lie ahead of and above others.
-        if topology.front_and_rear and topology.steering_axis:
-            (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
-            words = f"{front} seen from {rear} and {high} from {low}"
-            seen = axes_seen(wheel.difference(rear, front), wheel.difference(low, high))
-            both = [] if seen is None else [seen, seen.other_handed]
-        outboard = wheel.difference(topology.inboard, topology.wheel_centre)
-        ways = {SIDES[one.to_scene(outboard, "mm")[1] > 0]: one.option for one in both}
-        said, by = self.axes_said(wheel)
-        # A wheel of a known side shows which of both.
-        known = self.choices.side or wheel.side if said is None else ""
-        fit = " or ".join(f"--axes {option} of a {s} wheel" for s, option in ways.items() if known in ("", s))
-        if said is None:
-            fit = f"{fit}, as {words} lie; or others, if they are so" if fit else f"--axes with {ALLOWED}"
-            raise self.refuse("does not say where x, y and z point", fit)
-        if not both or said in both:
-            return said, by, []
-        told = f"has axes {said.words} by {by}, but {words} lie as in {both[0].words}"
-        if self.choices.axes is not None:
-            return said, by, [f"{told}: are these the right axes and names?"]
-        raise self.refuse(told, f"{fit} if that is so, --axes {said.option} if not")
-
-    def axes_said(self, wheel: _Wheel) -> tuple[Axes | None, str]:
-        """The axes that somebody says, and who; points under our own names have our own axes."""
+    def axes(self, wheel: _Wheel) -> tuple[Axes, str]:
+        """The axes that somebody says, and who; points of a table under our own names have our own axes."""
         if self.choices.axes is not None:
             return Axes.of(self.choices.axes), "--axes"
-        if self.contents.axes:
-            return Axes.of(self.contents.axes), "its titles"
         read = {name: point.name for name, point in wheel.ours.items() if name not in self.own.points}
-        if self.format.our_own_names and all(_is_our_own(*one) for one in read.items()):
+        if self.format.form == TABLE and all(ours in theirs for ours, theirs in read.items()):
             return OUR_AXES, "its points' names, which are ours"
         for pattern, axes in self.format.axes.items():
             telling = [name for name in read.values() if re.fullmatch(pattern or ".*", plain(name))]
-            if telling or not pattern:
+            if telling:
                 return axes, f"names such as {short(telling[0])}" if pattern else "its format"
-        return None, ""
+        lie = f", where {ways}" if (ways := self.lie(wheel)) else ""
+        raise self.refuse("does not say where x, y and z point", f"--axes with {ALLOWED}{lie}")
+
+    def lie(self, wheel: _Wheel) -> str:
+        """Where points lie in the file that say where forward and up are."""
+        return " and ".join(f"{one} lies along {way} from {other}" for one, other, way, _ in self.ways(wheel))
+
+    def ways(self, wheel: _Wheel) -> list[tuple[str, str, str, int]]:
+        """Points that lie ahead of and above others by what they are: where they do in the file, as `+y`,
+        and the place of that coordinate in the scene.
+        """
+        topology, found, places = self.topology, [], wheel.places
+        # The mechanism need not say which of its points these are.
+        for ends, at in ((topology.front_and_rear, 0), (topology.steering_axis[::-1], 2)):
+            if ends:
+                one, other = ends
+                apart = [a - b for a, b in zip(places[one], places[other], strict=True)]
+                most = [*map(abs, apart)].index(max(map(abs, apart)))
+                found.append((one, other, f"{'-+'[apart[most] > 0]}{'xyz'[most]}", at))
+        return found
+
+    def against_axes(self, axes: Axes, by: str, wheel: _Wheel) -> list[str]:
+        """Refuse axes that nobody said and the car's points speak against; doubt those of the user.
+
+        Which way is left no point shows: it decides which wheel this is.
+        """
+        doubts = []
+        if not axes.right_handed:
+            doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
+        for _, _, way, at in self.ways(wheel):
+            there = axes.directions["xyz".index(way[1])]
+            along, sign = DIRECTIONS[there]
+            # x points rearward.
+            if along == at and (sign > 0) == ((way[0] == "+") == (at == 2)):
+                continue
+            told = f"has axes {axes.words} by {by}, but {self.lie(wheel)}"
+            if self.choices.axes is None:
+                raise self.refuse(told, f"--axes of the file, or --axes {axes.option} if that is so")
+            doubts.append(f"{told}: are these the right axes and names?")
+        return doubts
 
     def unit(self) -> tuple[str, str]:
         """The unit of lengths, and who says it."""
@@ -545,9 +526,3 @@ class _Import:
             elif name in needed and (one := derived(name, structure, turned, out, axis)):
                 found[name] = ScenePoint(name, *one, derived=True)
         return found
-
-
-def _is_our_own(ours: str, theirs: str) -> bool:
-    """Whether a file's name of a point is ours as we write it, with or without a side and an axle."""
-    base, _, ending = theirs.rpartition("_")
-    return ours in (theirs, base if plain(ending) in WHEELS else "")

@@ -14,7 +14,7 @@ from pointcoord.mechanism import mechanism_file
 from validate.cli import main
 from validate.errors import UsageError
 from validate.hardpoint_files.axes import Axes
-from validate.hardpoint_files.format import FORMS, MJCF, formats
+from validate.hardpoint_files.format import MJCF, READERS, TABLE, formats
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.tables.errors import FileError
 
@@ -242,9 +242,8 @@ NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle"
 @pytest.mark.parametrize(
     ("text", "choices", "words"),
     [
-        (table(order=(1, 0, 2)), {}, "--axes left,forward,up of a right wheel"),
-        (table(order=(1, 0, 2)), {}, "lower_arm_front .*--axes right,forward,up of a left wheel"),
-        (table(names=EXCHANGED), {}, "lower_arm_front seen from lower_arm_rear"),
+        (table(order=(1, 0, 2)), {}, "lower_arm_front lies along [+]y from lower_arm_rear"),
+        (table(names=EXCHANGED), {}, "lower_arm_front lies along -x from lower_arm_rear"),
         (table(per_unit="1000"), {}, r"spans 0\.54 mm .*--unit m makes 540 mm"),
         (table(titles="Point,X (mm),Y (mm),Z (mm)\n"), {"unit": "m"}, "says that its lengths are in mm"),
         (LEFT_STRUT, {"side": "right"}, "--side left --mirror makes the right wheel"),
@@ -275,7 +274,7 @@ NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle"
         ),
         (table().replace("CHAS_LowAft,", ","), {}, "line 3: has coordinates without a name"),
         (table() + "CHAS_LowAft,1,2,3\n", {}, "line 13: has lower_arm_rear twice, 'CHAS_LowAft' on line 3"),
-        (table(titles="Point,X,Y\n"), {}, "line 1: has no column of z"),
+        (table(titles="Point,X,Y\n"), {}, "line 1: has no columns of z"),
         (table(titles="Point,X (m),Y (mm),Z (m)\n"), {}, "line 1: says units .'m', 'mm'."),
         ("", {}, "has no points"),
         ("PK\x03\x04\x00\x00", {}, "is no text"),
@@ -324,7 +323,7 @@ def test_axes_are_three_directions_at_right_angles() -> None:
 @pytest.mark.parametrize("name", formats())
 def test_a_format_s_table_speaks_of_points_that_there_are(name: str) -> None:
     one = formats()[name]
-    assert one.form in (*FORMS, MJCF)
+    assert one.form in (*READERS, TABLE, MJCF)
     assert {*one.called.values(), *one.notes} <= one.suspensions.keys()
     points = {kind: {*mechanism_file(kind).points} for kind in one.suspensions}
     assert {*one.names} <= set().union(*points.values())
