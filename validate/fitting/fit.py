@@ -32,6 +32,7 @@ from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 from scipy.optimize import least_squares, lsq_linear
 from scipy.special import ndtri, stdtrit
@@ -54,11 +55,13 @@ BOUNDS = 25.0  # mm, that no hardpoint of a drawing of this car is off by
 PRIOR = BOUNDS / 5.0
 # What a number is known to at best, however many digits it has: 0.1 um, and what that is on a wheel.
 LEAST = {"mm": 1e-4, "rad": 3e-7}
+OTHERS = 1e-4  # N or %
 # Parts of what is left: the search ends where a step lessens it by no more.
 ENOUGH = 1e-9
 SETTLED = 0.01
 CONFIDENCE = 0.95
 MOST_SOLVES = 60
+ENDS = ("before", "after")
 NAMED = 3  # rows that are left out, one by one
 AT_A_BOUND = 1e-9  # of the bounds, within which a correction lies on one
 
@@ -153,13 +156,11 @@ class Fit:
     @property
     def rms(self) -> dict[str, tuple[float, float, int]]:
         """By unit: before and after, over all columns of it, and how many numbers these are."""
+        some = pd.DataFrame([vars(column) for column in self.columns])
         found = {}
-        for unit in dict.fromkeys(column.unit for column in self.columns):
-            some = [column for column in self.columns if column.unit == unit]
-            count = sum(column.count for column in some)
-            before = math.sqrt(sum(column.before**2 * column.count for column in some) / count)
-            after = math.sqrt(sum(column.after**2 * column.count for column in some) / count)
-            found[unit] = before, after, count
+        for unit, of in some.groupby("unit", sort=False):
+            before, after = (float(np.sqrt(np.average(of[k] ** 2, weights=of["count"]))) for k in ENDS)
+            found[str(unit)] = before, after, int(of["count"].sum())
         return found
 
 
@@ -255,18 +256,17 @@ def fit_hardpoints(
     amounts, rest = np.asarray(solved.x), np.asarray(solved.fun)
     after = rest[: len(spread)]
     matrix = np.asarray(solved.jac)[: len(after)]
-    _, singular, turned = np.linalg.svd(matrix, full_matrices=True)
-    singular = np.concatenate([singular, np.zeros(len(zero) - len(singular))])
+    singular, turned = _known(matrix)
     loose: Bools = np.abs(amounts) < (1.0 - AT_A_BOUND) * bounds
-    _, own, directions = np.linalg.svd(matrix[:, loose], full_matrices=True)
-    own = np.concatenate([own, np.zeros(int(loose.sum()) - len(own))])
+    own, directions = _known(matrix[:, loose])
     freedom = len(after) - int((own > 1.0 / bounds).sum())
     factor = max(1.0, math.sqrt(float(after @ after) / freedom) if freedom > 0 else 1.0)
     deviations = np.zeros(len(zero))
     deviations[loose] = np.sqrt(directions.T**2 @ (1.0 / ((own / factor) ** 2 + prior**-2)))
     tail = 0.5 * (1.0 + CONFIDENCE)
     half = deviations * float(stdtrit(freedom, tail) if factor > 1.0 else ndtri(tail))
-    drawn = np.array([_place(scene, name) for name in curves.free])
+    ends = (name.rpartition(".") for name in curves.free)
+    drawn = np.array([float(scene.mechanism.points[point]["xyz".index(axis)]) for point, _, axis in ends])
     low, high = np.maximum(amounts - half, -bounds), np.minimum(amounts + half, bounds)
     known = (part.tolist() for part in (drawn, amounts, drawn + amounts, deviations, low, high, ~loose))
     coordinates = [Coordinate(*one) for one in zip(*known, strict=True)]
@@ -293,6 +293,12 @@ def fit_hardpoints(
     )
 
 
+def _known(matrix: Array) -> tuple[Array, Array]:
+    """A singular value for every column of a matrix, and their right singular vectors in rows."""
+    _, found, vectors = np.linalg.svd(matrix, full_matrices=True)
+    return np.concatenate([found, np.zeros(matrix.shape[1] - len(found))]), vectors
+
+
 def _notes(curves: Curves, start: Found) -> tuple[str, ...]:
     """Inputs that the file does not give, and rows that are left out."""
     names, rows = curves.driven.as_drawn, curves.measured.rows
@@ -300,11 +306,6 @@ def _notes(curves: Curves, start: Found) -> tuple[str, ...]:
     lost = [f"{rows[row]} is left out: {reason}" for row, reason in sorted(start.reasons.items())]
     more = [f"{len(lost) - NAMED} more rows are left out"] if len(lost) > NAMED else []
     return (*drawn, *lost[:NAMED], *more)
-
-
-def _place(scene: Scene, coordinate: str) -> float:
-    point, _, axis = coordinate.rpartition(".")
-    return float(scene.mechanism.points[point]["xyz".index(axis)])
 
 
 def free_coordinates(scene: Scene, free: Sequence[str]) -> tuple[str, ...]:
@@ -335,7 +336,7 @@ def _spread(curves: Curves, here: Array, accuracy: float) -> Array:
     for _, ends in at_either_end(values, [s.off for s in measured.independent]):
         swing += np.max([np.nan_to_num(np.abs(curves.at(zero, end) - here)) for end in ends], axis=0)
     off = np.concatenate([s.off + s.accuracy_or(accuracy) for s in measured.numbers])
-    least = [LEAST[s.meaning.unit.partition("/")[0]] for s in measured.numbers]
+    least = [LEAST.get(s.meaning.unit.partition("/")[0], OTHERS) for s in measured.numbers]
     return np.asarray(np.maximum((off + swing) / math.sqrt(3.0), np.repeat(least, len(measured.rows))))
 
 
@@ -344,9 +345,11 @@ def _columns(
 ) -> tuple[Fitted, ...]:
     """What was before and after, column by column; the three are of the used numbers."""
     which = np.repeat(np.arange(len(measured.numbers)), len(measured.rows))[used]
-    found = []
-    for i, s in enumerate(measured.numbers):
-        if (mine := which == i).any():
-            rms = [float(np.sqrt(np.mean(part[mine] ** 2))) for part in (before, after, spread)]
-            found.append(Fitted(s.column, s.meaning.unit, rms[0], rms[1], rms[2], int(mine.sum())))
-    return tuple(found)
+    squares = pd.DataFrame({"before": before**2, "after": after**2, "known_to": spread**2}).groupby(which)
+    found = squares.mean() ** 0.5
+    found["count"] = squares.size()
+    found["column"] = [measured.numbers[i].column for i in found.index]
+    found["unit"] = [measured.numbers[i].meaning.unit for i in found.index]
+    return tuple(
+        Fitted(**{str(key): value for key, value in row.items()}) for row in found.to_dict("records")
+    )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
@@ -36,8 +35,7 @@ def text_of(fit: Fit, name: str, source: str) -> str:
         lines.append(f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({count} numbers)")
     for column in fit.columns:
         parts = (_of(column.unit, part) for part in (column.before, column.after, column.known_to))
-        told = "{} before, {} after; known to {}".format(*parts)
-        lines.append(f"    {shown(column.column)}: {told}")
+        lines.append(f"    {shown(column.column)}: " + "{} before, {} after; known to {}".format(*parts))
     more = f"{fit.factor:.3g} times what" if fit.factor > 1.0 else "no more than"
     lines += [
         f"  what is left is {more} the digits explain",
@@ -50,21 +48,22 @@ def text_of(fit: Fit, name: str, source: str) -> str:
         known = f"+- {one.deviation:.2g}   {one.low:+z.4f} to {one.high:+z.4f}"
         known = "  on its bound, and held there" if one.on_bound else known
         lines.append(f"    {at.ljust(width)} {one.correction:+z10.4f} {known}")
-    head = "  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm"
-    lines += ["", head]
+    lines += [
+        "",
+        "  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm",
+    ]
     for combined in fit.combinations:
         known = f"{combined.deviation:.3g}" if combined.seen else "not seen"
         lines.append(f"    {combined.singular_value:10.3g}  {known}")
     if not fit.unseen:
-        lines += ["", "  The data settle every combination of these coordinates: unique near here."]
-        return "\n".join(lines)
+        return "\n".join(
+            [*lines, "", "  The data settle every combination of these coordinates: unique near here."]
+        )
+    unseen = f"{len(fit.unseen)} of {len(fit.combinations)} combinations of coordinates"
     lines += [
         "",
-        f"  The answer is not unique: the data cannot see {len(fit.unseen)} of {len(fit.combinations)} "
-        "combinations of coordinates.",
-        f"  Along these the correction is as small as the prior of {fit.prior:g} mm makes it: a choice, no "
-        "finding; fewer --free coordinates narrow it.",
-        "  Any of them may be added, to first order:",
+        f"  The answer is not unique: the data cannot see {unseen}. Along these the",
+        f"  correction is what the prior of {fit.prior:g} mm makes it, no finding. Any may be added:",
     ]
     return "\n".join([*lines, *(f"    {words}" for words in unseen_words(fit))])
 
@@ -158,15 +157,11 @@ def data_of(fit: Fit, name: str, source: str) -> dict[str, Any]:
 
 def table_of(fit: Fit) -> str:
     """A row for each coordinate (CSV); what one that is held on its bound is known to is left empty."""
-    rows = _coordinates(fit)
+    frame = pd.DataFrame(_coordinates(fit))
+    frame["on_bound"] = frame["on_bound"].astype(str).str.lower()
     names = {"deviation": "standard_deviation", "low": "low_95", "high": "high_95"}
-    text = io.StringIO()
-    writer = csv.writer(text)
-    heads = (names.get(key, key) for key in rows[0])
-    writer.writerow([head if head in ("coordinate", "on_bound") else f"{head} [mm]" for head in heads])
-    for row in rows:
-        writer.writerow([str(value).lower() if isinstance(value, bool) else value for value in row.values()])
-    return text.getvalue()
+    lengths = {key: f"{names.get(key, key)} [mm]" for key in frame if key not in ("coordinate", "on_bound")}
+    return str(frame.rename(columns=lengths).to_csv(index=False))
 
 
 def corrected_text(fit: Fit, name: str, source: str) -> str:

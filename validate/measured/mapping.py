@@ -138,19 +138,15 @@ class Series:
     def even(self) -> bool:
         """Whether its values go in even steps, as those do that are set and not measured.
 
-        To its last digit, or to as many digits as some of its values have, for programs leave zeros off:
-        -30 is -30.0000000000 beside -26.6666666667. Digits that are cut off come out so by chance only.
+        Programs leave zeros off: -30 is -30.0000000000 beside -26.6666666667, and is written the coarsest.
+        Digits that are cut off come out even by chance only.
         """
-        values = np.unique(self.values[np.isfinite(self.values)])
+        there = np.isfinite(self.values)
+        values = np.unique(self.values[there])
         if len(values) < FEWEST:
             return False
-        steps, there = np.diff(values), values != 0.0
-        # Of as many digits one may be ten times as fine, in parts of itself, as another.
-        off, size = self.off[np.isfinite(self.values)].min(), np.abs(self.values)
-        digits = np.divide(self.off, size, out=np.full(size.shape, np.inf), where=size > 0.0)
-        rounded = 40.0 * float(np.nanmin(digits)) * float(np.abs(values[there]).max(initial=0.0))
-        enough = max(BY_CHANCE * float(off), rounded if rounded <= BY_CHANCE * steps.min() else 0.0)
-        return bool(np.ptp(steps) <= enough)
+        steps = np.diff(values)
+        return bool(np.ptp(steps) <= BY_CHANCE * min(float(self.off[there].max()), float(steps.min())))
 
     def apart(self, ours: Array, theirs: Array) -> Array:
         """Ours less theirs; whole turns apart is the same angle."""
