@@ -32,7 +32,6 @@ from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 from scipy.optimize import least_squares, lsq_linear
 from scipy.special import ndtri, stdtrit
@@ -40,6 +39,7 @@ from scipy.special import ndtri, stdtrit
 from pointcoord import PointcoordError, Scene, designs_of
 from pointcoord.sweeping.designs import coordinates_named
 from validate.errors import UsageError
+from validate.extras import needed
 from validate.fitting.curves import Curves
 from validate.measured.mapping import Measured
 from validate.measured.poses import Found, at_either_end
@@ -156,7 +156,7 @@ class Fit:
     @property
     def rms(self) -> dict[str, tuple[float, float, int]]:
         """By unit: before and after, over all columns of it, and how many numbers these are."""
-        some = pd.DataFrame([vars(column) for column in self.columns])
+        some = needed("fit", "pandas").DataFrame([vars(column) for column in self.columns])
         found = {}
         for unit, of in some.groupby("unit", sort=False):
             before, after = (float(np.sqrt(np.average(of[k] ** 2, weights=of["count"]))) for k in ENDS)
@@ -345,7 +345,11 @@ def _columns(
 ) -> tuple[Fitted, ...]:
     """What was before and after, column by column; the three are of the used numbers."""
     which = np.repeat(np.arange(len(measured.numbers)), len(measured.rows))[used]
-    squares = pd.DataFrame({"before": before**2, "after": after**2, "known_to": spread**2}).groupby(which)
+    squares = (
+        needed("fit", "pandas")
+        .DataFrame({"before": before**2, "after": after**2, "known_to": spread**2})
+        .groupby(which)
+    )
     found = squares.mean() ** 0.5
     found["count"] = squares.size()
     found["column"] = [measured.numbers[i].column for i in found.index]

@@ -8,10 +8,10 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
+from validate.extras import needed
 from validate.fitting.fit import CONFIDENCE, Combination, Fit
 from validate.plain_text import shown
 from validate.tables.units import degrees_of
@@ -157,7 +157,7 @@ def data_of(fit: Fit, name: str, source: str) -> dict[str, Any]:
 
 def table_of(fit: Fit) -> str:
     """A row for each coordinate (CSV); what one that is held on its bound is known to is left empty."""
-    frame = pd.DataFrame(_coordinates(fit))
+    frame = needed("fit", "pandas").DataFrame(_coordinates(fit))
     frame["on_bound"] = frame["on_bound"].astype(str).str.lower()
     names = {"deviation": "standard_deviation", "low": "low_95", "high": "high_95"}
     lengths = {key: f"{names.get(key, key)} [mm]" for key in frame if key not in ("coordinate", "on_bound")}
