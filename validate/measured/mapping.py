@@ -2,7 +2,6 @@
 
 A map is TOML:
 
-    independent = "bump"          # the column that the others are given over; found by itself where it can be
     rolling_radius = 270.0        # mm; for travel.contact only
     convention = "adams"          # whose names they are: adams, optimumk, lotus; as the scene if not said
 
@@ -18,7 +17,8 @@ A map is TOML:
     accuracy = 0.001              # how far its numbers may be off beside that, in the column's unit
 
 Columns that a map does not name are found by their own names all the same, where the file says their unit and
-no other column is said to be that.
+no other column is said to be that. Rows are taken by time where there is one, or else by a travel and inputs;
+what is not to count is ignored.
 """
 
 from __future__ import annotations
@@ -87,7 +87,6 @@ class MapSaid(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    independent: str | None = None
     rolling_radius: Number = math.nan
     convention: ConventionName | None = None
     held: dict[str, Number] = {}
@@ -423,7 +422,13 @@ class _Map:
         name, meaning, part = column.name, column.meaning, column.said
         if holds := self.columns.words.get(name):
             raise self._column(name, f"holds {holds}", f'columns of numbers, or is = "{IGNORE}" in a map')
-        factor = self._factor(column)
+        factor = factor_of(column.unit, meaning.unit) if column.unit else None
+        if factor is None:
+            problem = f"{shown(column.unit)!r} is no unit of {meaning.words}"
+            problem = problem if column.unit else "its unit is not said, neither behind its name nor in a map"
+            if part.unit is not None:
+                raise self._wrong(f"columns.{name}.unit", problem, allowed_units(meaning.unit))
+            raise self._column(name, problem, allowed_units(meaning.unit))
         theirs, steps = self.columns.values[column.at], self.columns.steps[column.at]
         with np.errstate(over="ignore"):
             values = factor * (column.sign * theirs + part.offset)
@@ -433,45 +438,20 @@ class _Map:
             problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
             allowed = f"at most {farthest:g} {meaning.unit}, or nothing or nan for none"
             raise FileError(self.columns.source, where, problem, allowed)
-        printed = steps if part.printed is None else np.asarray(part.printed)
-        off = 0.5 * factor * np.broadcast_to(printed, values.shape)
-        told = part.printed is not None
-        return Series(name, meaning, values, off, factor, part.accuracy, told)
-
-    def _factor(self, column: Column) -> float:
-        meaning = column.meaning
-        factor = factor_of(column.unit, meaning.unit) if column.unit else None
-        if factor is None:
-            problem = f"{shown(column.unit)!r} is no unit of {meaning.words}"
-            problem = problem if column.unit else "its unit is not said, neither behind its name nor in a map"
-            if column.said.unit is not None:
-                raise self._wrong(f"columns.{column.name}.unit", problem, allowed_units(meaning.unit))
-            raise self._column(column.name, problem, allowed_units(meaning.unit))
-        return factor
+        last = steps if part.printed is None else np.full(len(steps), part.printed)
+        return Series(
+            name, meaning, values, 0.5 * factor * last, factor, part.accuracy, part.printed is not None
+        )
 
     def independent(self, found: list[Series]) -> tuple[Series, ...]:
-        """What the rows are taken by: as the map says it, or time, or a travel and inputs."""
-        said = self.said.independent
-        kinds = {kind: [s for s in found if s.meaning.kind == kind] for kind in (TIME, TRAVEL, INPUT)}
-        chosen = [s for s in found if said in (s.column, s.meaning.words)]
-        if said is not None and not chosen:
-            every = [s.column for s in found]
-            problem = f"no column that we know is called {shown(said)!r}{meant(said, every)}"
-            raise self._wrong("independent", problem, listed(every))
-        if chosen and chosen[0].meaning.kind == "number":
-            problem = f"{shown(said or '')!r} is {chosen[0].meaning.words}"
-            raise self._wrong("independent", problem, "a time, an input or a travel")
-        chosen = chosen or kinds[TIME]
-        if chosen and chosen[0].meaning.kind == TIME:
-            return tuple(chosen)
-        chosen = chosen or kinds[TRAVEL]
-        if len(chosen) > 1:
-            problem = f"{listed(s.column for s in chosen)} could each be it"
-            raise self._wrong("independent", problem, "independent = NAME in a map")
-        inputs = [s for s in kinds[INPUT] if s not in chosen]
-        if not chosen and not inputs:
+        """What the rows are taken by: time, or a travel and inputs."""
+        times, travels, inputs = ([s for s in found if s.meaning.kind == k] for k in (TIME, TRAVEL, INPUT))
+        if len(travels) > 1 and not times:
+            problem = f"{listed(s.column for s in travels)} could each be what rows are taken by"
+            raise self._wrong("columns", problem, f'is = "{IGNORE}" of all but one')
+        if not (chosen := times or [*travels, *inputs]):
             names = ", ".join(f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs)
             allowed = f"a column of {TIME}, {names}, or {TRAVEL}.POINT (in a map)"
             problem = "no column says at which pose a row is"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
-        return (*chosen, *inputs)
+        return tuple(chosen)

@@ -224,7 +224,15 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
         (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not said", "deg")),
         (TEXT, {"columns": {"camber": {"sign": 2}, "time": {}}}, ("columns.camber.sign", "1 or -1")),
         (TEXT, {"held": {"rack": -1e308}}, ("held.rack: Input should be", "greater than")),
-        (TEXT, {"independent": "camber"}, ("'camber' is wheel.camber", "a time, an input or a travel")),
+        (
+            "a [mm],b [mm],camber [deg]\n1,1,1",
+            {
+                "columns": {
+                    n: {"is": f"travel.{p}"} for n, p in (("a", "wheel_centre"), ("b", "lower_ball_joint"))
+                }
+            },
+            ("a, b could each be", "ignore"),
+        ),
         (TEXT.replace("time [s]", "tyme [s]"), {}, ("no column says at which pose",)),
         (TEXT.replace("camber", "cmaber"), {}, ("nothing to compare",)),
         (BUMP + "0,1\n", CONTACT, ("rolling_radius",)),
