@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from validate.extras import needed
 from validate.hardpoint_files.contents import FARTHEST, short
-from validate.plain_text import shown
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -70,7 +69,6 @@ class Mjcf:
         sites: by name, the body of each and where it is, (3,), m.
         connects, welds: what closes loops; pairs of bodies that are one.
         actuated: names of actuators by the joints that they drive. texts: of `custom`, by name.
-        facts: what is not as MuJoCo has it, in words.
     """
 
     bodies: Mapping[str, MjcfBody]
@@ -79,7 +77,6 @@ class Mjcf:
     welds: tuple[tuple[str, str], ...]
     actuated: Mapping[str, str]
     texts: Mapping[str, str]
-    facts: tuple[str, ...]
 
 
 def read_mjcf(path: str, axes: Array) -> Mjcf:
@@ -128,7 +125,7 @@ class _Reader:
         return own or f"{kind}_{number}"
 
     def read(self, texts: Mapping[str, str]) -> Mjcf:
-        model, facts = self.model, list[str]()
+        model = self.model
         for one in range(1, model.nbody):
             if model.body_mocapid[one] >= 0:
                 raise self.refuse("body", self.name("body", one), "is moved from outside (mocap)", "joints")
@@ -139,8 +136,8 @@ class _Reader:
         connects, welds = [], []
         for one, active in enumerate(model.eq_active0):
             if not active:
-                facts.append(f"equality {self.name('equality', one)} is not active and left out")
-            elif model.eq_type[one] == self.mujoco.mjtEq.mjEQ_CONNECT:
+                continue
+            if model.eq_type[one] == self.mujoco.mjtEq.mjEQ_CONNECT:
                 connects.append(self._connect(one))
             elif model.eq_type[one] == self.mujoco.mjtEq.mjEQ_WELD:
                 self._require_as_drawn(one)
@@ -148,11 +145,6 @@ class _Reader:
             else:
                 raise self.refuse("equality", self.name("equality", one), "is not known", "connect or weld")
         joints = [self._joint(one) for one in range(model.njnt)]
-        facts += [
-            f"joint {joint.name} is counted from the home pose, and not from its ref"
-            for joint, at in zip(joints, model.jnt_qposadr, strict=True)
-            if joint.kind in ("hinge", "slide") and model.qpos0[at]
-        ]
         bodies_of = [
             MjcfBody(
                 self.name("body", one),
@@ -167,7 +159,7 @@ class _Reader:
             if model.actuator_trntype[one] == self.mujoco.mjtTrn.mjTRN_JOINT
         }
         by_name = {body.name: body for body in bodies_of}
-        return Mjcf(by_name, sites, tuple(connects), tuple(welds), actuated, texts, tuple(map(shown, facts)))
+        return Mjcf(by_name, sites, tuple(connects), tuple(welds), actuated, texts)
 
     def _turned(self, vector: Array) -> Array:
         return np.asarray(self.axes @ vector)

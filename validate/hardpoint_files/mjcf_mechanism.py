@@ -81,7 +81,7 @@ class _Builder:
         places += [joint.at for body in model.bodies.values() for joint in body.joints]
         places += [at for connect in model.connects for at in connect.places]
         self.size = float(np.ptp(places, axis=0).max()) or 1.0 if places else 1.0
-        self.facts = list(model.facts)
+        self.facts = list[str]()
         self.names: set[str] = {CHASSIS}
         self.points: dict[str, _Point] = {}
         self.slides: dict[str, dict[str, Any]] = {}
@@ -253,11 +253,6 @@ class _Builder:
         named = {joint: self.model.actuated.get(joint, joint) for joint in self.inputs}
         driven = {named[joint]: self.inputs[joint] for joint in self.model.actuated if joint in self.inputs}
         others = {named[joint]: one for joint, one in self.inputs.items() if named[joint] not in driven}
-        self.facts += [
-            f"actuator {name} drives joint {joint}, which is no hinge or slide here"
-            for joint, name in self.model.actuated.items()
-            if joint not in self.inputs
-        ]
         inputs = {_word(name): one for name, one in {**driven, **wheel, **others}.items()}
         tables: dict[str, Mapping[str, Any]] = {"bodies": bodies, "rods": rods, "slides": self.slides}
         tables |= {"inputs": inputs, "roles": roles}

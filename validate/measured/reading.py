@@ -25,7 +25,7 @@ from pointcoord import SceneError
 from pointcoord.toml_text import read_file
 from validate.extras import MissingPackage
 from validate.plain_text import shown
-from validate.tables.cells import NUMBER, Row, is_number, joined, lines_of, text_of
+from validate.tables.cells import NUMBER, is_number, joined, lines_of, text_of
 from validate.tables.errors import FileError
 from validate.tables.units import is_unit
 
@@ -101,16 +101,18 @@ def _parquet(path: str, source: str) -> Columns:
         raise FileError(source, "", problem, "Parquet, or text") from None
     words = {name: str(column.dtype) for (name, _), column in found.items() if column.dtype.kind not in "iuf"}
     if len(words) == len(found) or not table.num_rows:
-        holds = ", ".join(f"{shown(name)} ({kind})" for name, kind in words.items())
-        problem = f"has no column of numbers: {holds}" if table.num_rows else "has no rows"
+        problem = (
+            f"has {table.num_rows} rows, and no numbers in {', '.join(map(shown, words)) or 'no column'}"
+        )
         raise FileError(source, "", problem, "a column of numbers for each quantity, and at least one row")
-    values, steps = (np.full((len(found), table.num_rows), fill) for fill in (np.nan, 0.0))
+    values, steps = np.full((len(found), table.num_rows), np.nan), np.zeros((len(found), table.num_rows))
     for i, ((name, _), column) in enumerate(found.items()):
-        if name not in words:
+        if name in words:
+            continue
+        values[i] = column
+        if column.dtype.kind == "f" and column.dtype.itemsize < 8:
             # Single precision rounds to half of the distance to the next number.
-            single = column.dtype.kind == "f" and column.dtype.itemsize < 8
-            values[i] = column
-            steps[i] = np.spacing(np.abs(column)) if single else 0.0
+            steps[i] = np.spacing(np.abs(column))
         for row in np.flatnonzero(np.isinf(values[i]))[:1].tolist():
             place = f"row {row + 1}, column {shown(name)!r}"
             raise FileError(source, place, f"is {values[i, row]}", "finite numbers, or NaN for none")
@@ -136,7 +138,7 @@ def columns_of_text(text: str, source: str) -> Columns:
     if first is None:
         raise FileError(source, "", "has no line of numbers", "a line of numbers for each pose")
     head, rows = [row for _, row in cells[:first]], cells[first:]
-    count = _width(rows, head)
+    count = _width(rows[0][1], head)
     if not head:
         # As numpy and gnuplot write names: in the last comment before the numbers.
         before = [row for number, row in lines.comments if number < rows[0][0]]
@@ -167,12 +169,10 @@ def _numeric(row: Sequence[str]) -> bool:
     return bool(told) and sum(map(is_number, told)) * 2 >= len(told)
 
 
-def _width(rows: Sequence[Row], head: Sequence[Sequence[str]]) -> int:
-    """How many columns there are, without the empty one behind a delimiter at the end of every line."""
-    widths = Counter(len(row) for _, row in rows)
-    named = {len(row) for row in head} | {len(joined(row)) for row in head}
-    count = max(widths, key=lambda width: (widths[width], width in named, width))
-    while count > 1 and all(not any(row[count - 1 :]) for row in (*head, *(row for _, row in rows))):
+def _width(row: Sequence[str], head: Sequence[Sequence[str]]) -> int:
+    """How many columns there are, without empty ones behind a delimiter at the end of every line."""
+    count = len(row)
+    while count > 1 and not row[count - 1] and not any(any(names[count - 1 :]) for names in head):
         count -= 1
     return count
 

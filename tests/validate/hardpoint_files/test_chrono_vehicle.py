@@ -52,21 +52,6 @@ def places(found: Imported) -> dict[str, np.ndarray]:
     return {point.name: np.array([float(n) for n in point.place]) for point in found.points}
 
 
-@pytest.mark.parametrize("part", ["front", "rear"])
-def test_an_axle_of_a_vehicle_is_its_suspension_moved_into_the_chassis(part: str, tmp_path: Path) -> None:
-    path = vehicle(tmp_path)
-    found = places(import_hardpoints(path, part=part))
-    alone = places(import_hardpoints(tmp_path / "own" / "suspension" / f"{part}.json"))
-    x, _, z = AHEAD[part]
-    assert found.keys() == alone.keys()
-    for name, place in alone.items():
-        # x forward in the file and rearward here; metres there. 1e-12 mm: two roundings of 2000 mm.
-        np.testing.assert_allclose(found[name] - place, [-1000 * x, 0, 1000 * z], rtol=0, atol=1e-12)
-    wheel, of = found["wheel_centre"], (POINTS if part == "front" else STRUT.mechanism.points)["wheel_centre"]
-    # The left wheel: half the track to the left, x and z of the car's own file and of the suspension's.
-    np.testing.assert_allclose(wheel, [of[0] - 1000 * x, -abs(of[1]), of[2] + 1000 * z], rtol=0, atol=1e-12)
-
-
 def test_an_imported_axle_agrees_in_all_models_and_says_where_its_points_are_from(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

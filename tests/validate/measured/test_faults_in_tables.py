@@ -86,12 +86,6 @@ def test_a_misread_hardpoint_is_named_though_one_number_has_a_fault_of_its_own()
     assert sign == "toe: the other sign"
 
 
-def test_a_fault_of_the_numbers_alone_is_named() -> None:
-    scene = asked("double-wishbone", "wheel_travel")
-    found = explained(scene, scene, "wheel_travel", 4, lambda t: t | {"toe": t["toe"] + 0.3})
-    assert found == ["toe: a constant offset of 0.00523599 rad (0.3 deg)"]
-
-
 def test_noise_on_one_number_has_no_explanation() -> None:
     scene = asked("double-wishbone", "wheel_travel")
     noise = 1e-2 * np.random.default_rng(1).standard_normal(ROWS)
