@@ -27,7 +27,7 @@ class FilePoint:
         line: where it is, counted from 1; 0 where a file has no lines to speak of.
         side: the wheel that the file says it belongs to, left or right; empty if it does not say.
         part: the axle that the file says it belongs to, front or rear; empty if it does not say.
-        wheel: the plain words in a column of corners; empty if there is none.
+        corner: the plain words in a column of corners; empty if there is none.
     """
 
     name: str
@@ -35,7 +35,7 @@ class FilePoint:
     line: int = 0
     side: str = ""
     part: str = ""
-    wheel: str = ""
+    corner: str = ""
 
     def of(self, part: str, side: str) -> bool:
         """Whether it may belong to that wheel; an empty axle or side leaves it open."""

@@ -339,7 +339,7 @@ class _Import:
                 others.append(point)
                 continue
             our, (side, part) = found
-            of_line = self.format.wheels.get(point.wheel, ("", ""))
+            of_line = self.format.wheels.get(point.corner, ("", ""))
             side, part = side or of_line[0] or point.side, part or of_line[1] or point.part
             known.append((our, replace(point, side=side, part=part)))
         return known, others

@@ -65,8 +65,8 @@ def read(
             told = f"has {count} numbers for {short(name)}, in columns without a title"
             raise FileError(source, line, told, f"three, {SAY}")
         corner = columns.at.get("corner", len(row))
-        wheel = plain(row[corner]) if corner < len(row) else ""
-        points.append(FilePoint(name, place_of(cells, source, line, name), line, wheel=wheel))
+        where = plain(row[corner]) if corner < len(row) else ""
+        points.append(FilePoint(name, place_of(cells, source, line, name), line, corner=where))
     if not points:
         raise FileError(source, 0, "has no points", ROW)
     return Contents(tuple(points), unit=columns.unit, lines=tuple(others))
