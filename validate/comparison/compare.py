@@ -38,8 +38,7 @@ class Explanation:
         kind: of fault, as `diagnosis.kinds` calls it; two kinds joined by "and".
         quantities: whose numbers it explains: a quantity where it explains all that disagrees of it and
             undoes nothing that agrees, else quantity.name.
-        leftover: the largest difference that is left when the fault is undone / what it is held to; more
-            than 1 where it explains a part only.
+        leftover: the largest difference that is left when the fault is undone / what it is held to.
     """
 
     words: str

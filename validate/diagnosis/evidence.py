@@ -5,6 +5,7 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -27,8 +28,9 @@ from validate.formulations.protocol import Numbers, Solution
 Array = NDArray[np.float64]
 Row = tuple[str, str]
 Rows = Mapping[Row, Array]
+Content = dict[str, Any]
+"""Of a scene, whose tables and lists are its own."""
 
-MOST_DISTINCT = 32  # numbers that are counted; more than any fault is fitted by
 # How many times what may be left of it a difference is, to be explained; a smaller one may be chance.
 CLEAR = 4.0
 # Of a quantity's largest number: differences that are rounding, whatever is claimed.
@@ -63,48 +65,31 @@ def axes_of(scene: Scene) -> CarAxes:
     return scene.mechanism.axes
 
 
-def _in_digits(amount: Array | float) -> str:
-    return f"{amount:.6g}" if np.ndim(amount) == 0 else f"({', '.join(f'{c:.6g}' for c in np.ravel(amount))})"
-
-
-def some_of(count: int, most: int) -> NDArray[np.intp]:
-    """The places of so many of `count` instants at most, evenly."""
-    return np.unique(np.linspace(0, count - 1, min(most, count)).astype(np.intp))
-
-
 def numbers_in(numbers: Numbers, rows: Iterable[Row]) -> Array:
     """The numbers of rows, one after the other."""
     return np.concatenate([numbers[quantity][of].ravel() for quantity, of in rows])
 
 
-def _apart_by(step: float, numbers: Array) -> int:
-    """How many numbers can be picked that are all farther apart than a step; MOST_DISTINCT at most."""
-    rising = np.sort(numbers[np.isfinite(numbers)])
-    count = place = 0
-    while place < len(rising) and count < MOST_DISTINCT:
-        count += 1
-        place = int(np.searchsorted(rising, rising[place] + step, side="right"))
-    return count
-
-
-def motion_of(scene: Callable[[], Scene], solve: Callable[[Scene], Motion] = simulate) -> Motion | None:
-    """The motion of a scene that may be none, or be refused: then there is no motion."""
-    with suppress(PointcoordError):
-        return solve(scene())
-    return None
-
-
 class Solved:
-    """A scene's own motion, solved when it is first asked for, with every point."""
+    """A scene's own motion and those of other cars, each solved when it is first asked for."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self._others: dict[Hashable, Motion | None] = {}
 
-    def other(self, key: Hashable, solve: Callable[[], Motion | None]) -> Motion | None:
-        """The motion of another car, solved once: several suppositions ask for the same."""
+    def other(
+        self,
+        key: Hashable,
+        put: Callable[[Content], None],
+        solve: Callable[[Scene], Motion] = simulate,
+    ) -> Motion | None:
+        """The motion of the scene with other content; None where that is refused."""
         if key not in self._others:
-            self._others[key] = solve()
+            content = copy.deepcopy(self.content)
+            put(content)
+            self._others[key] = None
+            with suppress(PointcoordError):
+                self._others[key] = solve(Scene.from_mapping(content, "another car"))
         return self._others[key]
 
     @cached_property
@@ -114,26 +99,11 @@ class Solved:
         return self.scene.model_copy(update={"tolerance": tolerance, "points": None})
 
     @cached_property
-    def ends(self) -> Scene:
-        """The same at its first and last instant: motions are read between them."""
+    def content(self) -> Content:
+        """That at its first and last instant, as plain data: motions are read between them."""
         samples = min(2, self.scene.time.samples)
-        return self.fine.model_copy(update={"time": self.scene.time.model_copy(update={"samples": samples})})
-
-    @cached_property
-    def content(self) -> dict[str, Any]:
-        """That as plain data."""
-        return self.ends.model_dump(mode="json", exclude_none=True)
-
-    @cached_property
-    def motion(self) -> Motion | None:
-        """Its motion; None where pointcoord refuses it."""
-        return motion_of(lambda: self.ends)
-
-
-def numbers_not_given(numbers: Numbers, given: Collection[Row]) -> dict[Row, Array]:
-    """Numbers of the car, of all that there are, that are not given."""
-    every = {(q, n): a for q, of in numbers.items() if QUANTITIES[q].of == "car" for n, a in of.items()}
-    return {row: array for row, array in every.items() if row not in given}
+        ends = {"time": self.scene.time.model_copy(update={"samples": samples})}
+        return self.fine.model_copy(update=ends).model_dump(mode="json", exclude_none=True)
 
 
 @dataclass(frozen=True)
@@ -147,12 +117,9 @@ class Evidence:
         wrong: the rows that disagree.
         over_time: whether the instants are times; else rows of a file, of inputs or travels.
         other_cars: whether the instants are those of the scene, so that other cars are solved there.
-        parted: whether a fault of all numbers was undone, so that one car has to explain every one of them.
         own: how far a given number may be off by itself, in its own unit, beside what is allowed.
         known: where points are, (N, 3), beside the rows.
-        not_given: our numbers of the car that are not given, (N,).
         units: of rows that have another than their quantity, such as of derivatives, in words.
-        theirs: the units that rows are given in, where these are not ours, and how many of ours each is.
     """
 
     scene: Scene
@@ -164,12 +131,9 @@ class Evidence:
     solved: Solved
     over_time: bool = True
     other_cars: bool = True
-    parted: bool = False
     own: Rows = field(default_factory=dict)
     known: Mapping[str, Array] = field(default_factory=dict)
-    not_given: Rows = field(default_factory=dict)
     units: Mapping[Row, str] = field(default_factory=dict)
-    theirs: Mapping[Row, tuple[str, float]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
@@ -187,7 +151,6 @@ class Evidence:
             allowed={(q, n): pairs[q].allowed(n).reshape(trusted[q, n].shape) + SMALLEST for q, n in rows},
             wrong=tuple(row for row in rows if row in disagree),
             solved=Solved(scene),
-            not_given=numbers_not_given(two.numbers, rows),
         )
 
     def at(self, places: slice | NDArray[np.intp], theirs: slice | None = None) -> Evidence:
@@ -204,12 +167,12 @@ class Evidence:
             allowed=of(self.allowed),
             own=of(self.own),
             known={point: path[places] for point, path in self.known.items()},
-            not_given=of(self.not_given),
         )
 
     def thinned(self, count: int) -> Evidence:
         """The same at so many instants at most, evenly."""
-        return self.at(some_of(len(self.times), count))
+        last = len(self.times) - 1
+        return self.at(np.unique(np.linspace(0, last, min(count, last + 1)).astype(np.intp)))
 
     def after(self, rows: Mapping[Row, tuple[Array, Array]], wrong: tuple[Row, ...]) -> Evidence:
         """The same with other numbers to hold the given ones against: values, and what they may differ."""
@@ -224,33 +187,26 @@ class Evidence:
             row: undo(row, array) if row in rows or row[0] in quantities else array
             for row, array in self.given.items()
         }
-        there = replace(self, given=given, parted=True)
+        there = replace(self, given=given)
         wrong = (row for row, held in self.held.items() if there.left(row, held, self.allowed[row]) > 1.0)
         return replace(there, wrong=tuple(wrong))
 
-    def without_units(self) -> Evidence:
-        """The same after a fault of units: the held numbers are in none that is known."""
-        return replace(self, units=dict.fromkeys(self.held, "in its own unit"), theirs={})
-
-    def in_words(self, row: Row, amount: Array | float) -> str:
-        """An amount of a row with its unit, and in the one that it is given in."""
-        said = f"{_in_digits(amount)} {self.units.get(row, length_or_angle(row))}"
-        if row not in self.theirs:
-            return said
-        unit, factor = self.theirs[row]
-        return f"{said} ({_in_digits(amount / factor)} {unit})"
+    def in_words(self, row: Row, amount: Array) -> str:
+        """An amount of a row with its unit."""
+        said = ", ".join(f"{c:.6g}" for c in np.ravel(amount))
+        return f"{f'({said})' if np.ndim(amount) else said} {self.units.get(row, length_or_angle(row))}"
 
     def off_by(self, row: Row) -> Array:
         """How far a row's numbers may be from the held ones."""
         return np.asarray(self.allowed[row] + self.own.get(row, 0.0))
 
-    def joined(self, rows: Sequence[Row], at: slice | NDArray[np.intp] = slice(None)) -> tuple[Array, Array]:
-        """The given numbers of rows at some instants, one after the other, and how far each may be off."""
-        given, off_by = (
-            np.concatenate([array[at].ravel() for array in part])
-            for part in ([self.given[row] for row in rows], [self.off_by(row) for row in rows])
+    def joined(self, rows: Sequence[Row]) -> tuple[Array, Array, Array]:
+        """The held and the given numbers of rows, one after the other, and how far each may be off."""
+        held, given, off_by = (
+            np.concatenate([of(row).ravel() for row in rows])
+            for of in (self.held.__getitem__, self.given.__getitem__, self.off_by)
         )
-        return given, off_by
+        return held, given, off_by
 
     def stacked(self, rows: Sequence[Row], of: Callable[[Row], Array]) -> Array:
         """Numbers of rows of one shape below each other, (rows * N, 3 or 1)."""
@@ -261,6 +217,10 @@ class Evidence:
         gap = gaps_between(self.given[row], value, QUANTITIES[row[0]].unit)
         with np.errstate(over="ignore"):  # nothing but zeros allows nothing
             return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
+
+    def explained(self, rows: Mapping[Row, tuple[Array, Array]]) -> bool:
+        """Whether all given numbers of rows are within what they may be off."""
+        return all(self.left(row, *numbers) <= 1.0 for row, numbers in rows.items())
 
     def clear(self, row: Row, allowed: Array) -> bool:
         """Whether a row is so far off that what is allowed of it does not explain it, nor rounding."""
@@ -306,8 +266,8 @@ class Evidence:
         for numbers in sides:
             # Two numbers of which each may be off by what is allowed, on both sides.
             step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(numbers).max(initial=0.0)))
-            apart = (_apart_by(step, axis[there]) for axis, there in zip(numbers.T, off.T, strict=True))
-            counts.append(sum(max(count - 1, 0) for count in apart))
+            apart = (axis[there & np.isfinite(axis)] for axis, there in zip(numbers.T, off.T, strict=True))
+            counts.append(sum(max(len(np.unique(np.floor(some / step))) - 1, 0) for some in apart))
         return min(counts)
 
     @property
@@ -321,14 +281,15 @@ class Evidence:
         return tuple(filter(None, of_a_pose)) or (first,)
 
     @property
-    def beside(self) -> tuple[Row, ...]:
-        """The rows that agree, of quantities of which others disagree."""
-        return tuple(r for r in self.held if r[0] in self.wrong_quantities and r not in self.wrong)
-
-    @property
     def wrong_quantities(self) -> tuple[str, ...]:
         """The quantities of which a row disagrees."""
         return tuple(dict.fromkeys(row[0] for row in self.wrong))
+
+    @property
+    def looked(self) -> tuple[Row, ...]:
+        """The rows that disagree, and those that agree of the same quantities: would they under a fault?"""
+        beside = (row for row in self.held if row[0] in self.wrong_quantities and row not in self.wrong)
+        return (*self.wrong, *beside)
 
     def places(self, point: str) -> Array | None:
         """Where a point is, (N, 3), whether the scene reports it or not; None where it cannot be solved."""
@@ -337,8 +298,5 @@ class Evidence:
         for row, array in self.held.items():
             if row[1] == point and kind_of(row) == "point" and order(row) == 0:
                 return array
-        motion = self.solved.motion if self.over_time else None
-        if motion is None:
-            return None
-        (quantity,) = (q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 0)
-        return np.asarray(motion.at(self.times).numbers[quantity][point])
+        motion = self.solved.other("as it is", lambda _: None) if self.over_time else None
+        return None if motion is None else np.asarray(motion.at(self.times).position[point])

@@ -1,4 +1,4 @@
-"""A fault that somebody's numbers may have, and what the numbers would be if they had it."""
+"""A fault that numbers may have, and a kind of such faults: what it would make of the held numbers."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 WouldBe = tuple[Array, Array]
 """What given numbers would be, and how far from that they may be."""
 Undo = Callable[[Row, Array], Array]
+Stage = Literal["numbers", "motion", "drawing", "last"]
 
 
 @dataclass(frozen=True)
@@ -54,23 +55,19 @@ class Kind:
 
     Attributes:
         name: of the kind. suppose: gives the faults of this kind that may be in the rows that disagree.
-        stage: "numbers" needs only arithmetic; "car" solves other motions of the car or other cars, one kind
-            after the other until nothing is left; "last" says little, and is tried only on what nothing else
-            explains.
+        stage: "numbers" needs only arithmetic; "motion" solves the same car moved or closed otherwise,
+            "drawing" cars that are drawn otherwise; "last" says little. Each is tried on what those before do
+            not explain.
         opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
             is sought in what the first would make of the held numbers.
         of_time: whether it makes sense of numbers over time only.
-        neighbours: whether it takes numbers from the rows beside, so that some rows alone do not show it.
-        beside: a kind whose faults leave it open, as they may be its own said otherwise; empty if none does.
         hides: whether all angles may have it beside another car, so that neither shows by itself.
     """
 
     name: str
     suppose: Callable[[Evidence], Iterator[Hypothesis]]
-    stage: Literal["numbers", "car", "last"] = "numbers"
+    stage: Stage = "numbers"
     opens: bool = False
     closes: bool = False
     of_time: bool = False
-    neighbours: bool = False
-    beside: str = ""
     hides: bool = False

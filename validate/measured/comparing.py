@@ -15,7 +15,7 @@ from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
 from validate.diagnosis import Explanation, explain_evidence
-from validate.diagnosis.evidence import Evidence, Solved, numbers_not_given
+from validate.diagnosis.evidence import Evidence, Solved
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
@@ -25,7 +25,6 @@ from validate.measured.poses import Driven
 from validate.measured.supposed import meant_otherwise
 from validate.measured.tolerances import NO_NUMBERS, OURS, Held, held_of, rounded
 from validate.plain_text import shown
-from validate.tables.units import named
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -103,8 +102,7 @@ def compare_results(
     wrong = [(row.quantity, row.name) for row in outcome.disagreements]
     explanations = _explained(driven, scene, measured, by_row, ours, wrong, factor)
     if wrong and (other := meant_otherwise(scene, measured, held, accuracy, factor)):
-        # What explains the whole file leaves nothing for what explains a part of some difference.
-        explanations = (other, *(one for one in explanations if one.leftover <= 1.0))
+        explanations = (other, *explanations)
     one, *others = measured.independent
     over = "row" if others else f"{one.column} [{one.meaning.unit}]"
     outcome = replace(outcome, explanations=explanations)
@@ -196,7 +194,6 @@ def _explained(
         return {row: a[:, 0] if _of_car(row) else a for row, a in stacked.items()}
 
     times = measured.instants[told] if over_time else np.arange(float(len(told)))
-    theirs = {row: unit for row, columns in whole.items() if (unit := _given_in(columns))}
     evidence = Evidence(
         scene=there or scene,
         times=there.instants if there else times,
@@ -209,9 +206,7 @@ def _explained(
         other_cars=over_time or there is not None,
         own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
         units={row: columns[0].series.meaning.unit for row, columns in whole.items()},
-        theirs=theirs,
         known={} if over_time else {n: a[told] for n, a in ours.numbers[PLACES].items()},
-        not_given={row: array[told] for row, array in numbers_not_given(ours.numbers, whole).items()},
     )
     try:
         return explain_evidence(evidence)
@@ -223,15 +218,6 @@ def _explained(
 def _of_car(row: Row) -> bool:
     """Whether the car has one number of a row, and no vector."""
     return QUANTITIES[row[0]].of == "car"
-
-
-def _given_in(columns: Sequence[Held]) -> tuple[str, float] | None:
-    """The unit that columns are in where it is not ours, and how many of ours it is; None of several."""
-    factors, ours = {h.series.factor for h in columns}, columns[0].series.meaning.unit
-    if len(factors) != 1 or factors == {1.0}:
-        return None
-    (factor,) = factors
-    return (unit, factor) if (unit := named(factor, ours)) else None
 
 
 def _on_the_grid(scene: Scene, times: Array) -> Scene | None:

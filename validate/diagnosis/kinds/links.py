@@ -4,7 +4,7 @@ another assembly.
 For the first two the car is written anew, with its mechanism's tables in the scene. A rod in question is an
 input there, the distance of its ends, which is as drawn and so much more. A line in question leads through
 another joint of its body, as that of a strut does through the ball joint in textbooks, and what slides on it
-is drawn on that line.
+is drawn on that line. Only cars of one part are, so no axles.
 """
 
 from __future__ import annotations
@@ -21,11 +21,12 @@ from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
 from pointcoord.method import AUTO
 from pointcoord.simulation import prepare_task, scene_mechanism, solve_task
-from validate.diagnosis.evidence import Evidence, Row, kind_of, order
+from validate.diagnosis.evidence import Content, Evidence, Row, kind_of, order
 from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.other_car import Change, Content, amounts_of, by_what_tells, other_motion, supposed
+from validate.diagnosis.other_car import Change, amount_of, by_what_tells, supposed
 
 STEP = 0.05  # mm, of differences by a length
+FEW = 25  # instants that lengths are found from
 # Of the car's size: how far a length may be off and still be meant, and how far another assembly is away.
 KEPT, ELSEWHERE = 1e-5, 1e-4
 
@@ -35,8 +36,10 @@ def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
     tables = _tables(evidence.scene)
     rods = [_length(evidence.scene, tables, rod) for rod in tables.get("rods", {})]
 
-    def of_another_length(looked: Sequence[Row], _: bool) -> list[Hypothesis]:
-        found = (supposed(evidence, [rod], amounts_of(evidence, looked, [rod])) for rod in rods)
+    def of_another_length(looked: Sequence[Row]) -> list[Hypothesis]:
+        few = evidence.thinned(FEW)
+        fits = [(rod, amount_of(few, looked, rod)) for rod in rods]
+        found = (supposed(evidence, rod, fit[0]) for rod, fit in fits if fit)
         return [one for one in found if one]
 
     return by_what_tells(evidence, of_another_length)
@@ -54,7 +57,7 @@ def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:
     }
 
     def put(content: Content, more: float) -> None:
-        _put_tables(content, changed, scene)
+        _put_tables(content, changed)
         content["inputs"][name] = {"sum": [{"constant": "drawn"}, {"constant": more}]}
 
     def words(more: float) -> str:
@@ -81,53 +84,29 @@ def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
             slides = {**tables["slides"], name: {**slide, "through": joint}}
 
             def put(content: Content, slides: Any = slides, moved: Any = moved) -> None:
-                _put_tables(content, {**tables, "slides": slides}, evidence.scene)
+                _put_tables(content, {**tables, "slides": slides})
                 content["mechanism"]["points"] |= moved
 
-            if motion := other_motion(evidence, (name, joint), put):
+            if motion := evidence.solved.other((name, joint), put):
                 words = f"the line of {name} leads through {joint}, not through {slide['through']}"
                 yield Hypothesis((name, joint), words, evidence.by(motion), cost=1.5, whole=True)
 
 
 def _tables(scene: Scene) -> Mapping[str, Any]:
-    """The mechanism's, flat; empty of one that puts points in place."""
-    if scene.mechanism.topology.puts_in_place:
+    """The mechanism's, flat; empty of one that has parts or puts points in place."""
+    topology = scene.mechanism.topology
+    if topology.puts_in_place or topology.sides:
         return {}
     plain = scene.mechanism.plain(tuple(scene.inputs))
     return {table: plain[table] for table in CLOSING if table in plain}
 
 
-def _in_parts(tables: Mapping[str, Any], sides: Mapping[str, str]) -> dict[str, Any]:
-    """Flat tables as a scene holds them: what has a part's name before its own is in a table of the part."""
-    left, parts = {table: dict(entries) for table, entries in tables.items()}, dict[str, Any]()
-    for part, side in sides.items():
-        prefix = f"{part}."
-        own: dict[str, Any] = {
-            table: {key: left[table].pop(key) for key in tuple(entries) if key.startswith(prefix)}
-            for table, entries in left.items()
-        }
-        chassis = left["bodies"][CHASSIS]
-        own["bodies"][CHASSIS] = [point for point in chassis if point.startswith(prefix)]
-        left["bodies"][CHASSIS] = [point for point in chassis if not point.startswith(prefix)]
-        parts[part] = {"side": side, "mechanism": _without(prefix, own)}
-    return {**left, "parts": parts} if parts else left
-
-
-def _without(prefix: str, entry: Any) -> Any:
-    """Tables, lists and names without a prefix in names."""
-    if isinstance(entry, str):
-        return entry.removeprefix(prefix)
-    if isinstance(entry, Mapping):
-        return {_without(prefix, key): _without(prefix, value) for key, value in entry.items()}
-    return [_without(prefix, each) for each in entry] if isinstance(entry, list | tuple) else entry
-
-
-def _put_tables(content: Content, tables: Mapping[str, Any], scene: Scene) -> None:
+def _put_tables(content: Content, tables: Mapping[str, Any]) -> None:
     """Tables of its own in the place of its mechanism's file."""
     part = content["mechanism"]
     for key in ("type", "closure"):
         part.pop(key, None)
-    part |= _in_parts(tables, scene.mechanism.topology.sides)
+    part |= tables
 
 
 def _as_it_stands(scene: Scene) -> Motion:
@@ -148,7 +127,7 @@ def other_closures(evidence: Evidence) -> Iterator[Hypothesis]:
             content["mechanism"]["closure"] = closure
 
         if closure != part.closure and (
-            motion := other_motion(evidence, ("closure", closure), put, _as_it_stands)
+            motion := evidence.solved.other(("closure", closure), put, _as_it_stands)
         ):
             words = f"the car is closed as {closure}, where the scene asks for {part.closure}"
             yield Hypothesis(closure, words, evidence.by(motion), whole=True)
@@ -188,20 +167,17 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     def put(content: Content) -> None:
         content["mechanism"]["points"] |= {name: place.tolist() for name, place in pose.items()}
 
-    motion = other_motion(evidence, ("pose", first, there.tobytes()), put, _as_it_stands)
+    motion = evidence.solved.other(("pose", first, there.tobytes()), put, _as_it_stands)
     if motion is None:
         return
-    numbers = motion.at(evidence.times).numbers
     rows = {}
-    for row in evidence.held:
-        if row[1] in numbers[row[0]]:
-            value = np.array(numbers[row[0]][row[1]])
-            value[:first] = evidence.held[row][:first]
-            # The drawing is made of given numbers: they are off twice, as it and at each instant.
-            rows[row] = (value, 4.0 * evidence.rounded(row, value))
+    for row, (value, allowed) in evidence.by(motion).items():
+        value[:first] = evidence.held[row][:first]
+        # The drawing is made of given numbers: they are off twice, as it and at each instant.
+        rows[row] = (value, 2.0 * allowed)
     # Other inputs keep all lengths too, and from the first pose on they are no motion of ours.
     left = [np.abs(evidence.given[row] - rows[row][0]).max() for row in placed.values() if row in rows]
     if max(left) <= KEPT * size:
         since = "" if first == 0 else f" from t = {evidence.times[first]:.6g} s on"
         words = f"another assembly of the same links{since}: all {len(links)} lengths are kept"
-        yield Hypothesis("branch", words, rows, whole=True)
+        yield Hypothesis("branch", words, rows, cost=1.2, whole=True)

@@ -1,10 +1,12 @@
-"""What is done to every number by a rule: other signs, axes or units, another definition of an angle."""
+"""What is done to every number by a rule: other signs, axes, units or instants, another definition of an
+angle, or another number's place.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
-from itertools import permutations, product
+from itertools import combinations, permutations, product
 from math import pi
 from typing import NamedTuple
 
@@ -12,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.corner import Wheel
-from pointcoord.effects.registry import angle_called
+from pointcoord.effects.registry import QUANTITIES, angle_called
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
-from validate.tables.units import FORCES
 
 Array = NDArray[np.float64]
 
@@ -28,35 +29,23 @@ class Unit(NamedTuple):
 
     Attributes:
         words: for what it was taken.
-        of: mm, rad, N, % or s, which it stands for.
+        of: mm, rad, or s, which it stands for.
         factor: a number in our unit times this is the number in that one; per second of a rate for s.
-        orders: of time derivatives of which it is in use.
     """
 
     words: str
     of: str
     factor: float
-    orders: tuple[int, ...] = (0, 1, 2)
 
 
 UNITS = (
     Unit("degrees for radians", "rad", 180.0 / pi),
     Unit("degrees taken for radians and converted once more", "rad", pi / 180.0),
-    Unit("minutes of arc for radians", "rad", 60.0 * 180.0 / pi),
     Unit("minutes of arc taken for degrees", "rad", 60.0),
-    Unit("turns for radians", "rad", 0.5 / pi),
-    Unit("turns per minute for rad/s", "rad", 30.0 / pi, (1,)),
     Unit("m for mm", "mm", 1e-3),
-    Unit("cm for mm", "mm", 1e-1),
     Unit("inches for mm", "mm", 1.0 / 25.4),
     Unit("mm taken for m and converted once more", "mm", 1e3),
-    Unit("mm taken for inches and converted once more", "mm", 25.4),
-    Unit("multiples of 9.80665 m/s^2 for mm/s^2", "mm", 1.0 / 9806.65, (2,)),
-    Unit("kN for N", "N", 1e-3),
-    Unit("pounds for N", "N", 1.0 / FORCES["lbf"]),
-    Unit("parts of 1 for %", "%", 1e-2),
-    Unit("per millisecond for per second", "s", 1e-3, (1, 2)),
-    Unit("per minute for per second", "s", 60.0, (1, 2)),
+    Unit("per minute for per second", "s", 60.0),
 )
 
 DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
@@ -75,12 +64,21 @@ BACK: Mapping[str, Callable[[Array], Array]] = {
 }
 """Of those that need no line the projected angle."""
 
+SAMPLES: Mapping[str, Callable[[Array], Array]] = {
+    "one sample late, the first one twice": lambda x: np.concatenate([x[:1], x[:-1]]),
+    "one sample early, the last one twice": lambda x: np.concatenate([x[1:], x[-1:]]),
+    "one sample late, the last one first": lambda x: np.roll(x, 1, axis=0),
+    "one sample early, the first one last": lambda x: np.roll(x, -1, axis=0),
+}
+"""In words, and what is then given of numbers."""
+
 
 def _turned(matrix: Array, axial: bool, row: Row, numbers: Array) -> Array:
     """Vectors of a row in other axes; those of a number of the car are no vectors.
 
     Args:
-        axial: whether what a body turns by keeps its sense only where the axes stay right-handed.
+        axial: whether axes are changed, and not only the signs that someone writes: what a body turns by
+            keeps its sense only where the axes stay right-handed.
     """
     if kind_of(row) == "car":
         return numbers
@@ -102,19 +100,19 @@ def _in_axes(
 
 def other_signs(evidence: Evidence) -> Iterator[Hypothesis]:
     """Of one, two or all components of vectors, or of a number of the car as a whole, as of toe in or out."""
-    # Rows that agree as well, so that it is known whether they would under the fault.
-    looked = (*evidence.wrong, *evidence.beside)
     cars = [row for row in evidence.wrong if kind_of(row) == "car"]
     for signs in product((1.0, -1.0), repeat=3):
         flipped = tuple(axis for axis, sign in zip("xyz", signs, strict=True) if sign < 0.0)
         if flipped and len(cars) < len(evidence.wrong):
             words, matrix = f"the other sign of {' and '.join(flipped)}", np.diag(signs)
-            rows, undo = _in_axes(evidence, matrix, looked, axial=False), partial(_turned, matrix, False)
+            rows, undo = (
+                _in_axes(evidence, matrix, evidence.looked, axial=False),
+                partial(_turned, matrix, False),
+            )
             yield Hypothesis(flipped, words, rows, cost=1.0 + 0.1 * len(flipped), undo=undo)
     if cars:
-        yield Hypothesis(
-            "car", "the other sign", {row: (-evidence.held[row], evidence.allowed[row]) for row in cars}
-        )
+        rows = {row: (-evidence.held[row], evidence.allowed[row]) for row in cars}
+        yield Hypothesis("car", "the other sign", rows)
 
 
 def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -133,7 +131,7 @@ def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
         named = tuple("-" * (s < 0.0) + "xyz"[p] for s, p in zip(signs, places, strict=True))
         words, rows = (
             f"other axes: its x, y, z are our {', '.join(named)}",
-            _in_axes(evidence, matrix, (*evidence.wrong, *evidence.beside)),
+            _in_axes(evidence, matrix, evidence.looked),
         )
         cost = 1.5 + 0.01 * sum(s < 0.0 for s in signs)
         yield Hypothesis(named, words, rows, cost=cost, undo=partial(_turned, matrix.T, True))
@@ -149,22 +147,20 @@ def mirrored(evidence: Evidence) -> Iterator[Hypothesis]:
     yield Hypothesis("mirror", "left for right: the car is mirrored", rows, whole=True, undo=undo)
 
 
-def _scale(unit: Unit, row: Row) -> float:
-    return unit.factor ** order(row) if unit.of == "s" else unit.factor
-
-
 def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each unit, of all rows that may have it."""
     for unit in UNITS:
         rows = {
             row: (_scale(unit, row) * evidence.held[row], _scale(unit, row) * evidence.rounded(row))
             for row in evidence.wrong
-            if order(row) in unit.orders and unit.of in ("s", length_or_angle(row))
+            if unit.of == length_or_angle(row) or (unit.of == "s" and order(row))
         }
         if rows:
-            # A velocity in m/s is one in mm per millisecond: the length is meant.
-            cost = 1.05 if unit.of == "s" else 1.0
-            yield Hypothesis(unit.words, unit.words, rows, cost=cost, undo=partial(_in_our_unit, unit))
+            yield Hypothesis(unit.words, unit.words, rows, undo=partial(_in_our_unit, unit))
+
+
+def _scale(unit: Unit, row: Row) -> float:
+    return unit.factor ** order(row) if unit.of == "s" else unit.factor
 
 
 def _in_our_unit(unit: Unit, row: Row, numbers: Array) -> Array:
@@ -198,3 +194,42 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
 def _projected(back: Callable[[Array], Array], row: Row, numbers: Array) -> Array:
     """The angles that numbers of a row stand for; those of other rows are no such numbers."""
     return back(numbers) if kind_of(row) == "car" else numbers
+
+
+def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, WouldBe]:
+    """Rows with the numbers of others, where these are there and have as many components."""
+    held = evidence.held
+    return {
+        row: (held[other], evidence.allowed[other])
+        for row, other in others.items()
+        if other in held and held[other].shape == held[row].shape
+    }
+
+
+def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Two quantities in each other's place, such as velocities and accelerations."""
+    for one, two in combinations(sorted(evidence.wrong_quantities), 2):
+        partner = {one: two, two: one}
+        rows = _of_others(evidence, {r: (partner[r[0]], r[1]) for r in evidence.wrong if r[0] in partner})
+        words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
+        yield Hypothesis((one, two), words, rows, cost=1.1)
+
+
+def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
+    """What two parts of a car have, each under the other's names."""
+    for one, two in combinations(evidence.scene.mechanism.topology.sides, 2):
+        other = {one: two, two: one}
+        parts = {row: row[1].partition(".") for row in evidence.held}
+        others = {
+            row: (row[0], f"{other[part]}.{name}") if dot and part in other else row
+            for row, (part, dot, name) in parts.items()
+        }
+        words = f"what is of {one} stands under {two}, and the other way"
+        yield Hypothesis((one, two), words, _of_others(evidence, others), whole=True)
+
+
+def of_another_instant(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Every number is in the row after or before its own."""
+    for words, moved in SAMPLES.items():
+        rows = {row: (moved(evidence.held[row]), moved(evidence.allowed[row])) for row in evidence.looked}
+        yield Hypothesis(words, words, rows, cost=1.2)

@@ -1,4 +1,4 @@
-"""Rates by finite differences.
+"""Rates by finite differences, or by an input instead of by time.
 
 A velocity is then what positions change by from instant to instant. With h the time between two instants:
 forward (x_{k+1} - x_k) / h, backward (x_k - x_{k-1}) / h, central the mean of both, and for
@@ -10,7 +10,7 @@ disagree themselves explain nothing: any car's rates are nearly differences of i
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Literal
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
+from validate.formulations.input_rates import rates
 
 Array = NDArray[np.float64]
 Rule = Callable[[Array, Array], Array]
@@ -28,43 +29,40 @@ def _steps(x: Array, t: Array) -> Array:
     return np.diff(x, axis=0) / np.diff(t).reshape(-1, *[1] * (x.ndim - 1))
 
 
-def _central(x: Array, t: Array, ends: Literal[1, 2] = 1) -> Array:
-    return np.asarray(np.gradient(x, t, axis=0, edge_order=ends))
-
-
 def _inner(x: Array, t: Array) -> Array:
-    return _central(x, t)[1:-1]
+    return np.asarray(np.gradient(x, t, axis=0)[1:-1])
 
 
-def _padded(rule: Rule, before: int, after: int, mode: Literal["edge", "constant"] = "edge") -> Rule:
-    def padded(x: Array, t: Array) -> Array:
-        return np.pad(rule(x, t), [(before, after), *[(0, 0)] * (x.ndim - 1)], mode=mode)
-
-    return padded
+def _second(x: Array, t: Array) -> Array:
+    return _steps(_steps(x, t), 0.5 * (t[1:] + t[:-1]))
 
 
-def _twice(rule: Rule) -> Rule:
-    return lambda x, t: rule(rule(x, t), t)
+def _padded(rule: Rule, before: int, after: int, zero: bool, x: Array, t: Array) -> Array:
+    ends = [(before, after), *[(0, 0)] * (x.ndim - 1)]
+    return np.pad(rule(x, t), ends) if zero else np.pad(rule(x, t), ends, mode="edge")
+
+
+def _twice(rule: Rule, x: Array, t: Array) -> Array:
+    return rule(rule(x, t), t)
 
 
 ONCE: dict[str, Rule] = {
-    "central differences": _central,
-    "central differences, of second order at the ends too": lambda x, t: _central(x, t, 2),
-    "central differences, repeated at the ends": _padded(_inner, 1, 1),
-    "forward differences": _padded(_steps, 0, 1),
-    "backward differences": _padded(_steps, 1, 0),
-    "central differences, zero at the ends": _padded(_inner, 1, 1, "constant"),
-    "forward differences, zero in the last row": _padded(_steps, 0, 1, "constant"),
-    "backward differences, zero in the first row": _padded(_steps, 1, 0, "constant"),
+    "central differences": lambda x, t: np.asarray(np.gradient(x, t, axis=0)),
+    "central differences, of second order at the ends too": lambda x, t: np.asarray(
+        np.gradient(x, t, axis=0, edge_order=2)
+    ),
+    "central differences, repeated at the ends": partial(_padded, _inner, 1, 1, False),
+    "central differences, zero at the ends": partial(_padded, _inner, 1, 1, True),
+    "forward differences": partial(_padded, _steps, 0, 1, False),
+    "forward differences, zero in the last row": partial(_padded, _steps, 0, 1, True),
+    "backward differences": partial(_padded, _steps, 1, 0, False),
+    "backward differences, zero in the first row": partial(_padded, _steps, 1, 0, True),
 }
 RULES: list[tuple[str, Rule, int]] = [
     *((words, rule, 1) for words, rule in ONCE.items()),
-    *((f"{words}, taken twice", _twice(rule), 2) for words, rule in ONCE.items()),
-    (
-        "second differences of positions",
-        _padded(lambda x, t: _steps(_steps(x, t), 0.5 * (t[1:] + t[:-1])), 1, 1),
-        2,
-    ),
+    *((f"{words}, taken twice", partial(_twice, rule), 2) for words, rule in ONCE.items()),
+    ("second differences of positions", partial(_padded, _second, 1, 1, False), 2),
+    ("second differences of positions, zero at the ends", partial(_padded, _second, 1, 1, True), 2),
 ]
 """In words, and which derivative each makes."""
 
@@ -99,3 +97,26 @@ def differences(evidence: Evidence) -> Iterator[Hypothesis]:
             rows[row] = value, evidence.rounded(row) + rounding
         if rows:
             yield Hypothesis(words, f"rates by {words}", rows)
+
+
+def per_input(evidence: Evidence) -> Iterator[Hypothesis]:
+    """With s the rate of an input that never rests: v / s for v, and (a - v s' / s) / s^2 for a."""
+    units = evidence.scene.mechanism.topology.input_units
+    for name, law in evidence.scene.inputs.items():
+        _, rate, change = rates(law, evidence.times).T
+        if not rate.all() or (rate == 1.0).all():
+            continue
+        rows: dict[Row, WouldBe] = {}
+        for row in evidence.wrong:
+            below, by = _integral(row, 1, evidence), rate.reshape(-1, *[1] * (evidence.held[row].ndim - 1))
+            if order(row) == 1:
+                value = evidence.held[row] / by
+            elif order(row) == 2 and below is not None:
+                value = (
+                    evidence.held[row] - evidence.held[below] * (change / rate).reshape(by.shape)
+                ) / by**2
+            else:
+                continue
+            rows[row] = value, evidence.rounded(row) / np.abs(by) ** order(row)
+        words = f"rates per {units[name]} of {name}, not per second"
+        yield Hypothesis(name, words, rows, cost=1.1)
