@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from validate.comparison.compare import Comparison, Outcome, compare
     from validate.formulations.protocol import Accuracy, Formulation, FormulationError, Solution
     from validate.solvers.check import check
-    from validate.testing.assertion import NotTested, WrongStates, assert_agrees, assert_refuses
+    from validate.testing.assertion import NotTested, assert_agrees, assert_refuses
 
 __all__ = [
     "Accuracy",
@@ -23,7 +23,6 @@ __all__ = [
     "NotTested",
     "Outcome",
     "Solution",
-    "WrongStates",
     "assert_agrees",
     "assert_refuses",
     "check",
@@ -37,7 +36,6 @@ _MODULES = {
     "Comparison": "comparison.compare",
     "NotTested": "testing.assertion",
     "Outcome": "comparison.compare",
-    "WrongStates": "testing.assertion",
     "assert_agrees": "testing.assertion",
     "assert_refuses": "testing.assertion",
     "check": "solvers.check",

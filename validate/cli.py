@@ -79,10 +79,9 @@ def _ending(error: BaseException, console: Console) -> tuple[ExitStatus, str] | 
     from validate.extras import MissingPackage
     from validate.formulations.protocol import FormulationError
     from validate.output.files import OutputError
-    from validate.solvers.plain import NoSolver
     from validate.studies.study import StudyStopped
 
-    if isinstance(error, UsageError | PointcoordError | MissingPackage | NoSolver):
+    if isinstance(error, UsageError | PointcoordError | MissingPackage):
         return ExitStatus.WRONG_INPUT, str(error)
     if isinstance(error, FormulationError):
         return ExitStatus.NO_VERDICT, str(error)

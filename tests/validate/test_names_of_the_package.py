@@ -24,9 +24,9 @@ for name in validate.__all__:
     assert pickle.loads(pickle.dumps(found)) is found
 outcome = compare(__import__("pointcoord").Scene.load("steer"), "pointcoord", "pointcoord")
 assert pickle.loads(pickle.dumps(outcome.rows)) == outcome.rows
-for error in (NotTested("steer", 1.0, ["camber"], 3), WrongStates(["camber is not"])):
-    again = pickle.loads(pickle.dumps(error))
-    assert (type(again), str(again), vars(again)) == (type(error), str(error), vars(error))
+error = NotTested("steer", 1.0, ["camber"], 3)
+again = pickle.loads(pickle.dumps(error))
+assert (type(again), str(again), vars(again)) == (type(error), str(error), vars(error))
 """
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", program], capture_output=True, text=True, check=False, cwd=ROOT

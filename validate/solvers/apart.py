@@ -17,7 +17,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
@@ -27,9 +27,10 @@ from typing import Any, Self
 
 import numpy as np
 
+from validate.errors import UsageError
 from validate.plain_text import shown
 from validate.solvers.load import solver_at
-from validate.solvers.plain import NoSolver, Solve, SolverFailed, no_mapping, raised_at, read_only, said
+from validate.solvers.plain import Solve, SolverFailed, no_mapping, raised_at, read_only, said
 
 LIMIT = 600.0  # s, an answer: no motion of a suspension takes so long
 PARTING = 2.0  # s, that a child is given to end by itself
@@ -73,7 +74,7 @@ class Apart:
         """Wait until the child has imported the solver.
 
         Raises:
-            NoSolver: there is none, it cannot be imported, or that takes longer than LIMIT.
+            UsageError: there is none, it cannot be imported, or that takes longer than LIMIT.
         """
         if self._found:
             return
@@ -81,12 +82,11 @@ class Apart:
             self._start()
         kind, rest = self._said(max(self.limit, LIMIT))
         if kind == ENDED:
-            raise NoSolver(
-                f"the solver {shown(self.place)!r}", f"cannot be imported: {rest}", "mend the module"
-            )
+            problem = f"the solver {shown(self.place)!r} cannot be imported: {rest}"
+            raise UsageError(f"{problem}; mend the module")
         if kind == NONE:
             self._end(idle=True)
-            raise NoSolver(*rest)
+            raise UsageError(rest)
         self._found = True
 
     def __call__(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -97,8 +97,8 @@ class Apart:
         """
         try:
             self.found()
-        except NoSolver as error:
-            raise SolverFailed(f"made anew after it ended, it {error.problem}") from error
+        except UsageError as error:
+            raise SolverFailed(f"made anew after it ended: {error}") from error
         # That it has ended is found when its answer is awaited.
         with suppress(OSError):
             self._pipe.send(given)
@@ -160,8 +160,8 @@ def serve(pipe: Connection[Any, Any], place: str, with_traceback: bool) -> None:
     os.dup2(2, 1)
     try:
         solve = solver_at(place, with_traceback)
-    except NoSolver as error:
-        pipe.send((NONE, (error.what, error.problem, error.remedy)))
+    except UsageError as error:
+        pipe.send((NONE, str(error)))
         return
     pipe.send((FOUND, None))
     try:
@@ -190,31 +190,10 @@ def _plain(answer: Any) -> Any:
         return {key if type(key) in BUILTIN else str(key): _plain(part) for key, part in answer.items()}
     if type(answer) in BUILTIN or isinstance(answer, np.ma.MaskedArray):
         return answer  # what is masked is to be told
-    try:
+    with suppress(Exception):
         array = np.asarray(answer)
         if array.dtype != object:
             return array
-    except Exception:
-        # What is no array goes as it is, so that the complaint can say what is wrong with it.
-        return _listed(answer)
-    return _listed(answer)
-
-
-def _listed(part: Any) -> Any:
-    if type(part) in (list, tuple):
-        return [_listed(one) for one in part]
-    return part if type(part) in BUILTIN else _Foreign(type(part).__name__)
-
-
-class _Foreign:
-    """Something of a class that only the child knows; what arrives is empty, of a class of that name."""
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-
-    def __reduce__(self) -> tuple[Callable[[str], object], tuple[str]]:
-        return _of_that_name, (self.name,)
-
-
-def _of_that_name(name: str) -> object:
-    return type(name, (), {})()
+    if type(answer) in (list, tuple):
+        return [_plain(one) for one in answer]
+    return f"something of type {type(answer).__name__}"

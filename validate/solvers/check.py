@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
+from validate.errors import UsageError
 from validate.formulations.protocol import Formulation
-from validate.solvers.plain import NoSolver, PlainSolver, as_function
+from validate.solvers.plain import PlainSolver, as_function
 
 ACCURACY = 1e-6
 AGAINST = "pointcoord"
@@ -27,7 +28,7 @@ def check(
     Returns:
         The comparison, with what would explain that it disagrees in `explanations`.
     Raises:
-        NoSolver: `solver` is none, or `accuracy` is no length above 0.
+        UsageError: `solver` is none, or `accuracy` is no length above 0.
         FormulationError: the solver raises an error, or the other formulation refuses the scene.
         SceneError: there is no such scene, or it is wrong.
 
@@ -52,10 +53,10 @@ def required_accuracy(accuracy: float) -> float:
     """An accuracy as it is.
 
     Raises:
-        NoSolver: it is no length above 0.
+        UsageError: it is no length above 0.
     """
     if not (math.isfinite(accuracy) and accuracy > 0.0):
-        raise NoSolver(f"an accuracy of {accuracy!r} mm", "is none", "give a length above 0, such as 1e-6")
+        raise UsageError(f"an accuracy of {accuracy!r} mm is none; give a length above 0, such as 1e-6")
     return float(accuracy)
 
 

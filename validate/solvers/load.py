@@ -13,8 +13,9 @@ from types import ModuleType
 from typing import Any
 
 from pointcoord.wording import meant
+from validate.errors import UsageError
 from validate.plain_text import shown
-from validate.solvers.plain import NoSolver, Solve, as_function, raised_at, said
+from validate.solvers.plain import Solve, as_function, raised_at, said
 
 FORM = "give MODULE:NAME, such as package.module:Solver"
 
@@ -25,7 +26,7 @@ def solver_at(place: str, with_traceback: bool = False) -> Solve:
     Args:
         with_traceback: show on standard error where in its files it raises an error.
     Raises:
-        NoSolver: there is no such module or name, or the module cannot be imported.
+        UsageError: there is no such module or name, or the module cannot be imported.
     """
     what = f"the solver {shown(place)!r}"
     module_name, colon, name = place.partition(":")
@@ -34,14 +35,14 @@ def solver_at(place: str, with_traceback: bool = False) -> Solve:
     if a_file or not colon or not all(word.isidentifier() for word in words):
         as_module = module_name.removesuffix(".py").strip("./").replace("/", ".")
         hint = f"; try {as_module}:{name or 'NAME'}" if a_file else ""
-        raise NoSolver(what, "is not written as a module and a name in it", FORM + hint)
+        raise UsageError(f"{what} is not written as a module and a name in it; {FORM}{hint}")
     with what_it_prints_aside(), _told(with_traceback):
         found: object = _module(what, module_name)
         for word in name.split("."):
             if not hasattr(found, word):
                 there = [one for one in dir(found) if not one.startswith("_")]
                 remedy = f"there are: {', '.join(there)}" if there else "the module is empty"
-                raise NoSolver(what, f"has no {word!r} in {module_name}{meant(word, there)}", remedy)
+                raise UsageError(f"{what} has no {word!r} in {module_name}{meant(word, there)}; {remedy}")
             found = getattr(found, word)
         function = as_function(found, what)
 
@@ -61,11 +62,11 @@ def _module(what: str, name: str) -> ModuleType:
         return import_module(name)
     except ModuleNotFoundError as error:
         if error.name is not None and (name == error.name or name.startswith(f"{error.name}.")):
-            problem = f"is in a module {error.name!r} that is not found"
-            raise NoSolver(what, problem, f"looked for in {here} and where Python's packages are") from error
-        raise NoSolver(what, f"cannot be imported: {said(error)}{_at(error)}", "install it") from error
+            problem = f"{what} is in a module {error.name!r} that is not found"
+            raise UsageError(f"{problem}; looked for in {here} and where Python's packages are") from error
+        raise UsageError(f"{what} cannot be imported: {said(error)}{_at(error)}; install it") from error
     except (Exception, SystemExit) as error:
-        raise NoSolver(what, f"cannot be imported: {said(error)}{_at(error)}", "mend the module") from error
+        raise UsageError(f"{what} cannot be imported: {said(error)}{_at(error)}; mend the module") from error
 
 
 def _at(error: BaseException) -> str:

@@ -37,6 +37,7 @@ from pointcoord import Scene, SceneError
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.wording import meant, shown
+from validate.errors import UsageError
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, FormulationError, Solution
 from validate.solvers.names import known_names, misspelt
@@ -47,16 +48,6 @@ Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 INSTANTS = "instants"
 METHOD = "solve"
 HERE, IMPORTING = Path(__file__).parent, Path(importlib.__file__).parent
-
-
-class NoSolver(Exception):
-    """Something that was to be a solver is none, or cannot be found."""
-
-    def __init__(self, what: str, problem: str, remedy: str) -> None:
-        self.what = what
-        self.problem = problem
-        self.remedy = remedy
-        super().__init__(f"{what} {problem}; {remedy}")
 
 
 class SolverFailed(Exception):
@@ -113,21 +104,19 @@ def as_function(solver: object, name: str) -> Solve:
     """What to call of a solver.
 
     Raises:
-        NoSolver: it is nothing that can be called and has no method `solve`, or it cannot be made.
+        UsageError: it is nothing that can be called and has no method `solve`, or it cannot be made.
     """
     if isinstance(solver, type):
         try:
             solver = solver()
         except Exception as error:
-            problem = f"cannot be made without arguments: {said(error)}"
-            raise NoSolver(
-                name, problem, "give a class without arguments, or an object or a function"
-            ) from error
+            remedy = "give a class without arguments, or an object or a function"
+            raise UsageError(f"{name} cannot be made without arguments: {said(error)}; {remedy}") from error
     method = getattr(solver, METHOD, None)
     found = method if callable(method) else solver
     if not callable(found):
-        problem = f"is of type {type(solver).__name__}, which is no solver"
-        raise NoSolver(name, problem, f"give a function, or an object or a class with a method {METHOD!r}")
+        problem = f"{name} is of type {type(solver).__name__}, which is no solver"
+        raise UsageError(f"{problem}; give a function, or an object or a class with a method {METHOD!r}")
     return cast("Solve", found)
 
 

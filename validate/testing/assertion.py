@@ -14,35 +14,19 @@ from pointcoord.wording import meant
 from validate.comparison.compare import Outcome, compare, compare_solutions
 from validate.comparison.given import given
 from validate.diagnosis import explain_outcome
+from validate.errors import UsageError
 from validate.extras import MissingPackage
 from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.output.report import about, told_row
 from validate.reference import InfeasibleError, NoReferenceError
 from validate.solvers.check import ACCURACY, AGAINST, required_accuracy
-from validate.solvers.plain import NoSolver, PlainSolver, as_function, given_to_solver
+from validate.solvers.plain import PlainSolver, as_function, given_to_solver
 
 WHO = "the states"
 # What is said of a test's own arguments; anything else that is raised is a defect of this package.
-TOLD = (AssertionError, PointcoordError, FormulationError, NoReferenceError, NoSolver, MissingPackage)
+TOLD = (AssertionError, PointcoordError, FormulationError, NoReferenceError, UsageError, MissingPackage)
 MOST_ROWS, MOST_EXPLANATIONS = 8, 3  # in a message; how many more rows there are is said
-
-
-class WrongStates(AssertionError):
-    """States hold something that cannot be compared, or not what is needed.
-
-    A comparison would leave it out and judge the rest; a test must not pass for that reason.
-
-    Attributes:
-        faults: what is wrong, a line each.
-    """
-
-    def __init__(self, faults: Sequence[str]) -> None:
-        self.faults = tuple(faults)
-        super().__init__("; ".join(self.faults))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.faults,)
 
 
 class NotTested(AssertionError):
@@ -90,10 +74,10 @@ def assert_agrees(
     Raises:
         AssertionError: a number disagrees, or nothing that is asked for is given but points that stay where
             they are drawn. The message says which quantity of what, the difference, the tolerance and the
-            instant, and what would explain it.
-        WrongStates: a number has another shape than its kind, or a misspelt name; what is needed is missing.
+            instant, and what would explain it. Or a number has another shape than its kind, or a misspelt
+            name, or what is needed is missing: a comparison would leave it out and judge the rest.
         NotTested: this accuracy says nothing of some of them, and nothing disagrees.
-        NoSolver: `accuracy` is no length above 0.
+        UsageError: `accuracy` is no length above 0.
         FormulationError: the states are no mapping, or the other formulation refuses the scene.
         SceneError: there is no such scene, or it is wrong.
 
@@ -111,7 +95,7 @@ def assert_agrees(
     else:
         outcome = compare(taken, one, against, name)
     if faults := (*outcome.faults, *_lacking(outcome, needed)):
-        raise WrongStates(faults)
+        raise AssertionError("; ".join(faults))
     if outcome.disagreements:
         raise AssertionError(_disagreement(taken, outcome, exact))
     untested = [about(row.quantity, row.name) for row in outcome.rows if row.verdict == "not tested"]
@@ -137,7 +121,7 @@ def assert_refuses(
         raises: what it raises to refuse; another error is none, and comes through.
     Raises:
         AssertionError: all that it gives at such an instant are numbers; or it gives nothing.
-        NoSolver: `solver` is none. SceneError: there is no such scene, or every instant has a pose.
+        UsageError: `solver` is none. SceneError: there is no such scene, or every instant has a pose.
     """
     __tracebackhide__ = True
     function = as_function(solver, "the solver")
@@ -154,13 +138,13 @@ def assert_refuses(
     try:
         solution = PlainSolver("the solver", lambda _: answer, ACCURACY).solve(taken)
     except FormulationError as error:
-        raise WrongStates([str(error)]) from None
+        raise AssertionError(str(error)) from None
     side = given(solution, taken.instants)
     if side.solution.faults:
-        raise WrongStates(side.solution.faults)
+        raise AssertionError("; ".join(side.solution.faults))
     arrays = [array for part in side.solution.numbers.values() for array in part.values()]
     if not arrays:
-        raise WrongStates([f"the solver gives nothing that {name!r} asks for"])
+        raise AssertionError(f"the solver gives nothing that {name!r} asks for")
     finite = np.all([np.isfinite(a.reshape(len(a), -1)).all(axis=-1) for a in arrays], axis=0)
     answered = [time for time in taken.instants[side.found][finite].tolist() if time in without]
     if answered:

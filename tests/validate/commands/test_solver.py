@@ -214,8 +214,9 @@ def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in
         out = capfd.readouterr().out
         assert "agrees" in next(line for line in out.splitlines() if line.startswith("position"))
         told.append(out)
-    assert told[0] == told[1]
-    assert "velocity is of type Odd" in told[0]
+    # Of a class that only the solver's process knows the name comes through.
+    assert "velocity is of type" in told[0]
+    assert "velocity is of type Odd" in told[1]
 
 
 def test_what_is_given_and_cannot_be_used_ends_with_3_and_is_an_error_of_the_test_results(

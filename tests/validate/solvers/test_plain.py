@@ -10,9 +10,10 @@ from plain_solvers import closed_form
 from pointcoord import Scene, simulate
 from validate import FormulationError, Outcome, check, compare
 from validate.comparison.examined import Once
+from validate.errors import UsageError
 from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE_CAR, scene_content
-from validate.solvers.plain import NoSolver, PlainSolver, given_to_solver
+from validate.solvers.plain import PlainSolver, given_to_solver
 
 CAR = BESIDE_CAR
 SCENE = Scene.from_mapping(
@@ -242,5 +243,5 @@ def test_a_solver_is_a_function_an_object_or_a_class(solver: object) -> None:
 
 @pytest.mark.parametrize("accuracy", [-1e-6, float("nan")])
 def test_an_accuracy_that_is_none_is_refused(accuracy: float) -> None:
-    with pytest.raises(NoSolver, match="give a length above 0"):
+    with pytest.raises(UsageError, match="give a length above 0"):
         check(closed_form, SCENE, accuracy)
