@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.results.named_columns import html_table
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.wording import nearest, shown
@@ -169,30 +168,8 @@ class Outcome:
     def __repr__(self) -> str:
         first, second = (solution.formulation for solution in self.solutions)
         verdicts = dict.fromkeys(row.verdict for row in self.rows)
-        counts = (counted(sum(row.verdict == v for row in self.rows), v) for v in verdicts)
-        return f"<Outcome of {self.scene!r}, {first} and {second}: {', '.join(counts)}>"
-
-    def _repr_html_(self) -> str:
-        """Every row, as a notebook shows it."""
-        head = ("quantity", "name", "largest difference", "tolerance", "verdict")
-        rows = (
-            (
-                row.quantity,
-                row.name,
-                f"{row.difference:.1e} {row.unit}",
-                f"{row.tolerance:.1e} {row.unit}",
-                row.verdict,
-            )
-            for row in self.rows
-        )
-        return html_table(repr(self), head, rows)
-
-
-def counted(count: int, verdict: str) -> str:
-    """How many rows have a verdict, in words."""
-    if verdict in ("agrees", "disagrees") and count != 1:
-        return f"{count} {verdict.removesuffix('s')}"
-    return f"{count} {verdict}"
+        counts = ", ".join(f"{sum(row.verdict == v for row in self.rows)} {v}" for v in verdicts)
+        return f"<Outcome of {self.scene!r}, {first} and {second}: {counts}>"
 
 
 def compare(
@@ -215,12 +192,18 @@ def compare(
     >>> compare(Scene.load("steer"), "pointcoord", "absolute").agreed
     True
     """
-    require_scene(scene)
-    one, two = (_solved(formulation(f) if isinstance(f, str) else f, scene) for f in (first, second))
+    one, two = (solved_by(formulation(f) if isinstance(f, str) else f, scene) for f in (first, second))
     return compare_solutions(scene, one, two, name or scene.title or "scene", factor=factor)
 
 
-def _solved(solver: Formulation, scene: Scene) -> Solution:
+def solved_by(solver: Formulation, scene: Scene) -> Solution:
+    """A scene's solution by a formulation.
+
+    Raises:
+        FormulationError: it refuses the scene, or gives what is no solution.
+        SceneError: the scene is none, or its own hardpoints make no mechanism.
+    """
+    require_scene(scene)
     try:
         solution = solver.solve(scene)
     except AccuracyError as error:

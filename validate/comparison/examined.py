@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pointcoord import MotionTooLong, MotionTooRough, Scene, SceneError
 from validate.closed_drawing import closing_data, closing_of, warnings_of
-from validate.comparison.compare import Outcome, compare
+from validate.comparison.compare import Outcome, compare_solutions, solved_by
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.refusals import Refusal, refusal_of
@@ -104,48 +104,6 @@ def _listed(names: Sequence[str]) -> str:
     return " and ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else names[0]
 
 
-class Once:
-    """A formulation that solves a scene once, and gives the same answer or the same refusal again."""
-
-    def __init__(self, inner: Formulation) -> None:
-        self._inner = inner
-        self.asked: Scene | None = None
-        self.answer: Solution | Exception | None = None
-
-    @property
-    def name(self) -> str:
-        """Name of the formulation."""
-        return self._inner.name
-
-    def solve(self, scene: Scene) -> Solution:
-        """Solve the scene, or repeat what came of it.
-
-        Raises:
-            Exception: whatever the formulation raised.
-        """
-        self.ask(scene)
-        if isinstance(self.answer, Exception):
-            raise self.answer
-        assert self.answer is not None  # it was asked
-        return self.answer
-
-    def ask(self, scene: Scene) -> None:
-        """Solve the scene unless that was tried, and keep what came of it."""
-        if self.answer is None:
-            self.asked = scene
-            self.answer = self._tried(scene)
-
-    def _tried(self, scene: Scene) -> Solution | Exception:
-        try:
-            return self._inner.solve(scene)
-        except MemoryError as error:
-            # Its traceback holds on to what filled the memory.
-            return MemoryError(str(error))
-        # A defect of one formulation must not end the run: it is recorded, and the status says so.
-        except Exception as error:
-            return error
-
-
 def examine(
     name: str,
     scene: Scene,
@@ -154,7 +112,7 @@ def examine(
     factor: float = 1.0,
     others: Mapping[str, Formulation] | None = None,
 ) -> Examined:
-    """Compare a scene in pairs of formulations.
+    """Compare a scene in pairs of formulations, each of which solves it once.
 
     Args:
         name: what the user calls the scene.
@@ -163,77 +121,83 @@ def examine(
         factor: how many times the derived tolerance to hold differences to.
         others: formulations by names of their own, beside those that there are.
     """
-    names = list(dict.fromkeys(name for pair in pairs for name in pair))
-    own = others or {}
-    once = {name: Once(own[name] if name in own else formulation(name)) for name in names}
+    solvers = {one: (others or {}).get(one) or formulation(one) for pair in pairs for one in pair}
+    answers: dict[str, Solution | Exception] = {}
+    for one, solver in solvers.items():
+        answers[one] = _answer(solver, scene)
+        if _failed(answers[one]):
+            break  # a scene that fills the memory once would do so again, after a long time
+    refusals = {one: r for one, answer in answers.items() if (r := _refusal(one, answer, name, scene))}
+    failures = [failure_of(one, e) for one, e in answers.items() if isinstance(e, Exception) and _failed(e)]
     outcomes: list[Outcome] = []
-    refusals: dict[str, Refusal] = {}
-    failures: list[Failure] = []
     for first, second in pairs:
-        found = _compared(scene, name, once[first], once[second], factor)
+        found = _compared(scene, name, answers.get(first), answers.get(second), factor)
         if isinstance(found, Outcome):
             outcomes.append(found)
         elif isinstance(found, FormulationError):
             refusals[found.formulation] = refusal_of(found.formulation, found.reason, scene)
-        elif not any(found is one.answer for one in once.values()):
-            failures.append(failure_of(f"the comparison of {first} with {second}", found))
-        if any(_failed(one) for one in once.values()):
-            break  # a scene that fills the memory once would do so again, after a long time
-    refusals |= {one.name: r for one in once.values() if (r := _refusal(one, name, scene)) is not None}
-    against, unprinted = None, None
-    if printed and PRINTED not in once and isinstance(once[names[0]].answer, Solution):
-        formulas = Once(formulation(PRINTED))
-        found = _compared(scene, name, once[names[0]], formulas, factor)
-        against = found if isinstance(found, Outcome) else None
-        unprinted = _refusal(formulas, name, scene)
-    moved = closing_of(scene)
+        elif found:
+            failures.insert(0, failure_of(f"the comparison of {first} with {second}", found))
+    held, against, unprinted = answers[pairs[0][0]], None, None
+    if printed and PRINTED not in solvers and isinstance(held, Solution):
+        formulas = _answer(formulation(PRINTED), scene)
+        compared = _compared(scene, name, held, formulas, factor)
+        against = compared if isinstance(compared, Outcome) else None
+        unprinted = _refusal(PRINTED, formulas, name, scene)
+    moved, reasons = closing_of(scene), [getattr(answer, "reason", None) for answer in answers.values()]
     return Examined(
         name=shown(name),
         title=shown(scene.title),
         outcomes=tuple(outcomes),
         printed=against,
-        refusals=tuple(refusals[one] for one in names if one in refusals),
-        failures=(
-            *failures,
-            *(
-                failure_of(one.name, one.answer)
-                for one in once.values()
-                if isinstance(one.answer, Exception) and one.name not in refusals
-            ),
-        ),
+        refusals=tuple(refusals[one] for one in solvers if one in refusals),
+        failures=tuple(failures),
         unprinted=unprinted,
-        solved=tuple(
-            one.name for one in once.values() if isinstance(one.answer, Solution) and one.name not in refusals
-        ),
-        advice=_advice(once.values()),
+        solved=tuple(n for n, one in answers.items() if isinstance(one, Solution) and n not in refusals),
+        # The method newton, which some refusals advise, under its name here.
+        advice=NEWTON if any(isinstance(one, MotionTooLong | MotionTooRough) for one in reasons) else "",
         warnings=warnings_of(scene, moved),
         closing=closing_data(moved),
         defaults=scene.mechanism.defaults_taken,
     )
 
 
-def _compared(scene: Scene, name: str, first: Once, second: Once, factor: float) -> Outcome | Exception:
-    """The comparison of a pair, or why there is none; where one of them refuses, both were asked."""
+def _answer(solver: Formulation, scene: Scene) -> Solution | Exception:
     try:
-        return compare(scene, first, second, shown(name), factor)
+        return solved_by(solver, scene)
+    except MemoryError as error:
+        # Its traceback holds on to what filled the memory.
+        return MemoryError(str(error))
+    # A defect of one formulation must not end the run: it is recorded, and the status says so.
     except Exception as error:
-        if first.asked is not None and not _failed(first):
-            second.ask(first.asked)
         return error
 
 
-def _refusal(one: Once, name: str, scene: Scene) -> Refusal | None:
-    error = one.answer
-    if isinstance(error, SceneError):
-        named = SceneError(shown(name), error.key, error.problem, error.allowed)
-        return refusal_of(one.name, named, scene)
-    if isinstance(error, FormulationError):
-        return refusal_of(one.name, error.reason, scene)
-    return None
+def _compared(
+    scene: Scene,
+    name: str,
+    first: Solution | Exception | None,
+    second: Solution | Exception | None,
+    factor: float,
+) -> Outcome | Exception | None:
+    """The comparison of a pair, or why it fails; None where one of them gives no solution."""
+    if not isinstance(first, Solution) or not isinstance(second, Solution):
+        return None
+    try:
+        return compare_solutions(scene, first, second, shown(name), factor=factor)
+    except Exception as error:
+        return error
 
 
-def _failed(one: Once) -> bool:
-    return isinstance(one.answer, Exception) and not isinstance(one.answer, SceneError | FormulationError)
+def _refusal(who: str, answer: Solution | Exception, name: str, scene: Scene) -> Refusal | None:
+    if isinstance(answer, SceneError):
+        answer = SceneError(shown(name), answer.key, answer.problem, answer.allowed)
+        return refusal_of(who, answer, scene)
+    return refusal_of(who, answer.reason, scene) if isinstance(answer, FormulationError) else None
+
+
+def _failed(answer: Solution | Exception) -> bool:
+    return isinstance(answer, Exception) and not isinstance(answer, SceneError | FormulationError)
 
 
 def failure_of(what: str, error: Exception) -> Failure:
@@ -249,9 +213,3 @@ def told_failure(error: BaseException) -> str:
     frames = traceback.extract_tb(error.__traceback__)
     where = f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
     return f"{' '.join(str(error).split()) or 'no message'}{where}; this is a defect, please report it"
-
-
-def _advice(tried: Iterable[Once]) -> str:
-    """The method newton, which some refusals advise, under its name here."""
-    reasons = (one.answer.reason for one in tried if isinstance(one.answer, FormulationError))
-    return NEWTON if any(isinstance(reason, MotionTooLong | MotionTooRough) for reason in reasons) else ""

@@ -1,6 +1,7 @@
 """Anybody's solver: what it is given, what it may answer, and what is said of an answer that is none."""
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -8,8 +9,7 @@ import pytest
 from plain_solvers import closed_form
 
 from pointcoord import Scene, simulate
-from validate import FormulationError, Outcome, check, compare
-from validate.comparison.examined import Once
+from validate import FormulationError, Outcome, Solution, check, compare
 from validate.errors import UsageError
 from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE_CAR, scene_content
@@ -22,8 +22,21 @@ SCENE = Scene.from_mapping(
 RIGHT = closed_form(given_to_solver(SCENE))
 
 
-# What nothing but a comparison needs: no explanation is looked for, and pointcoord solves the scene once.
-HELD = Once(formulation("pointcoord"))
+class Held:
+    """pointcoord, which solves a scene once."""
+
+    name = "pointcoord"
+
+    def solve(self, scene: Scene) -> Solution:
+        return once()
+
+
+@cache
+def once() -> Solution:
+    return formulation("pointcoord").solve(SCENE)
+
+
+HELD = Held()
 
 
 def compared(answer: object) -> Outcome:
