@@ -6,22 +6,23 @@
 Joints are made of two kinds of rows: two points meet along some directions, and directions of two bodies stay
 at right angles. A free point, of no body, is a body of its own that does not turn. A wheel's contact point is
 the lowest of a disc that turns about the wheel's axis and has a level radius: its height is that of a
-body's point. Over the ground, both are of a body that stands as the ground does to the moved chassis.
+body's point.
+
+The chassis stands, unless inputs turn it: then it is a body on a driven hinge, that of the first of several
+on a body that the next one turns. The frame of all this goes with the car as that is displaced.
 """
 
 import math
-from collections.abc import Iterable, Mapping
-from functools import cached_property
-from itertools import combinations
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain, combinations
 from typing import Any
 
 import numpy as np
 
 from absolute.car import car_of
 from absolute.errors import DescriptionError
-from absolute.model import CHASSIS, Corner, Drawing, Input, Load, Model, Row, Turn
-from absolute.solution import Array
-from absolute.vectors import EPS, cross
+from absolute.model import CHASSIS, Corner, Drawing, Input, Load, Model, Row
+from absolute.vectors import EPS, Array, cross
 
 # The product of three vectors between such points, mm^3, and the squares of lengths are normal numbers.
 LARGEST_COORDINATE, SMALLEST_SIZE = 1e100, 1e-100
@@ -32,7 +33,9 @@ SHORTEST_AXIS = math.sqrt(EPS)
 LARGEST_SKEW = 1e-6
 SIDES = ("left", "right")
 ROLES = ("wheel_axis", "steering_axis", "damper")
-INPUTS = ("angle", "travel", "steers", "height", "contact", "distance")
+INPUTS = ("angle", "travel", "steers", "height", "contact", "distance", "turns", "moves")
+# What a car that turns does so on; no name of a body is empty.
+GROUND = ""
 NOTHING, AXES = np.zeros(3), np.eye(3)
 # Two bodies, and a point in each: first, start, second, end.
 Ends = tuple[str, str, str, str]
@@ -45,9 +48,8 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
         mechanism: plain data, mm and rad:
             bodies: name -> names of its points; `chassis` is one of them. rods: name -> two points.
             slides: name -> points, body, through, along, turns.
-            inputs: those that are driven, name -> one of angle, travel, steers, height, contact, distance; or
-                turns or moves, which turn and displace the whole car, and are no part of the linkage unless
-                a contact is over the ground.
+            inputs: those that are driven, name -> one of angle, travel, steers, height, contact, distance, or
+                of turns and moves, which turn and displace the whole car.
             roles: knuckle, a body; wheel_axis, steering_axis and damper, two points each, if there are any.
             points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
             sides: of a mechanism with parts, part -> side; names of its roles and inputs begin with the part
@@ -68,70 +70,68 @@ class _Compiler:
 
     def __init__(self, mechanism: Mapping[str, Any]) -> None:
         self.of = mechanism
-        self.points = {name: point_of(name, value) for name, value in mechanism["points"].items()}
+        self.points = {name: _point_of(name, value) for name, value in mechanism["points"].items()}
         bodies = mechanism["bodies"]
         _one_of("the ground", bodies, CHASSIS)
         for body, names in bodies.items():
             _one_of(f"a point of body {body!r}", self.points, *names)
             if not names:
                 raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
-        order = sorted(bodies, key=lambda body: body != CHASSIS)
-        self.named = {body: tuple(bodies[body]) for body in order}
+        self.named = {body: tuple(bodies[body]) for body in sorted(bodies, key=lambda body: body != CHASSIS)}
         self.slides: Mapping[str, Mapping[str, Any]] = mechanism.get("slides", {})
+        self.rods: Mapping[str, Sequence[str]] = mechanism.get("rods", {})
+        self.driven: Mapping[str, Mapping[str, Any]] = mechanism.get("inputs", {})
         self.guided = [point for slide in self.slides.values() for point in slide["points"]]
         self.joints: list[Row] = []
         self.senses: list[Row] = []
         self.inputs: list[Input] = []
-        self.turns: dict[str, Turn] = {}
+        self.moves: dict[str, Array] = {}
         self.reported: dict[tuple[str, ...], tuple[str, str]] = {}
         self.directions = self._directions()
-        self.radius = self._radius()
-        self.corners = self._corners()
         self.middle, self.size = self._extent()
+        self.corners = self._corners()
         # With free points and other aids, which are added as rows need them.
         self.bodies: dict[str, tuple[str, ...]] = {}
         self.anchors: dict[str, Array] = {}
         self.unturned: set[str] = set()
-        for body, names in self.named.items():
-            self._add(body, names)
 
     def model(self) -> Model:
-        """All joints, then all inputs."""
+        """All bodies and joints, then all inputs."""
+        turning = [name for name, given in self.driven.items() if "turns" in given]
+        if turning:
+            self._add(GROUND, ())
+        for body, names in self.named.items():
+            self._add(body, names)
+        carriers = [CHASSIS, *(self._add(f"car turned by {name}", ()) for name in turning[1:]), GROUND]
+        self.carriers = {name: (carriers[n + 1], carriers[n]) for n, name in enumerate(turning)}
         self._shared_points()
         for name in self.slides:
             self._slide(name)
-        for name, ends in self.of.get("rods", {}).items():
+        for name, ends in self.rods.items():
             self._rod(name, tuple(ends))
-        for name, given in self.of.get("inputs", {}).items():
-            if "turns" in given:
-                _one_of(f"the point of input {name!r}", self.points, given["about"])
-                _one_of(f"`along` of input {name!r}", self.directions, given["along"])
-                rolls = given["along"] in ("forward", "rearward")
-                self.turns[name] = Turn(self.points[given["about"]], self.directions[given["along"]], rolls)
-            elif "moves" not in given:
-                kind = next((kind for kind in INPUTS if kind in given), "")
-                _one_of(f"the kind of input {name!r}", INPUTS, kind or str(list(given)))
-                getattr(self, f"_{kind}")(name, given)
+        for name, given in self.driven.items():
+            kind = next((kind for kind in INPUTS if kind in given), "")
+            _one_of(f"the kind of input {name!r}", INPUTS, kind or str(list(given)))
+            getattr(self, f"_{kind}")(name, given)
         self._check()
         holders: dict[str, str] = {}
         for body, names in self.bodies.items():
             for point in names:
                 holders.setdefault(point, body)
         numbers, anchors = {n: k for k, n in enumerate(self.bodies)}, np.array([*self.anchors.values()])
-        drawing = Drawing(self.points, self.middle, self.size, numbers, anchors, holders)
         return Model(
             self.bodies,
-            drawing,
+            Drawing(self.points, self.middle, self.size, numbers, anchors, holders),
             tuple(self.joints),
-            tuple(self.senses),
             tuple(self.inputs),
+            tuple(self.senses),
+            self.moves,
             self.corners,
             self._loads(),
             self._dampers(),
             self.reported,
-            frozenset(self.bodies).difference(self.named),
+            tuple(body for body in self.named if body != CHASSIS),
             frozenset(self.unturned),
-            self.turns,
         )
 
     def _check(self) -> None:
@@ -146,8 +146,7 @@ class _Compiler:
             raise DescriptionError(
                 f"joints and inputs give {rows} rows for {unknowns} unknown velocities (6 for each of "
                 f"{bodies} moving bodies, 3 for each of {points} points), so {unknowns - rows} freedoms are "
-                "left over: "
-                "add an input or a joint",
+                "left over: add an input or a joint",
                 "rows",
                 rows,
             )
@@ -155,7 +154,7 @@ class _Compiler:
     # What is given
 
     def _directions(self) -> dict[str, Array]:
-        up, right = (unit_of(name, vector_of(name, name, self.of[name])) for name in ("up", "right"))
+        up, right = (_unit_of(name, _vector_of(name, name, self.of[name])) for name in ("up", "right"))
         skew = float(up @ right)
         if abs(skew) > LARGEST_SKEW:
             raise DescriptionError(
@@ -166,16 +165,18 @@ class _Compiler:
         directions = {"up": up, "right": right, "forward": np.cross(up, right)}
         return directions | {"down": -up, "left": -right, "rearward": np.cross(right, up)}
 
-    def _radius(self) -> float | None:
+    def _direction(self, name: str, given: Mapping[str, Any]) -> Array:
+        along = given.get("along", "up")
+        _one_of(f"`along` of input {name!r}", self.directions, along)
+        return self.directions[along]
+
+    def _corners(self) -> dict[str, Corner]:
+        """The wheel of each part, whose names have its own in front; or the only one."""
         radius = self.of.get("wheel_radius")
         if radius is not None and not (isinstance(radius, int | float) and 0.0 < radius < math.inf):
             raise DescriptionError(
                 f"wheel_radius is {radius!r}; a length above 0 is needed, in mm", "wheel_radius", radius
             )
-        return radius
-
-    def _corners(self) -> dict[str, Corner]:
-        """The wheel of each part, whose names have its own in front; or the only one."""
         side, car, roles = self.of.get("side"), car_of(self.of.get("car")), self.of.get("roles", {})
         sides = self.of.get("sides") or {"": "left" if side is None else side}
         corners = {}
@@ -191,7 +192,7 @@ class _Compiler:
             elif "wheel_axis" in own:
                 knuckle = next((b for b, names in self.named.items() if own["wheel_axis"][1] in names), "")
             axes = np.array([self.directions[name] for name in (side, "rearward", "up")])
-            corners[part] = Corner(side, axes, own, knuckle, self.radius, car)
+            corners[part] = Corner(side, axes, own, knuckle, radius, car)
         return corners
 
     def _loads(self) -> dict[str, Load]:
@@ -199,7 +200,7 @@ class _Compiler:
         for part, given in self.of.get("loads", {}).items():
             _one_of("the part of a load", self.corners, part)
             vectors = {"force": given.get("force"), "moment": given.get("moment", NOTHING)}
-            loads[part] = Load(*(vector_of(f"{n} of load {part!r}", part, of) for n, of in vectors.items()))
+            loads[part] = Load(*(_vector_of(f"{n} of load {part!r}", part, of) for n, of in vectors.items()))
         return loads
 
     def _dampers(self) -> dict[str, Row]:
@@ -208,7 +209,7 @@ class _Compiler:
         for part, corner in self.corners.items() if self.of.get("loads") else ():
             if "damper" in corner.roles:
                 name = f"{part}.damper" if part else "damper"
-                if name in self.of.get("rods", {}):
+                if name in self.rods:
                     raise DescriptionError(f"a rod and a role are both called {name!r}: rename the rod", name)
                 rows[part] = self._distance_row(f"rod {name}", *corner.ends("damper"))[0]
         return rows
@@ -246,23 +247,27 @@ class _Compiler:
 
     # Bodies and lines
 
-    def _add_point(self, body: str, point: str) -> str:
-        """A body that goes with a point and keeps the axes of the car."""
-        self.unturned.add(body)
-        return self._add(body, (point,))
-
     def _add(self, body: str, points: tuple[str, ...]) -> str:
-        """A body, whose origin is an end of its shortest lines, since rounding would turn these."""
-        places = np.array([self.points[point] for point in points])
+        """A body, whose origin is an end of its shortest lines, since rounding would turn these.
+
+        That of the chassis and of what it turns on is the middle.
+        """
+        places = np.array([self.points[point] for point in points]).reshape(-1, 3)
         apart = np.linalg.norm(places[:, None] - places, axis=-1)
         # A line of no length has no rounding either.
-        nearest = np.log(np.where(apart > 0.0, apart, 1.0)).sum(axis=1).argmin()
+        nearness = np.log(np.where(apart > 0.0, apart, 1.0)).sum(axis=1)
         self.bodies[body] = points
-        self.anchors[body] = self.middle if body == CHASSIS else places[nearest]
+        self.anchors[body] = places[nearness.argmin()] if points and body != CHASSIS else self.middle
         return body
 
     def _holders(self, point: str) -> list[str]:
         return [body for body, names in self.bodies.items() if point in names]
+
+    def _held(self, point: str) -> list[str]:
+        """The same, of a point of no body a body of its own, which does not turn."""
+        if not self._holders(point):
+            self.unturned.add(self._add(f"free point {point}", (point,)))
+        return self._holders(point)
 
     def _other_than(self, body: str, point: str, what: str) -> str:
         others = [holder for holder in self._holders(point) if holder != body]
@@ -287,6 +292,8 @@ class _Compiler:
             )
         return line / length, length
 
+    # Rows
+
     def _row(
         self, owner: str, kind: str, first: str, second: str, along: Array, one: Array, other: Array
     ) -> Row:
@@ -296,12 +303,8 @@ class _Compiler:
     def _between(
         self, owner: str, kind: str, ends: Ends, along: Array = NOTHING, beside: Array = NOTHING
     ) -> Row:
-        """A row of places in two bodies.
-
-        Args:
-            ends: the first body and the point there, and the second ones.
-            beside: what leads from these to the places meant, mm; a sum would be rounded as they are.
-        """
+        """A row of places in two bodies; `beside` leads from the points to those meant, mm: a sum would be
+        rounded as they are."""
         first, start, second, end = ends
         one, other = (
             (self.points[point] - self.anchors[body]) / self.size + beside / self.size
@@ -309,29 +312,20 @@ class _Compiler:
         )
         return self._row(owner, kind, first, second, along, one, other)
 
-    # Joints
-
     def _meet(self, owner: str, ends: Ends, along: Iterable[Array] = AXES) -> None:
         """Points of two bodies are in one place, along some directions of the first."""
         self.joints += [self._between(owner, "offset", ends, way) for way in along]
 
-    def _across(
-        self,
-        owner: str,
-        first: str,
-        second: str,
-        angles: Iterable[tuple[Array, Array]],
-        kept: Iterable[tuple[Array, Array]] = (),
-    ) -> None:
-        """Directions of two bodies stay at right angles; others keep their sense."""
-        for rows, pairs in ((self.joints, angles), (self.senses, kept)):
-            rows += [self._row(owner, "angle", first, second, one, NOTHING, other) for one, other in pairs]
+    def _angles(self, owner: str, first: str, second: str, pairs: Iterable[tuple[Array, Array]]) -> list[Row]:
+        """Products of directions of two bodies."""
+        return [self._row(owner, "angle", first, second, one, NOTHING, other) for one, other in pairs]
 
-    def _hinge(self, owner: str, first: str, second: str, start: str, end: str) -> None:
-        x, y, z = frame = frame_about(self._line(owner, start, end)[0])
+    def _hinge(self, owner: str, first: str, second: str, point: str, axis: Array) -> None:
+        x, y, z = frame = frame_about(axis)
         # Along its own axes, so that one row at a time follows from others where hinges are parallel.
-        self._meet(owner, (first, start, second, start), frame)
-        self._across(owner, first, second, ((y, z), (x, z)), ((z, z),))
+        self._meet(owner, (first, point, second, point), frame)
+        self.joints += self._angles(owner, first, second, ((y, z), (x, z)))
+        self.senses += self._angles(owner, first, second, ((z, z),))
 
     def _distance_row(self, owner: str, start: str, end: str) -> tuple[Row, float]:
         """The distance of points of two bodies, and how far apart they are drawn, mm."""
@@ -347,10 +341,12 @@ class _Compiler:
         row = self._between(owner, "distance", (firsts[0], start, seconds[0], end))
         return row._replace(drawn=length / self.size), length
 
+    # Joints
+
     def _shared_points(self) -> None:
         """Hinges, and ball joints of what these do not hold together; n - 1 for n bodies."""
         hinges: dict[frozenset[str], list[str]] = {}
-        driven = {given.get("angle") for given in self.of.get("inputs", {}).values()}
+        driven = {given.get("angle") for given in self.driven.values()}
         for first, second in combinations(self.named, 2):
             shared = [point for point in self.named[second] if point in self.named[first]]
             if len(shared) > 2:
@@ -360,23 +356,19 @@ class _Compiler:
                     second,
                     shared,
                 )
-            if len(shared) == 2:
-                members = hinges.setdefault(frozenset(shared), [first])
-                if second not in members:
-                    members.append(second)
-                    name = f"hinge of {second} on {members[0]}"
-                    self._hinge(name, members[0], second, *shared)
-                    if self._are_shared(shared) and not driven & {first, second}:
-                        body = self._felt_by(first, second)
-                        self.reported[tuple(p for p in self.named[body] if p in shared)] = name, body
+            members = hinges.setdefault(frozenset(shared), [first]) if len(shared) == 2 else [second]
+            if second not in members:
+                members.append(second)
+                name = f"hinge of {second} on {members[0]}"
+                self._hinge(name, members[0], second, shared[0], self._line(name, *shared)[0])
+                if self._are_shared(shared) and not driven & {first, second}:
+                    body = self._felt_by(first, second)
+                    self.reported[tuple(p for p in self.named[body] if p in shared)] = name, body
         for point in self.points:
             apart = [[body] for body in self._holders(point)]
-            for line, members in hinges.items():
-                if point in line:
-                    joined = [group for group in apart if set(group) & set(members)]
-                    apart = [group for group in apart if group not in joined] + [
-                        [body for group in joined for body in group]
-                    ]
+            for members in (members for line, members in hinges.items() if point in line):
+                joined = [group for group in apart if set(group) & set(members)]
+                apart = [group for group in apart if group not in joined] + [[*chain(*joined)]]
             apart.sort(key=lambda group: group[0] != CHASSIS)
             for number, group in enumerate(apart[1:], 1):
                 name = f"ball joint {point}" + (f" of {group[0]}" if number > 1 else "")
@@ -403,11 +395,11 @@ class _Compiler:
         frame = frame_about(along)
         for point in points:
             label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
-            owners, free = self._holders(point), f"free point {point}"
-            held = self._other_than(body, point, what) if owners else self._add_point(free, point)
+            owners = self._holders(point)
+            held = self._other_than(body, point, what) if owners else self._held(point)[0]
             self._meet(label, (body, through, held, point), frame[:2])
             # A point of no body has the force itself, if a rod pulls it that is not along the slide.
-            rods = [ends for ends in self.of.get("rods", {}).values() if point in ends]
+            rods = [ends for ends in self.rods.values() if point in ends]
             felt = len(owners) == 1 or (not owners and any(not {*ends} <= {*points} for ends in rods))
             if felt and slide["turns"] and self.guided.count(point) == 1:
                 self.reported[point,] = label, self._felt_by(held, body) if owners else held
@@ -419,7 +411,9 @@ class _Compiler:
                 own = self._line(what, *guided[:2])[0]
                 own = -own if float(own @ along) < 0.0 else own
                 x = turned_least(f"{what} of {second}", frame, own)[0]
-                self._across(f"slide {name} of {second}", body, second, ((frame[1], x),), ((frame[0], x),))
+                owner = f"slide {name} of {second}"
+                self.joints += self._angles(owner, body, second, ((frame[1], x),))
+                self.senses += self._angles(owner, body, second, ((frame[0], x),))
                 return
         raise DescriptionError(
             f"{what} has turns = false, and no two of its points {list(points)} are of one body: "
@@ -432,23 +426,22 @@ class _Compiler:
             raise DescriptionError(f"rod {name!r} has {len(ends)} points; two are needed", name, ends)
         _one_of(f"an end of rod {name!r}", self.points, *ends)
         for end in ends:
-            if not self._holders(end):
-                self._add_point(f"free point {end}", end)
+            self._held(end)
         self.joints.append(self._distance_row(f"rod {name}", *ends)[0])
 
     # Inputs
 
     def _over(self, name: str, ends: Ends, way: Array, beside: Array = NOTHING, **more: Any) -> None:
         """How far a place in a body is from one in another, along a direction of that (see `_between`)."""
-        value: dict[str, Any] = {"value": name, "factor": 1.0 / self.size}
-        value["drawn"] = float(way @ (self.points[ends[3]] - self.points[ends[1]])) + 0.0
-        self.inputs.append(Input(self._between(name, "offset", ends, way, beside), **(value | more)))
+        drawn, per_unit = float(way @ (self.points[ends[3]] - self.points[ends[1]])), more.get("steers", 1.0)
+        row = self._between(name, "offset", ends, way, beside)
+        self.inputs.append(Input(row, name, per_unit / self.size, drawn / per_unit + 0.0, **more))
 
-    def _turn(self, name: str, first: str, second: str, axis: Array, moves: bool = False) -> None:
+    def _turn(self, name: str, first: str, second: str, axis: Array, **more: Any) -> None:
         """How far a body is turned against another, from the drawing."""
         x, y, _ = frame_about(axis)
         row = self._row(name, "turn", first, second, x, NOTHING, -y)
-        self.inputs.append(Input(row, name, 1.0, 0.0, moves=moves))
+        self.inputs.append(Input(row, name, 1.0, 0.0, **more))
 
     def _angle(self, name: str, given: Mapping[str, Any]) -> None:
         body, start = given["angle"], given["from"]
@@ -469,19 +462,11 @@ class _Compiler:
             return
         of, about = given["of"], given["about"]
         _one_of(f"a point of input {name!r}", self.named[body], of, about)
-        length, ground = self._line(f"input {name!r}", about, of)[1], CHASSIS
-        if about not in self.named[CHASSIS]:
-            # The direction is the car's: a body that goes with the point and does not turn has it.
-            ground = self._add_point(f"{about} in the axes of the car", about)
-            self._meet(f"place of {ground}", (body, about, ground, about))
-        way = self.directions[start]
-        cosine = float(way @ (self.points[of] - self.points[about])) / length
-        law: dict[str, Any] = {
-            "factor": length / self.size,
-            "cosine": True,
-            "drawn": math.acos(min(max(cosine, -1.0), 1.0)),
-        }
-        self._over(name, (ground, about, body, of), way, **law)
+        along, length = self._line(f"input {name!r}", about, of)
+        way, factor = self.directions[start], length / self.size
+        drawn = math.acos(min(max(float(way @ (self.points[of] - self.points[about])) / length, -1.0), 1.0))
+        (row,) = self._angles(name, CHASSIS, body, ((way, factor * along),))
+        self.inputs.append(Input(row, name, factor, drawn, cosine=True))
 
     def _travel(self, name: str, given: Mapping[str, Any]) -> None:
         self._slides(name, given["travel"], 1.0)
@@ -504,24 +489,22 @@ class _Compiler:
         for slide in slides:
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second, (through, way) = self._other_than(body, point, f"slide {slide!r}"), self._line_of(slide)
-            drawn = float(way @ (self.points[point] - self.points[through])) / per_unit + 0.0
-            law: dict[str, Any] = {"factor": per_unit / self.size, "drawn": drawn}
-            self._over(name, (body, through, second, point), way, steers=per_unit, **law)
+            self._over(name, (body, through, second, point), way, steers=per_unit)
 
     def _height(self, name: str, given: Mapping[str, Any]) -> None:
-        point, along = given["height"], given.get("along", "up")
+        point = given["height"]
         _one_of(f"the point of input {name!r}", self.points, point)
-        _one_of(f"`along` of input {name!r}", self.directions, along)
         body = self._other_than(CHASSIS, point, f"input {name!r}")
-        self._over(name, (CHASSIS, point, body, point), self.directions[along])
+        self._over(name, (CHASSIS, point, body, point), self._direction(name, given))
 
     def _contact(self, name: str, given: Mapping[str, Any]) -> None:
         inner, centre = given["contact"]
         _one_of(f"a point of input {name!r}", self.points, inner, centre)
         carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
-        if carrier is None or self.radius is None:
+        radius = self.of.get("wheel_radius")
+        if carrier is None or radius is None:
             needed = "two points of one body" if carrier is None else "a wheel_radius above 0"
-            found = [inner, centre] if carrier is None else self.radius
+            found = [inner, centre] if carrier is None else radius
             raise DescriptionError(f"input {name!r} needs {needed}, not {found!r}", name, found)
         axis, up = self._line(f"input {name!r}", inner, centre)[0], self.directions["up"]
         level = np.cross(axis, up)
@@ -531,44 +514,30 @@ class _Compiler:
                 name,
             )
         level = level / np.linalg.norm(level)
-        down = -self.radius * np.cross(level, axis)
         over = given.get("over", CHASSIS)
         _one_of(f"`over` of input {name!r}", (CHASSIS, "ground"), over)
-        base = self.ground if over == "ground" else CHASSIS
+        on_ground = over == "ground"
+        base = next(iter(self.bodies)) if on_ground else CHASSIS
         disc = self._add(f"disc of {name}", (inner, centre))
-        self._hinge(f"axle of {name}", carrier, disc, inner, centre)
-        self._across(f"level of {name}", base, disc, ((up, level),))
-        self._over(name, (base, centre, disc, centre), up, beside=down)
-
-    @cached_property
-    def ground(self) -> str:
-        """The body that stands to the chassis as the ground does: each input that moves the car takes it from
-        one body to the next, turns before displacements."""
-        moving = [(n, given) for n, given in self.of["inputs"].items() if {"turns", "moves"} & {*given}]
-        body, place = CHASSIS, self.named[CHASSIS][0]
-        for name, given in sorted(moving, key=lambda one: "moves" in one[1]):
-            turned = "turns" in given
-            at = given["about"] if turned else place
-            _one_of(f"the point of input {name!r}", self.points, at)
-            _one_of(f"`along` of input {name!r}", self.directions, given["along"])
-            ground = self._add(f"ground of {name}", (at,))
-            x, y, z = frame_about(self.directions[given["along"]])
-            # The car goes along z as the ground sees it, or turns about it.
-            ends = (ground, at, body, at)
-            self._meet(f"place of {ground}", ends, (x, y, z) if turned else (x, y))
-            self._across(f"axes of {ground}", ground, body, ((x, z), (y, z)), ((z, z),))
-            if turned:
-                self._turn(name, ground, body, z, moves=True)
-            else:
-                self._across(f"axes of {ground}", ground, body, ((x, y),), ((x, x),))
-                self._over(name, ends, z, moves=True)
-            body = ground
-        return body
+        self._hinge(f"axle of {name}", carrier, disc, inner, axis)
+        self.joints += self._angles(f"level of {name}", base, disc, ((up, level),))
+        down = -radius * np.cross(level, axis)
+        self._over(name, (base, centre, disc, centre), up, beside=down, over_ground=on_ground)
 
     def _distance(self, name: str, given: Mapping[str, Any]) -> None:
         _one_of(f"a point of input {name!r}", self.points, *given["distance"])
         row, length = self._distance_row(f"input {name!r}", *given["distance"])
         self.inputs.append(Input(row, name, 1.0 / self.size, length))
+
+    def _turns(self, name: str, given: Mapping[str, Any]) -> None:
+        _one_of(f"the point of input {name!r}", self.points, given["about"])
+        axis, (ground, car) = self._direction(name, given), self.carriers[name]
+        self._hinge(f"line of {name}", ground, car, given["about"], axis)
+        rolls = given["along"] in ("forward", "rearward")
+        self._turn(name, ground, car, axis, turns=True, rolls=rolls)
+
+    def _moves(self, name: str, given: Mapping[str, Any]) -> None:
+        self.moves[name] = self._direction(name, given)
 
 
 def frame_about(z: Array) -> Array:
@@ -600,7 +569,7 @@ def _one_of(what: str, allowed: Iterable[str], *values: object) -> None:
             raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)
 
 
-def vector_of(what: str, name: str, value: object) -> Array:
+def _vector_of(what: str, name: str, value: object) -> Array:
     """Three finite floats, or a DescriptionError that says what is wrong with `what`."""
     try:
         array = np.array(value, dtype=float)
@@ -611,9 +580,9 @@ def vector_of(what: str, name: str, value: object) -> Array:
     return array
 
 
-def point_of(name: str, value: object) -> Array:
+def _point_of(name: str, value: object) -> Array:
     """Coordinates of a point, mm, or a DescriptionError that says what is wrong with them."""
-    point = vector_of(f"point {name!r}", name, value)
+    point = _vector_of(f"point {name!r}", name, value)
     if np.abs(point).max() > LARGEST_COORDINATE:
         raise DescriptionError(
             f"point {name!r} is {point.tolist()}; products of such coordinates overflow: correct it or use a "
@@ -624,7 +593,7 @@ def point_of(name: str, value: object) -> Array:
     return point
 
 
-def unit_of(name: str, vector: Array) -> Array:
+def _unit_of(name: str, vector: Array) -> Array:
     """The direction of a vector, or a DescriptionError where it is zero."""
     largest = float(np.abs(vector).max())
     if largest == 0:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from absolute.solution import Array
+from absolute.vectors import Array
 
 
 @dataclass(frozen=True)

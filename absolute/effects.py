@@ -20,7 +20,7 @@ and the screw axis have it; one of velocities, which has no gradients, to `OF_VE
 both wheels of an axle to `AXLE_EFFECTS`.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,15 +31,16 @@ from absolute.errors import DescriptionError, InputError
 from absolute.model import Model
 from absolute.newton import SMALLEST_RCOND
 from absolute.results import Motion
-from absolute.solution import Array
-from absolute.vectors import EPS
+from absolute.vectors import EPS, Array
 
 Number = Callable[[Motion], Dual]
 # A number of an axis, by its direction, upward, and the way from a place of it to the wheel centre.
 OfAxis = Callable[[Motion, Dual, Dual], Dual]
+Values = Callable[[Motion], Array]
 
 OUTBOARD, REARWARD, UP = 0, 1, 2
 TIME = "time"
+GRADIENTS = {"travel": "mm", "rack": "mm", "roll": "rad", TIME: "s"}
 # As much of a velocity may be rounding at the largest condition number that is not refused.
 ROUNDING = EPS / SMALLEST_RCOND
 # What rounding does not tell from none: of a velocity a part of it, and of the knuckle a turn, rad, for a
@@ -66,14 +67,68 @@ class Effect:
     by: str = ""
 
 
-def angle(role: str, rise: int, run: int, sense: float = 1.0) -> Number:
-    """atan2(sense * rise, run) of the line of a role, by its components."""
+# Lines and places of a wheel
 
-    def of(motion: Motion) -> Dual:
-        line = _along(motion, role)
-        return arctan2(line[rise] if sense > 0.0 else -line[rise], line[run])
 
-    return of
+def _along(motion: Motion, role: str) -> Dual:
+    """The line of a role by its components, (3, N)."""
+    return motion.components(motion.line(*motion.corner.ends(role)))
+
+
+def _centre(motion: Motion) -> str:
+    return motion.corner.ends("wheel_axis")[1]
+
+
+def _drawn_axis(motion: Motion) -> Dual:
+    """The line from the inner point of the spin axis to the wheel centre in the drawing, (3, 1)."""
+    inner, centre = motion.corner.ends("wheel_axis")
+    return motion.drawn(centre) - motion.drawn(inner)
+
+
+def contact(motion: Motion, drawn: bool = False) -> Dual:
+    """From the wheel centre to the contact point, (3, N)."""
+    spin = _drawn_axis(motion) if drawn else motion.line(*motion.corner.ends("wheel_axis"))
+    normal = spin / hypot(*spin)
+    up = constant(motion.corner.axes[UP][:, None])
+    down = normal * motion.components(normal)[UP] - up
+    return down * (constant(motion.corner.radius) / hypot(*down))
+
+
+def _contact_moved(motion: Motion) -> Dual:
+    """From the drawn contact point to the contact point, by its components, (3, N)."""
+    return motion.components(motion.moved(_centre(motion)) + (contact(motion) - contact(motion, drawn=True)))
+
+
+def _contact_place(motion: Motion) -> Array:
+    """The contact point from the origin, by its components, (3, N)."""
+    centre = _centre(motion)
+    return motion.components(motion.drawn(centre) + motion.moved(centre) + contact(motion)).value
+
+
+# Numbers of places
+
+
+def _of_line(role: str, number: Callable[..., Dual]) -> Number:
+    """A number of the line of a role by its components."""
+    return lambda motion: number(*_along(motion, role))
+
+
+def _caster(outboard: Dual, rearward: Dual, up: Dual) -> Dual:
+    return arctan2(rearward, up)
+
+
+def _kingpin(outboard: Dual, rearward: Dual, up: Dual) -> Dual:
+    return arctan2(-outboard, up)
+
+
+def _toe_by_arcsine(outboard: Dual, rearward: Dual, up: Dual) -> Dual:
+    """Asin of the forward part of the unit spin axis, by the part of it in the plane across the car."""
+    return arctan2(-rearward, hypot(outboard, up))
+
+
+def toe_change_by_arcsine(motion: Motion) -> Dual:
+    """Less what it is in the drawing: the static setting."""
+    return ANGLES["toe_by_arcsine"](motion) - _toe_by_arcsine(*motion.components(_drawn_axis(motion)))
 
 
 def steer_angle(motion: Motion) -> Dual:
@@ -82,31 +137,16 @@ def steer_angle(motion: Motion) -> Dual:
     return toe if motion.corner.side == "right" else -toe
 
 
-def travel(motion: Motion) -> Dual:
-    """How far the wheel centre has gone up in the chassis' frame."""
-    still = replace(motion, turns=())
-    return still.components(still.moved(_centre(still)))[UP]
-
-
-def steering(number: OfAxis) -> Number:
-    """A number of the steering axis."""
-    return lambda motion: number(motion, _along(motion, "steering_axis"), _from_lower(motion))
-
-
-def screw(number: OfAxis) -> Callable[[Motion], Array]:
-    """The same of the screw axis.
-
-    Of a turn w and a velocity v of the wheel centre the way to it is v x w / w^2, but for its part along the
-    axis.
-    """
-
-    def of(motion: Motion) -> Array:
-        w, v = _screw(motion)
-        square = (w * w).sum(axis=0)
-        axis, off = (motion.corner.axes @ of for of in (w, np.cross(v, w, axis=0) / square))
-        return number(motion, constant(axis * np.sign(axis[UP])), constant(off)).value
-
-    return of
+ANGLES: Mapping[str, Number] = {
+    "camber": _of_line("wheel_axis", lambda outboard, rearward, up: arctan2(-up, outboard)),
+    "kingpin": _of_line("steering_axis", _kingpin),
+    "toe": _of_line("wheel_axis", lambda outboard, rearward, up: arctan2(-rearward, outboard)),
+    "caster": _of_line("steering_axis", _caster),
+    "steer_angle": steer_angle,
+    "camber_by_arcsine": _of_line("wheel_axis", lambda o, rearward, up: arctan2(-up, hypot(o, rearward))),
+    "toe_by_arcsine": _of_line("wheel_axis", _toe_by_arcsine),
+    "toe_change_by_arcsine": toe_change_by_arcsine,
+}
 
 
 def _level_with(axis: Dual, point: Dual) -> Dual:
@@ -136,65 +176,117 @@ AXIS_LENGTHS: Mapping[str, OfAxis] = {
 }
 
 
-def camber_by_arcsine(motion: Motion) -> Dual:
-    """-asin of the upward part of the unit spin axis, by the part of it that is level."""
-    outboard, rearward, up = _along(motion, "wheel_axis")
-    return arctan2(-up, hypot(outboard, rearward))
+def _of_steering(number: OfAxis) -> Number:
+    """A number of the steering axis."""
+
+    def of(motion: Motion) -> Dual:
+        lower, _ = motion.corner.ends("steering_axis")
+        centre = motion.components(motion.line(lower, _centre(motion)))
+        return number(motion, _along(motion, "steering_axis"), centre)
+
+    return of
 
 
-def toe_by_arcsine(motion: Motion, drawn: bool = False) -> Dual:
-    """Asin of the forward part of the unit spin axis, by the part of it in the plane across the car."""
-    outboard, rearward, up = motion.components(_spin_axis(motion, drawn))
-    return arctan2(-rearward, hypot(outboard, up))
+def travel(motion: Motion) -> Dual:
+    """How far the wheel centre has gone up in the chassis' frame."""
+    return motion.components(motion.in_the_car.moved(_centre(motion)))[UP]
 
 
-def toe_change_by_arcsine(motion: Motion) -> Dual:
-    """The same less what it is in the drawing: the static setting."""
-    return toe_by_arcsine(motion) - toe_by_arcsine(motion, drawn=True)
-
-
-ANGLES: Mapping[str, Number] = {
-    "camber": angle("wheel_axis", UP, OUTBOARD, -1.0),
-    "kingpin": angle("steering_axis", OUTBOARD, UP, -1.0),
-    "toe": angle("wheel_axis", REARWARD, OUTBOARD, -1.0),
-    "caster": angle("steering_axis", REARWARD, UP),
-    "steer_angle": steer_angle,
-    "camber_by_arcsine": camber_by_arcsine,
-    "toe_by_arcsine": toe_by_arcsine,
-    "toe_change_by_arcsine": toe_change_by_arcsine,
-}
 LENGTHS: Mapping[str, Number] = {
     "travel": travel,
-    "contact_travel": lambda motion: _contact_moved(replace(motion, turns=()))[UP],
+    "contact_travel": lambda motion: _contact_moved(motion.in_the_car)[UP],
     "half_track_change": lambda motion: _contact_moved(motion)[OUTBOARD],
     "recession": lambda motion: _contact_moved(motion)[REARWARD],
-    **{name: steering(number) for name, number in AXIS_LENGTHS.items()},
+    **{name: _of_steering(number) for name, number in AXIS_LENGTHS.items()},
     "damper_length": lambda motion: hypot(*motion.line(*motion.corner.ends("damper"))),
 }
 
 
-def roll_centre_height(motion: Motion) -> Array:
+# Numbers of velocities
+
+
+def _slope(motion: Motion, number: Dual, by: str) -> Array:
+    return number.slopes[..., -1 if by == TIME else motion.by.index((motion.part, by))]
+
+
+def _ratio(rise: Array | float, run: Array) -> Array:
+    """Not a number where run is zero."""
+    return np.where(run == 0.0, np.nan, rise / run)
+
+
+def _rising(velocity: Array) -> Array:
+    """The upward part of a velocity by its components, (3, N); zero where rounding may have made it."""
+    up = velocity[UP]
+    return np.where(np.abs(up) <= LEAST * np.linalg.norm(velocity, axis=0), 0.0, up)
+
+
+def _travelled(motion: Motion) -> Array:
+    """How fast the wheel centre goes up in the chassis' frame with the input that moves the wheel, (N,)."""
+    moved = motion.components(motion.in_the_car.moved(_centre(motion)))
+    return _rising(_slope(motion, moved, "travel"))
+
+
+def _spin(motion: Motion, by: str) -> Array:
+    """w of the knuckle, (3, N)."""
+    return motion.spin(motion.corner.carrier)[..., motion.by.index((motion.part, by))]
+
+
+def _contact_velocity(motion: Motion) -> Array:
+    """v by its components, (3, N)."""
+    velocity = motion.moved(_centre(motion)) + motion.riding(motion.corner.carrier, contact(motion))
+    return _slope(motion, motion.components(velocity), "travel")
+
+
+def _over_the_contact(motion: Motion, velocity: Array) -> Array:
     """Height above the contact point at which its normal meets the car's middle plane, front view.
 
     The normal is at a right angle to the velocity of the contact point as one of the knuckle; the plane goes
     through the origin. Not a number where that velocity is level.
     """
-    velocity = _contact_velocity(motion)
-    return _contact_place(motion)[OUTBOARD].value * _ratio(velocity[OUTBOARD], _rising(velocity))
+    return np.asarray(_contact_place(motion)[OUTBOARD] * _ratio(velocity[OUTBOARD], _rising(velocity)))
 
 
-def instant_centre(h: int, component: int, sense: float = 1.0) -> Callable[[Motion], Array]:
+def arm_roll_centre_height(motion: Motion) -> Array:
+    """As `roll_centre_height`, of the arms alone: the knuckle turns about its steering axis as well, by as
+    much as leaves a pure rotation.
+
+    With u the velocity of the axis' lower point and w the spin of the knuckle, (w + f k) . u = 0. Not a
+    number where u is square to the axis k, or none.
+    """
+    (lower, upper), centre = motion.corner.ends("steering_axis"), _centre(motion)
+    k, to_centre = motion.line(lower, upper).value, motion.line(lower, centre)
+    # The lower point moves as the wheel centre does, and the arm from there turns.
+    moving = motion.moved(centre) - motion.riding(motion.corner.carrier, to_centre)
+    u, w = _slope(motion, moving, "travel"), _spin(motion, "travel")
+    arm = to_centre.value + contact(motion).value
+    speed, turning, far = (np.linalg.norm(vector, axis=0) for vector in (u, w, arm))
+    along = np.where(speed <= LEAST * turning * far, 0.0, (k * u).sum(axis=0))
+    turn = w - k * _ratio((w * u).sum(axis=0), along)
+    return _over_the_contact(motion, motion.corner.axes @ (u + np.cross(turn, arm, axis=0)))
+
+
+def instant_centre(h: int, component: int, sense: float = 1.0) -> Values:
     """How far the instant centre in the plane of h and up is from c, along h or up; no number at infinity."""
 
     def of(motion: Motion) -> Array:
-        velocity, spin = _contact_velocity(motion), _spin(motion, "travel")
-        axes = motion.corner.axes
-        turn = np.cross(axes[h], axes[UP]) @ spin
+        velocity, axes = _contact_velocity(motion), motion.corner.axes
+        turn = np.cross(axes[h], axes[UP]) @ _spin(motion, "travel")
         far = np.abs(velocity[UP]) > FARTHEST * motion.corner.radius * np.abs(turn)
         turn = np.where(far, 0.0, turn)
         return sense * (_ratio(velocity[h], turn) if component == UP else -_ratio(velocity[UP], turn))
 
     return of
+
+
+def _anti(motion: Motion, velocity: Array, share: str) -> Array:
+    """100 share s (v . rearward / v . up) wheelbase / (height of the centre of gravity - contact travel) with
+    s = -1 at the front and 1 at the rear, (N,)."""
+    names = ("axle", "wheelbase", "centre_of_gravity_height", share)
+    sign, wheelbase, drawn_height, part = needed(motion.corner.car, *names)
+    height = drawn_height - LENGTHS["contact_travel"](motion).value
+    return np.asarray(
+        100.0 * part * sign * _ratio(velocity[REARWARD] * wheelbase, _rising(velocity) * height)
+    )
 
 
 def anti_brake(motion: Motion) -> Array:
@@ -215,24 +307,6 @@ def anti_drive(motion: Motion) -> Array:
     return _anti(motion, _slope(motion, velocity, "travel"), "drive_share")
 
 
-def arm_roll_centre_height(motion: Motion) -> Array:
-    """As `roll_centre_height`, of the arms alone: the knuckle turns about its steering axis as well, by as
-    much as leaves a pure rotation.
-
-    With u the velocity of the axis' lower point and w the spin of the knuckle, (w + f k) . u = 0. Not a
-    number where u is square to the axis k, or none.
-    """
-    lower, _ = motion.corner.ends("steering_axis")
-    k = motion.line(*motion.corner.ends("steering_axis")).value
-    u, w = _slope(motion, _from_centre(motion, lower), "travel"), _spin(motion, "travel")
-    arm = motion.line(lower, _centre(motion)).value + contact(motion).value
-    speed, turning, far = (np.linalg.norm(vector, axis=0) for vector in (u, w, arm))
-    along = np.where(speed <= LEAST * turning * far, 0.0, (k * u).sum(axis=0))
-    turn = w - k * _ratio((w * u).sum(axis=0), along)
-    velocity = motion.corner.axes @ (u + np.cross(turn, arm, axis=0))
-    return _contact_place(motion)[OUTBOARD].value * _ratio(velocity[OUTBOARD], _rising(velocity))
-
-
 def damper_per_wheel(motion: Motion) -> Array:
     """What the damper is shortened by for each mm of travel; not a number where the wheel does not travel."""
     return -_ratio(_slope(motion, LENGTHS["damper_length"](motion), "travel"), _travelled(motion))
@@ -249,7 +323,7 @@ def wheel_per_damper(motion: Motion) -> Array:
 def spring_force(motion: Motion) -> Array:
     """Rate times what the spring is shorter than free, N: it pushes its ends apart."""
     rate, free = needed(motion.corner.car, "spring_rate", "spring_free_length")
-    return rate * (free - LENGTHS["damper_length"](motion).value)
+    return np.asarray(rate * (free - LENGTHS["damper_length"](motion).value))
 
 
 def wheel_rate(motion: Motion) -> Array:
@@ -258,20 +332,44 @@ def wheel_rate(motion: Motion) -> Array:
     return np.asarray(rate * damper_per_wheel(motion) ** 2)
 
 
+def _screw(motion: Motion) -> tuple[Array, Array]:
+    """Spin of the knuckle and velocity of the wheel centre with the rack, (3, N); not numbers where it does
+    not turn as the rack moves, or about no line that leads up."""
+    w, v = _spin(motion, "rack"), _slope(motion, motion.moved(_centre(motion)), "rack")
+    turns = np.abs(motion.corner.axes[UP] @ w) * motion.corner.radius > LEAST
+    return np.where(turns, w, np.nan), v
+
+
 def screw_pitch(motion: Motion) -> Array:
     """How far the knuckle goes along its screw axis for a radian about it, mm, as the rack moves."""
     w, v = _screw(motion)
     return np.asarray((w * v).sum(axis=0) / (w * w).sum(axis=0))
 
 
-OF_RACK: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
-    "screw_kingpin": ("rad", screw(lambda motion, axis, centre: arctan2(-axis[OUTBOARD], axis[UP]))),
-    "screw_caster": ("rad", screw(lambda motion, axis, centre: arctan2(axis[REARWARD], axis[UP]))),
-    **{f"screw_{name}": ("mm", screw(number)) for name, number in AXIS_LENGTHS.items()},
+def _of_screw(number: OfAxis) -> Values:
+    """A number of the screw axis.
+
+    Of a turn w and a velocity v of the wheel centre the way to it is v x w / w^2, but for its part along the
+    axis.
+    """
+
+    def of(motion: Motion) -> Array:
+        w, v = _screw(motion)
+        square = (w * w).sum(axis=0)
+        axis, off = (motion.corner.axes @ of for of in (w, np.cross(v, w, axis=0) / square))
+        return number(motion, constant(axis * np.sign(axis[UP])), constant(off)).value
+
+    return of
+
+
+OF_RACK: Mapping[str, tuple[str, Values]] = {
+    "screw_kingpin": ("rad", _of_screw(lambda motion, axis, centre: _kingpin(*axis))),
+    "screw_caster": ("rad", _of_screw(lambda motion, axis, centre: _caster(*axis))),
+    **{f"screw_{name}": ("mm", _of_screw(number)) for name, number in AXIS_LENGTHS.items()},
     "screw_pitch": ("mm/rad", screw_pitch),
 }
-OF_VELOCITIES: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
-    "roll_centre_height": ("mm", roll_centre_height),
+OF_VELOCITIES: Mapping[str, tuple[str, Values]] = {
+    "roll_centre_height": ("mm", lambda motion: _over_the_contact(motion, _contact_velocity(motion))),
     "arm_roll_centre_height": ("mm", arm_roll_centre_height),
     "damper_per_wheel": ("mm/mm", damper_per_wheel),
     "wheel_per_damper": ("mm/mm", wheel_per_damper),
@@ -287,44 +385,83 @@ OF_VELOCITIES: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
 }
 
 
-def derived(number: Number, by: str) -> Callable[[Motion], Array]:
-    """A number, or its change: for each mm of travel, all other inputs and the chassis held; for each mm of
+def _gradient(number: Number, by: str) -> Values:
+    """The change of a number: for each mm of travel, all other inputs and the chassis held; for each mm of
     the slide, or rad of roll, all else held; for each second, as everything moves."""
 
     def of(motion: Motion) -> Array:
-        found = number(motion)
-        if not by:
-            return found.value
-        slope = _slope(motion, found, by)
+        slope = _slope(motion, number(motion), by)
         return _ratio(slope, _travelled(motion)) if by == "travel" else slope
 
     return of
 
 
-def _wheel_effects() -> Iterator[tuple[str, Effect]]:
-    for unit, numbers in (("rad", ANGLES), ("mm", LENGTHS)):
-        for name, number in numbers.items():
-            yield name, Effect(unit, derived(number, ""))
-            for by, per in (("travel", "mm"), ("rack", "mm"), ("roll", "rad"), (TIME, "s")):
-                yield f"{name}_by_{by}", Effect(f"{unit}/{per}", derived(number, by), by)
-    for by, table in (("travel", OF_VELOCITIES), ("rack", OF_RACK)):
-        for name, (unit, value) in table.items():
-            yield name, Effect(unit, value, by)
+def _value(number: Number) -> Values:
+    return lambda motion: number(motion).value
 
 
-def track(left: Motion, right: Motion) -> Array:
-    """Distance of both contact points along right."""
-    return np.asarray(_apart(left, right)[0])
+def _with_gradients(unit: str, numbers: Mapping[str, Number]) -> dict[str, Effect]:
+    found = {}
+    for name, number in numbers.items():
+        found[name] = Effect(unit, _value(number))
+        for by, per in GRADIENTS.items():
+            found[f"{name}_by_{by}"] = Effect(f"{unit}/{per}", _gradient(number, by), by)
+    return found
 
 
-def axle_roll_centre_offset(left: Motion, right: Motion) -> Array:
-    """The axle's roll centre from the middle plane, through the origin, along right."""
-    return _axle_roll_centre(left, right)[0]
+# Numbers that both wheels of an axle make
 
 
-def axle_roll_centre_height(left: Motion, right: Motion) -> Array:
-    """The axle's roll centre above the line through both contact points, along up."""
-    return _axle_roll_centre(left, right)[1]
+def _drawn_apart(left: Motion, right: Motion) -> Array:
+    """From the left wheel centre to the right one as drawn, by the components of the right one, (3, 1)."""
+    return right.components(right.drawn(_centre(right)) - left.drawn(_centre(left))).value
+
+
+def _apart(left: Motion, right: Motion) -> Array:
+    """From the left contact point to the right one along right and up, (2, N).
+
+    The drawn places are subtracted first: far out, each of the others would be rounded as they are.
+    """
+    drawn = _drawn_apart(left, right)
+    one, other = (of.components(of.moved(_centre(of)) + contact(of)).value for of in (left, right))
+    return np.array([drawn[OUTBOARD] + one[OUTBOARD] + other[OUTBOARD], drawn[UP] - one[UP] + other[UP]])
+
+
+def _front_view(motion: Motion) -> tuple[Array, Array]:
+    """The contact point and its velocity with travel along right and up, (2, N) each; the velocity zero where
+    rounding may have made it."""
+    velocity, size = _contact_velocity(motion), motion.mechanism.drawing.size
+    out = np.array([[1.0 if motion.corner.side == "right" else -1.0], [1.0]])
+    place, seen = (out * of[[OUTBOARD, UP]] for of in (_contact_place(motion), velocity))
+    speed = size * np.linalg.norm(_spin(motion, "travel"), axis=0) + np.linalg.norm(velocity, axis=0)
+    return place, np.where(np.hypot(*seen) <= ROUNDING * speed, 0.0, seen)
+
+
+def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
+    """Where the normals of both contact points meet in the front view, (N,) each: offset and height.
+
+    With c, d the contact points and v, w their velocities there, it is c + x with v . x = 0 and
+    w . x = w . (d - c). Not a number where the normals are parallel or a velocity is zero.
+    """
+    (c, v), (_, w) = _front_view(left), _front_view(right)
+    turn, apart = v[0] * w[1] - v[1] * w[0], _apart(left, right)
+    speeds = np.hypot(*v) * np.hypot(*w)
+    turn = np.where(np.abs(turn) <= ROUNDING * speeds, 0.0, turn)
+    x = _ratio((w * apart).sum(axis=0), turn) * np.array([-v[1], v[0]])
+    return c[0] + x[0], x[1] - x[0] * apart[1] / apart[0]
+
+
+def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
+    """Steer angles of the inner and of the outer wheel, not numbers where the wheels are not steered to one
+    side; the wheelbase, and the track as drawn."""
+    (wheelbase,) = needed(left.corner.car, "wheelbase")
+    one, other = (steer_angle(of).value for of in (left, right))
+    sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
+    inner, outer = np.where(one > 0.0, sizes, sizes[::-1])
+    width = _drawn_apart(left, right)[OUTBOARD]
+    for wheel in (left, right):
+        width = width + wheel.components(contact(wheel, drawn=True))[OUTBOARD].value
+    return inner, outer, wheelbase, np.asarray(width)
 
 
 def turning_radius(left: Motion, right: Motion) -> Array:
@@ -347,171 +484,29 @@ def ackermann_error(left: Motion, right: Motion) -> Array:
     return outer - np.arctan2(1.0, _cot(inner) + width / wheelbase)
 
 
-EFFECTS: Mapping[str, Effect] = dict(_wheel_effects())
+def _cot(angle: Array) -> Array:
+    return np.asarray(np.cos(angle) / np.sin(angle))
+
+
+EFFECTS: Mapping[str, Effect] = {
+    **_with_gradients("rad", ANGLES),
+    **_with_gradients("mm", LENGTHS),
+    **{name: Effect(unit, value, "travel") for name, (unit, value) in OF_VELOCITIES.items()},
+    **{name: Effect(unit, value, "rack") for name, (unit, value) in OF_RACK.items()},
+}
+# The roll centre's height is above the line through both contact points, along up; its offset from the middle
+# plane, through the origin, along right. The track is the distance of both contact points along right.
 AXLE_EFFECTS: Mapping[str, Effect] = {
-    "track": Effect("mm", track),
-    "axle_roll_centre_height": Effect("mm", axle_roll_centre_height, "travel"),
-    "axle_roll_centre_offset": Effect("mm", axle_roll_centre_offset, "travel"),
+    "track": Effect("mm", lambda *wheels: _apart(*wheels)[0]),
+    "axle_roll_centre_height": Effect("mm", lambda *wheels: _axle_roll_centre(*wheels)[1], "travel"),
+    "axle_roll_centre_offset": Effect("mm", lambda *wheels: _axle_roll_centre(*wheels)[0], "travel"),
     "turning_radius": Effect("mm", turning_radius),
     "ackermann": Effect("%", ackermann),
     "ackermann_error": Effect("rad", ackermann_error),
 }
 
 
-def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
-    """Where the normals of both contact points meet in the front view, (N,) each: offset and height.
-
-    With c, d the contact points and v, w their velocities there, it is c + x with v . x = 0 and
-    w . x = w . (d - c). Not a number where the normals are parallel or a velocity is zero.
-    """
-    (c, v), (_, w) = _front_view(left), _front_view(right)
-    turn, apart = v[0] * w[1] - v[1] * w[0], _apart(left, right)
-    speeds = np.hypot(*v) * np.hypot(*w)
-    turn = np.where(np.abs(turn) <= ROUNDING * speeds, 0.0, turn)
-    x = _ratio((w * apart).sum(axis=0), turn) * np.array([-v[1], v[0]])
-    return c[0] + x[0], x[1] - x[0] * apart[1] / apart[0]
-
-
-def _apart(left: Motion, right: Motion) -> Array:
-    """From the left contact point to the right one along right and up, (2, N).
-
-    The drawn places are subtracted first: far out, each of the others would be rounded as they are.
-    """
-    drawn = _drawn_apart(left, right)
-    one, other = (of.components(of.moved(_centre(of)) + contact(of)).value for of in (left, right))
-    return np.array([drawn[OUTBOARD] + one[OUTBOARD] + other[OUTBOARD], drawn[UP] - one[UP] + other[UP]])
-
-
-def _drawn_apart(left: Motion, right: Motion) -> Array:
-    """From the left wheel centre to the right one as drawn, by the components of the right one, (3, 1)."""
-    return right.components(right.drawn(_centre(right)) - left.drawn(_centre(left))).value
-
-
-def _front_view(motion: Motion) -> tuple[Array, Array]:
-    """The contact point and its velocity with travel along right and up, (2, N) each."""
-    velocity = _contact_velocity(motion)
-    out = np.array([[1.0 if motion.corner.side == "right" else -1.0], [1.0]])
-    place, seen = (out * of[[OUTBOARD, UP]] for of in (_contact_place(motion).value, velocity))
-    still = np.hypot(*seen) <= ROUNDING * motion.mechanism.drawing.size * _speed(motion, velocity)
-    return place, np.where(still, 0.0, seen)
-
-
-def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
-    """Steer angles of the inner and of the outer wheel, not numbers where the wheels are not steered to one
-    side; the wheelbase, and the track as drawn."""
-    (wheelbase,) = needed(left.corner.car, "wheelbase")
-    one, other = (steer_angle(of).value for of in (left, right))
-    sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
-    inner, outer = np.where(one > 0.0, sizes, sizes[::-1])
-    width = _drawn_apart(left, right)[OUTBOARD]
-    for wheel in (left, right):
-        width = width + wheel.components(contact(wheel, drawn=True))[OUTBOARD].value
-    return inner, outer, wheelbase, np.asarray(width)
-
-
-def _cot(angle: Array) -> Array:
-    return np.asarray(np.cos(angle) / np.sin(angle))
-
-
-def _slope(motion: Motion, number: Dual, by: str) -> Array:
-    return number.slopes[..., -1 if by == TIME else motion.by.index((motion.part, by))]
-
-
-def _ratio(rise: Array | float, run: Array) -> Array:
-    """Not a number where run is zero."""
-    return np.where(run == 0.0, np.nan, rise / run)
-
-
-def _rising(velocity: Array) -> Array:
-    """The upward part of a velocity by its components, (3, N); zero where rounding may have made it."""
-    up = velocity[UP]
-    return np.where(np.abs(up) <= LEAST * np.linalg.norm(velocity, axis=0), 0.0, up)
-
-
-def _travelled(motion: Motion) -> Array:
-    """How fast the wheel centre goes up in the chassis' frame with the input that moves the wheel, (N,)."""
-    still = replace(motion, turns=())
-    return _rising(_slope(motion, still.components(still.moved(_centre(still))), "travel"))
-
-
-def _along(motion: Motion, role: str) -> Dual:
-    """The line of a role by its components, (3, N)."""
-    return motion.components(motion.line(*motion.corner.ends(role)))
-
-
-def _centre(motion: Motion) -> str:
-    return motion.corner.ends("wheel_axis")[1]
-
-
-def _spin_axis(motion: Motion, drawn: bool) -> Dual:
-    """From the inner point of the spin axis to the wheel centre, (3, N); in the drawing (3, 1)."""
-    inner, centre = motion.corner.ends("wheel_axis")
-    return motion.drawn(centre) - motion.drawn(inner) if drawn else motion.line(inner, centre)
-
-
-def contact(motion: Motion, drawn: bool = False) -> Dual:
-    """From the wheel centre to the contact point, (3, N)."""
-    spin = _spin_axis(motion, drawn)
-    normal = spin / hypot(*spin)
-    up = constant(np.array(motion.corner.axes[UP])[:, None])
-    down = normal * motion.components(normal)[UP] - up
-    return down * (constant(motion.corner.radius) / hypot(*down))
-
-
-def _contact_moved(motion: Motion) -> Dual:
-    """From the drawn contact point to the contact point, by its components, (3, N)."""
-    return motion.components(motion.moved(_centre(motion)) + (contact(motion) - contact(motion, drawn=True)))
-
-
-def _contact_place(motion: Motion) -> Dual:
-    """The contact point from the origin, by its components, (3, N)."""
-    centre = _centre(motion)
-    return motion.components(motion.drawn(centre) + motion.moved(centre) + contact(motion))
-
-
-def _contact_velocity(motion: Motion) -> Array:
-    """v by its components, (3, N)."""
-    velocity = motion.moved(_centre(motion)) + motion.riding(motion.corner.carrier, contact(motion))
-    return _slope(motion, motion.components(velocity), "travel")
-
-
-def _from_centre(motion: Motion, point: str) -> Dual:
-    """How a point of the knuckle moves, (3, N): as the wheel centre does, and the arm from there turns."""
-    centre = _centre(motion)
-    return motion.moved(centre) + motion.riding(motion.corner.carrier, motion.line(centre, point))
-
-
-def _screw(motion: Motion) -> tuple[Array, Array]:
-    """Spin of the knuckle and velocity of the wheel centre with the rack, (3, N); not numbers where it does
-    not turn as the rack moves, or about no line that leads up."""
-    w, v = _spin(motion, "rack"), _slope(motion, motion.moved(_centre(motion)), "rack")
-    turns = np.abs(motion.corner.axes[UP] @ w) * motion.corner.radius > LEAST
-    return np.where(turns, w, np.nan), v
-
-
-def _spin(motion: Motion, by: str) -> Array:
-    """w, (3, N), in the frame of the points."""
-    return motion.spin(motion.corner.carrier)[..., motion.by.index((motion.part, by))]
-
-
-def _speed(motion: Motion, velocity: Array) -> Array:
-    """|w| + |v| / size of the mechanism, (N,): what rounding of either is measured by."""
-    turning = np.linalg.norm(_spin(motion, "travel"), axis=0)
-    return np.asarray(turning + np.linalg.norm(velocity, axis=0) / motion.mechanism.drawing.size)
-
-
-def _anti(motion: Motion, velocity: Array, share: str) -> Array:
-    """100 share s (v . rearward / v . up) wheelbase / (height of the centre of gravity - contact travel) with
-    s = -1 at the front and 1 at the rear, (N,)."""
-    names = ("axle", "wheelbase", "centre_of_gravity_height", share)
-    sign, wheelbase, drawn_height, part = needed(motion.corner.car, *names)
-    height = drawn_height - LENGTHS["contact_travel"](motion).value
-    return 100.0 * part * sign * _ratio(velocity[REARWARD] * wheelbase, _rising(velocity) * height)
-
-
-def _from_lower(motion: Motion) -> Dual:
-    """From the lower point of the steering axis to the wheel centre, by its components, (3, N)."""
-    return motion.components(motion.line(motion.corner.ends("steering_axis")[0], _centre(motion)))
+# Effects that are asked for
 
 
 @dataclass(frozen=True)
@@ -520,10 +515,6 @@ class Asked:
 
     effect: Effect
     parts: tuple[str, ...]
-
-    def value(self, motion: Motion) -> Array:
-        """(N,) of a motion."""
-        return self.effect.value(*(replace(motion, part=part) for part in self.parts))
 
 
 def effect_names(model: Model) -> tuple[str, ...]:
@@ -552,7 +543,7 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
         InputError: there is no such effect; it names those there are.
         DescriptionError: one of an axle, of a mechanism that is none.
     """
-    known = _effects_in(model)
+    known = _effects_in(model) if names else {}
     for name in names:
         if name not in known and name in AXLE_EFFECTS:
             sides = {part: corner.side for part, corner in model.corners.items() if part}
@@ -569,21 +560,18 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
     return {name: known[name] for name in names}
 
 
-def inputs_of(
-    effects: Mapping[str, Asked], model: Model, driven: Collection[str]
-) -> dict[tuple[str, str], str]:
+def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str], str]:
     """Part and "travel", "rack" or "roll" -> the value of the input that effects take their derivatives by.
 
     Raises:
         DescriptionError: there is not exactly one such input.
     """
-    wanted = {
-        (part, asked.effect.by): f"effect {name!r}"
+    return {
+        (part, asked.effect.by): model.input_of(part, asked.effect.by, f"effect {name!r}")
         for name, asked in effects.items()
         for part in asked.parts
         if asked.effect.by not in ("", TIME)
     }
-    return {(part, by): model.input_of(part, by, what, driven) for (part, by), what in wanted.items()}
 
 
 def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]:
@@ -596,7 +584,7 @@ def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]
     for name, asked in effects.items():
         try:
             with np.errstate(all="ignore"):
-                numbers[name] = asked.value(motion)
+                numbers[name] = asked.effect.value(*(replace(motion, part=part) for part in asked.parts))
         except DescriptionError as error:
             raise DescriptionError(f"effect {name!r} {error}", error.name) from None
     return numbers

@@ -25,8 +25,7 @@ from absolute.newton import (
     rates,
     rounding_of,
 )
-from absolute.solution import Array
-from absolute.vectors import EPS, cross
+from absolute.vectors import EPS, Array, cross
 
 # Inputs (..., inputs) and rates of them -> (1 + rates, ..., rows): targets of the rows, and their rates.
 Targets = Callable[..., Array]

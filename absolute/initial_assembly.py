@@ -7,7 +7,7 @@ from absolute.follow import BlockedError, follow
 from absolute.limits import limited_by, limits_at
 from absolute.mechanism import Mechanism, too_many_rows
 from absolute.newton import SMALLEST_RCOND, Configurations, configurations_at, signs_of
-from absolute.solution import Array
+from absolute.vectors import Array
 
 # Two assemblies are about as far from each other as a mechanism is large. Of 300 struts with every point up
 # to 200 mm off, two closed to another one than their rods are drawn on, and moved by 0.82 and 1.11 of it.

@@ -4,7 +4,7 @@ import numpy as np
 
 from absolute.mechanism import Mechanism
 from absolute.newton import Configurations
-from absolute.solution import Array
+from absolute.vectors import Array
 
 # A motion is followed until a fold is about sqrt(eps) away, and the smallest singular value there is of that
 # order, times ratios of lengths: this is ten thousand times as much.

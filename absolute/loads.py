@@ -27,8 +27,7 @@ from absolute.mechanism import Mechanism
 from absolute.newton import SMALLEST_RCOND, solved
 from absolute.results import Motion
 from absolute.rows import RowStack
-from absolute.solution import Array
-from absolute.vectors import cross
+from absolute.vectors import Array, cross
 
 
 def forces(motion: Motion) -> dict[str, dict[str, Array]]:
@@ -47,12 +46,12 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
     """
     mechanism, model = motion.mechanism, motion.mechanism.model
     _require_determined(mechanism)
-    stack, bodies = mechanism.stack, mechanism.drawing.bodies
+    stack, bodies, size = mechanism.stack, mechanism.drawing.bodies, mechanism.drawing.size
     placed = stack.place(motion.instants.rotation, motion.instants.origin)
     along, _, second_arm = (placed.vectors[:, kind] for kind in range(3))
     jacobian, owners = stack.jacobian(placed), list(stack.owners)
     for part, damper in model.dampers.items():
-        moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,", ())
+        moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,")
         row = mechanism.joint_rows + [drive.value for drive in model.inputs].index(moving)
         held = RowStack([damper], len(bodies), mechanism.columns)
         jacobian[:, row] = held.jacobian(held.place(placed.rotation, placed.origin))[:, 0]
@@ -77,9 +76,9 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
         pushed = found[:, rows, None] * (-1.0 if second == bodies[body] else 1.0)
         force = (pushed[:, :3] * along[:, rows[:3]]).sum(axis=1)
         if len(points) == 1:
-            joints[points[0]] = motion.turned(force)
+            joints[points[0]] = force
             continue
-        start, end = (motion.place(point)[0] for point in points)
+        start, end = (motion.place(point).value.T / size for point in points)
         line = (end - start) / np.sqrt(np.vecdot(end - start, end - start))[:, None]
         meeting = placed.origin[:, second] + second_arm[:, rows[0]]
         moment = (pushed[:, 3:] * cross(second_arm[:, rows[3:]], along[:, rows[3:]])).sum(axis=1)
@@ -87,7 +86,7 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
         at_end = cross(moment, line) / np.vecdot(line, end - start)[:, None]
         thrusts[points[0]] = np.vecdot(line, force)
         across = force - thrusts[points[0]][:, None] * line
-        joints |= {points[0]: motion.turned(across - at_end), points[1]: motion.turned(at_end)}
+        joints |= {points[0]: across - at_end, points[1]: at_end}
     rods = {name[4:]: found[:, row] for row, name in enumerate(owners) if name.startswith("rod ")}
     return {"rod_force": rods, "joint_force": joints, "hinge_thrust": thrusts}
 
@@ -109,12 +108,11 @@ def _require_determined(mechanism: Mechanism) -> None:
 
 
 def _on_knuckle(motion: Motion) -> Array:
-    """(N, 2, 3) force, N, and moment about the knuckle's origin, N times size, of the load of a part, in the
-    frame of the chassis."""
+    """(N, 2, 3) force, N, and moment about the knuckle's origin, N times size, of the load of a part."""
     mechanism, corner = motion.mechanism, motion.corner
     load, size = mechanism.model.loads[motion.part], mechanism.drawing.size
     origin = motion.instants.origin[:, mechanism.drawing.bodies[corner.carrier]]
-    beside = motion.turned_back(contact(motion).value.T) / size
-    arm = motion.place(corner.ends("wheel_axis")[1])[0] - origin + beside
-    force, moment = (motion.turned_back(np.tile(of, (len(origin), 1))) for of in (load.force, load.moment))
-    return np.stack([force, moment / size + cross(arm, force)], axis=1)
+    ground = motion.place(corner.ends("wheel_axis")[1]) + contact(motion)
+    arm = ground.value.T / size - origin
+    force, moment = np.broadcast_arrays(load.force, load.moment / size + cross(arm, load.force))
+    return np.stack([force, moment], axis=1)

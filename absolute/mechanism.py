@@ -12,7 +12,7 @@ from absolute.errors import DescriptionError
 from absolute.groups import Group, groups_of
 from absolute.model import Model
 from absolute.rows import Placed, RowStack
-from absolute.solution import Array
+from absolute.vectors import Array
 
 # Rows that depend on each other do so only nearly where the drawing does not close yet.
 LARGEST_DEPENDENT = 0.1
@@ -37,29 +37,32 @@ class Choice(NamedTuple):
 class Mechanism:
     """Bodies of a model as free flyers on the universe, in units of size, with all their rows.
 
-    The chassis is the universe: its motion is added to the solution afterwards.
+    What stands is the universe: the chassis, or what it turns on. Displacements of the car are added to the
+    solution afterwards.
 
     Attributes:
         model, drawing, stack: what was described, its lengths, its rows.
         senses: rows that stay positive while all joints have the sense in which they are drawn.
-        columns: of [o', w] of all bodies, which are unknown: the chassis stands, and points do not turn.
+        columns: of [o', w] of all bodies, which are unknown: the first one stands, and points do not turn.
         joint_rows: number of rows before the rows of the inputs.
         choice: of the rows, in the drawing.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
         drawn: configuration of the drawing, (7 * moving bodies,).
-        drawn_inputs: (inputs,) values of the inputs in the drawing, rad or mm.
+        values: names of the inputs' values, one for each row, and behind these of displacements of the car,
+            where heights over the ground hang on them.
+        drawn_inputs: (values,) the values in the drawing, rad or mm.
     """
 
     def __init__(self, model: Model) -> None:
         self.model, self.drawing = model, model.drawing
         bodies = len(model.bodies)
-        self._sizes = np.array([0, *(3 if body in model.unturned else 6 for body in model.moving)])
+        self._sizes = np.array([0, *(3 if body in model.unturned else 6 for body in [*model.bodies][1:])])
         self.columns = np.flatnonzero(np.arange(6) < self._sizes[:, None])
         rows = [*model.joints, *(drive.row for drive in model.inputs)]
         self.stack, self.joint_rows = RowStack(rows, bodies, self.columns), len(model.joints)
         self.senses = RowStack(model.senses, bodies, self.columns)
         self.pin_model = pin.Model()
-        for body in model.moving:
+        for body in [*model.bodies][1:]:
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)
         # After the last joint and frame: data made earlier would be too small.
         self.pin_data = self.pin_model.createData()
@@ -69,7 +72,13 @@ class Mechanism:
         self._rotations = [placement.rotation for placement in self.pin_data.oMi]
         self._factors = np.array([drive.factor for drive in model.inputs])
         self._cosines = np.array([drive.cosine for drive in model.inputs], dtype=np.bool_)
-        self.drawn_inputs = np.array([drive.drawn for drive in model.inputs])
+        over = np.array([drive.over_ground for drive in model.inputs], dtype=np.bool_)
+        moves = model.moves if over.any() else {}
+        self.values = (*(drive.value for drive in model.inputs), *moves)
+        self.drawn_inputs = np.array([*(drive.drawn for drive in model.inputs), *(0.0 for _ in moves)])
+        ups = np.array([drive.row.along for drive in model.inputs]).reshape(-1, 3) * over[:, None]
+        # Of a height over the ground the displacements of the car are taken off.
+        self._shares = np.hstack([np.eye(len(ups)), *(-(ups @ way)[:, None] for way in moves.values())])
         self.choice = self._chosen()
 
     def _chosen(self) -> Choice:
@@ -109,7 +118,7 @@ class Mechanism:
         return Choice(kept if len(rows) else slice(None), rows, groups)
 
     def poses(self, q: Array) -> tuple[Array, Array]:
-        """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), the chassis first, at configurations
+        """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), what stands first, at configurations
         (..., 7 * moving bodies)."""
         lead, bodies = q.shape[:-1], len(self._rotations)
         rotation, origin = np.empty((*lead, bodies, 3, 3)), np.zeros((*lead, bodies, 3))
@@ -140,19 +149,19 @@ class Mechanism:
     def named(self, values: Sequence[float]) -> dict[str, float]:
         """Values by name; of inputs that take the same one, that of the first."""
         named: dict[str, float] = {}
-        for drive, value in zip(self.model.inputs, values, strict=True):
-            named.setdefault(drive.value, value)
+        for name, value in zip(self.values, values, strict=True):
+            named.setdefault(name, value)
         return named
 
     def targets(self, values: Array, *rates: Array) -> Array:
-        """(1 + rates, ..., rows): what the rows shall equal and its rates, for inputs (..., inputs).
+        """(1 + rates, ..., rows): what the rows shall equal and its rates, for values (..., values).
 
         Args:
-            rates: (..., inputs) derivatives of the inputs, the first, the second and so on.
+            rates: (..., values) derivatives of the values, the first, the second and so on.
         """
-        series = [values, *rates]
+        series = [of @ self._shares.T for of in (values, *rates)]
         # Of an angle x it is the real part of z = exp(i x), with z' = i x' z, and so on by the product rule.
-        turned = [np.exp(1j * values)]
+        turned = [np.exp(1j * series[0])]
         for n in range(1, len(series)):
             turned.append(1j * sum(comb(n - 1, i) * series[n - i] * turned[i] for i in range(n)))
         targets = np.zeros((len(series), *turned[-1].shape[:-1], self.stack.count))

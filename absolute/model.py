@@ -1,14 +1,13 @@
 """A linkage as `compile` makes it: bodies and their places in the drawing, rows, wheels."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from absolute.errors import DescriptionError
-from absolute.solution import Array
+from absolute.vectors import Array, Places
 
 CHASSIS = "chassis"
 KINDS = {
@@ -38,15 +37,15 @@ class Row(NamedTuple):
     drawn: float = 0.0
 
 
-@dataclass(frozen=True)
-class Input:
+class Input(NamedTuple):
     """A driven row: it is factor * value, or factor * cos(value).
 
     Attributes:
         value: name of the value, which several rows may take; mm or rad.
         drawn: the value in the drawing.
         steers: how many mm a slide travels for a unit of the value; 0 where it drives none.
-        moves: whether it moves the whole car.
+        turns: whether it turns the whole car; and rolls: about a line that leads forward or rearward.
+        over_ground: whether it is a height over the ground, which displacements of the car add to.
     """
 
     row: Row
@@ -55,7 +54,9 @@ class Input:
     drawn: float
     cosine: bool = False
     steers: float = 0.0
-    moves: bool = False
+    turns: bool = False
+    rolls: bool = False
+    over_ground: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,14 +64,14 @@ class Drawing:
     """Bodies as drawn, in units of the mechanism's size; their frames are parallel to that of the points.
 
     Coordinates as given subtract with one rounding of the difference, however close the points are; from the
-    middle they have been rounded before. So the origin of a moving body is one of its points.
+    middle they have been rounded before. So the origin of a body that moves in the car is one of its points.
 
     Attributes:
         points: name -> (3,), mm.
         middle: mean of the points, mm. Positions are measured from here, so that numbers do not depend on the
             distance of the car from its origin.
         size: largest distance of a point from the middle, mm: the unit of length.
-        bodies: name -> index; the chassis is 0.
+        bodies: name -> index; what stands is 0.
         anchors: (bodies, 3) origin of each body, mm: the middle for the chassis.
         holders: name of a point -> the first body that has it.
     """
@@ -95,14 +96,13 @@ class Drawing:
         """From the origin of a body to a point."""
         return np.asarray((self.points[point] - self.anchors[body]) / self.size)
 
-    def held(self) -> tuple[NDArray[np.intp], Array]:
+    def held(self) -> tuple[Places, Array]:
         """Bodies of all points, (P,), and the arms from their origins, (P, 3)."""
         body = np.array([self.bodies[self.holders[point]] for point in self.points], dtype=np.intp)
         return body, (np.array(list(self.points.values())) - self.anchors[body]) / self.size
 
 
-@dataclass(frozen=True)
-class Load:
+class Load(NamedTuple):
     """What the ground does to a wheel at its contact point: N and N mm, in the frame of the points."""
 
     force: Array
@@ -157,78 +157,63 @@ def _lacking(what: str, where: str, name: str) -> DescriptionError:
 
 
 @dataclass(frozen=True)
-class Turn:
-    """A line through the drawn place of a point, mm, about which an input turns the whole car.
-
-    It rolls the car where the line leads forward or rearward.
-    """
-
-    about: Array
-    axis: Array
-    rolls: bool
-
-
-@dataclass(frozen=True)
 class Model:
     """A linkage, as `compile` makes it of names that it has checked.
 
     Attributes:
-        bodies: name -> names of its points; the chassis is one of them.
+        bodies: name -> names of its points. The first one stands: the chassis, or what the chassis turns on.
         drawing: their places.
         joints, inputs: rows.
         senses: pairs of directions whose product must stay positive, since a right angle alone also allows
             the reversed joint.
+        moves: name of an input that displaces the whole car, after all turns -> the direction.
         corners: part -> its wheel; "" for a mechanism without parts.
         loads: part -> what acts on its wheel.
         dampers: part -> row of the length of its damper, where there are loads.
         reported_joints: point of a ball joint that two bodies share, and no other, or both of such a hinge ->
             whose rows it has, and the body of the two whose force is reported.
-        aids: bodies that are there for the equations only and are not reported.
-        unturned: those of them that are a point with the axes of the car.
-        turns: by which inputs of these names turn the whole car, one after the other; their lines stand.
+        reported: bodies whose rates are reported.
+        unturned: bodies that are a point, of no body, and do not turn.
     """
 
     bodies: Mapping[str, tuple[str, ...]]
     drawing: Drawing
     joints: tuple[Row, ...]
-    senses: tuple[Row, ...]
     inputs: tuple[Input, ...]
+    senses: tuple[Row, ...]
+    moves: Mapping[str, Array]
     corners: Mapping[str, Corner]
     loads: Mapping[str, Load]
     dampers: Mapping[str, Row]
     reported_joints: Mapping[tuple[str, ...], tuple[str, str]]
-    aids: frozenset[str]
+    reported: tuple[str, ...]
     unturned: frozenset[str]
-    turns: Mapping[str, Turn]
-
-    @property
-    def moving(self) -> tuple[str, ...]:
-        """Names of the bodies that move, in the order given."""
-        return tuple(name for name in self.bodies if name != CHASSIS)
 
     @property
     def values(self) -> tuple[str, ...]:
-        """Names of the values that the inputs take, each once."""
+        """Names of the values that rows take, each once."""
         return tuple(dict.fromkeys(drive.value for drive in self.inputs))
 
-    def input_of(self, part: str, by: str, what: str, driven: Collection[str]) -> str:
+    def input_of(self, part: str, by: str, what: str) -> str:
         """The one driven input of a part, or of all, that is the travel of a slide ("rack"), that is not
-        ("travel"), or that rolls the chassis ("roll"), which need not be `driven` as the others are.
+        ("travel"), or that rolls the chassis ("roll").
 
         Raises:
             DescriptionError: there is none, or another; `what` needs it.
         """
         others = tuple(f"{other}." for other in self.corners if other != part)
-        holding = (drive for drive in self.inputs if not drive.moves)
-        own = {drive.value: drive.steers for drive in holding if not drive.value.startswith(others)}
-        found = [value for value, steers in own.items() if bool(steers) == (by == "rack")]
-        if by == "roll":
-            found = [value for value, turn in self.turns.items() if turn.rolls and value in driven]
+        held = [drive for drive in self.inputs if not drive.turns and not drive.value.startswith(others)]
+        fitting = {
+            "travel": [drive for drive in held if not drive.steers],
+            "rack": [drive for drive in held if drive.steers],
+            "roll": [drive for drive in self.inputs if drive.rolls],
+        }
+        found = list(dict.fromkeys(drive.value for drive in fitting[by]))
         if len(found) != 1:
-            kind = KINDS[by]
+            own = list(dict.fromkeys(drive.value for drive in held))
             raise DescriptionError(
-                f"{what} needs exactly one driven input that {kind}, and there are {len(found)}: "
-                f"{found} of {list(own)}; drive other inputs, or ask for other effects",
+                f"{what} needs exactly one driven input that {KINDS[by]}, and there are {len(found)}: "
+                f"{found} of {own}; drive other inputs, or ask for other effects",
                 what,
                 found,
             )

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from absolute.mechanism import Choice, Mechanism
 from absolute.rows import Placed
-from absolute.solution import Array, Counts
-from absolute.vectors import EPS
+from absolute.vectors import EPS, Array, Counts
 
 # Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two
 # branches that meet there can no longer be told apart, nor half of the digits trusted.

@@ -26,8 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from absolute.model import Row
-from absolute.solution import Array
-from absolute.vectors import EPS, carried, cross
+from absolute.vectors import EPS, Array, carried, cross
 
 # A row is a sum of products of turned features and origins. About 27 roundings of eps / 2 of its terms
 # meet in it: four from the quaternion, four from its products, three from the turning, two from the

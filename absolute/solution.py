@@ -3,11 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
-Counts = NDArray[np.int64]
+from absolute.vectors import Array, Counts
 
 
 @dataclass(frozen=True)

@@ -10,15 +10,14 @@ from absolute.effects import TIME, effects_of, inputs_of, numbers_of
 from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
 from absolute.initial_assembly import assemble, locked
-from absolute.input_arrays import checked, input_series, orders_of
+from absolute.input_arrays import input_series
 from absolute.loads import forces
 from absolute.mechanism import Mechanism
 from absolute.model import Model
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates
-from absolute.results import Instants, Motion
-from absolute.solution import Array, Solution
-from absolute.turning import Turning
-from absolute.vectors import EPS
+from absolute.results import Instants, Motion, solution_of
+from absolute.solution import Solution
+from absolute.vectors import EPS, Array
 
 # Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `rows`).
 LEFT_OUT = 3 * 4 * EPS
@@ -40,7 +39,7 @@ class ClosedDrawing:
 
 
 def close_drawing(model: Model) -> ClosedDrawing:
-    """Solve a model at the inputs of its own drawing, chassis at rest.
+    """Solve a model at the inputs of its own drawing.
 
     Raises:
         DescriptionError, AssemblyError, SingularError: as `solve`.
@@ -57,7 +56,6 @@ def close_drawing(model: Model) -> ClosedDrawing:
 def solve(
     model: Model,
     inputs: Mapping[str, Array],
-    chassis: Array | None = None,
     rates: bool = True,
     conditions: bool = False,
     effects: Sequence[str] = (),
@@ -67,11 +65,8 @@ def solve(
 
     Args:
         model: the linkage.
-        inputs: name -> (N, 3) value, rate and acceleration of every value of the inputs (rad or mm, per s);
-            and of turns of the chassis, which is not turned where they are not given. With the jerks of all
-            as well, (N, 4), there are jerks of points, and so on, (N, orders).
-        chassis: (N, orders, 3) translation, velocity, acceleration of the chassis and so on in the frame of
-            the points, mm, mm/s, mm/s^2, after all turns; None for none.
+        inputs: name -> (N, 3) value, rate and acceleration of every input of the model (rad or mm, per s).
+            With the jerks of all as well, (N, 4), there are jerks of points, and so on, (N, orders).
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
         effects: names of `effect_names(model)`.
@@ -82,7 +77,7 @@ def solve(
         DescriptionError: an axis of the model has no length or its lines point apart; rows that are too many;
             loads of a mechanism that has none, or whose rows follow from each other; effects or loads of one
             that lacks a role, a number of the car, or an input to take derivatives by.
-        InputError: names, shapes or values of inputs or chassis; an effect that is not known.
+        InputError: names, shapes or values of inputs; an effect that is not known.
         AssemblyError: the bodies as drawn do not fit together.
         UnreachableError: the mechanism locks before the inputs of an instant.
         SingularError: the inputs of an instant do not fix the pose.
@@ -100,7 +95,7 @@ def solve(
     >>> bool(abs(solution.position["end"][0, 2] - 150.0) < 1e-12)
     True
     """
-    return Assembled(model).solve(inputs, chassis, rates, conditions, effects, loads)
+    return Assembled(model).solve(inputs, rates, conditions, effects, loads)
 
 
 class Assembled:
@@ -120,12 +115,12 @@ class Assembled:
     def drawn_inputs(self) -> dict[str, float]:
         """Values of the inputs in the drawing, rad or mm."""
         # A drawn rack at its centre is at 0, not at -0.
-        return self._mechanism.named((self._mechanism.drawn_inputs + 0.0).tolist())
+        drawn = self._mechanism.named((self._mechanism.drawn_inputs + 0.0).tolist())
+        return dict.fromkeys(self.model.moves, 0.0) | drawn
 
     def solve(
         self,
         inputs: Mapping[str, Array],
-        chassis: Array | None = None,
         rates: bool = True,
         conditions: bool = False,
         effects: Sequence[str] = (),
@@ -134,67 +129,57 @@ class Assembled:
         """The motion by inputs at N instants; arguments and errors are those of `solve`."""
         model, mechanism = self.model, self._mechanism
         asked = effects_of(effects, model)
-        by = inputs_of(asked, model, inputs)
+        by = inputs_of(asked, model)
         rated = rates or any(one.effect.by == TIME for one in asked.values())
-        driving = {n: law for n, law in inputs.items() if n not in model.turns or n in model.values}
-        orders = orders_of(inputs)
-        series = input_series(model.values, driving, orders)
-        still = np.zeros((len(series), orders, 3))
-        carried = still if chassis is None else checked("chassis", chassis, (orders, 3), len(series))
-        turns = [
-            (turn, checked(name, inputs[name], (orders,), len(series)))
-            for name, turn in model.turns.items()
-            if name in inputs
-        ]
-        # Inputs that take the same value have a column each.
-        series = series[..., [model.values.index(drive.value) for drive in model.inputs]]
-        followed = self._followed(series, rated, tuple(by.values()))
+        series = input_series({*mechanism.values, *model.moves}, inputs)
+        # Rows that take the same value have a column each.
+        columns = np.stack([series[name] for name in mechanism.values], axis=-1)
+        displaced = np.zeros((*columns.shape[:2], 3))
+        for name, way in model.moves.items():
+            displaced += series[name][..., None] * way
+        followed = self._followed(columns, rated, tuple(by.values()))
 
-        def motion(count: int | None = None) -> Motion:
-            found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
-            there = len(found.residual)
-            turned = tuple(Turning(turn.about, turn.axis, angle[:there], turn.rolls) for turn, angle in turns)
-            return Motion(mechanism, found, carried[:there], turned, tuple(by))
-
-        def numbers(of: Motion) -> dict[str, Mapping[str, Array]]:
-            return {"effects": numbers_of(asked, of), **(forces(of) if loads else {})}
+        def numbers(found: Instants) -> dict[str, Mapping[str, Array]]:
+            motion = Motion(mechanism, found, tuple(by))
+            return {"effects": numbers_of(asked, motion), **(forces(motion) if loads else {})}
 
         def solution(count: int | None = None) -> Solution:
-            found = motion(count)
-            return found.solution(rates, conditions, **numbers(found))
+            found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
+            moved = displaced[: len(found.residual)]
+            return solution_of(mechanism, found, moved, rates, conditions, **numbers(found))
 
         with np.errstate(over="ignore", invalid="ignore"):
             # What effects and loads lack is missing from no instants as well.
             runs = [next(followed)]
-            numbers(motion())
+            numbers(runs[0])
             try:
-                for run in followed:
-                    runs.append(run)
+                runs += followed
             except AbsoluteError as error:
                 error.partial = solution() if len(runs) > 1 else None
                 raise
             whole = solution()
             # Where rates overflow, so do accelerations.
-            finite = np.ones(len(series), dtype=np.bool_)
+            finite = np.ones(len(columns), dtype=np.bool_)
             for rates_of in (whole.acceleration, *whole.higher):
                 for rate in rates_of.values():
                     finite &= np.isfinite(rate).all(axis=1)
             if finite.all():
                 return whole
             bad = leading(finite)
-            refused = _overflow(bad, {name: np.array(law, float)[bad, 1:] for name, law in inputs.items()})
+            refused = _overflow(bad, {name: law[bad, 1:] for name, law in series.items()})
             refused.partial = solution(bad) if bad else None
             raise refused
 
     def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Instants]:
-        """The instants of inputs (N, orders, inputs), first none and then one run of them after the other,
-        with the velocities for unit rates of some values."""
+        """The instants of values (N, orders, values), first none and then one run of them after the other,
+        with the velocities for unit rates of some inputs."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
-        named = np.array([drive.value for drive in self.model.inputs])
         # Of a slide by its travel, whatever the value that drives it.
-        unit_of = np.array([1.0 / drive.steers if drive.steers else 1.0 for drive in self.model.inputs])
-        units = [mechanism.targets(series[:, 0], unit_of * (named == value))[1] for value in by]
+        steers = [drive.steers or 1.0 for drive in self.model.inputs]
+        per = np.array(steers + [1.0] * (series.shape[2] - len(steers)))
+        named = np.array(mechanism.values)
+        units = [mechanism.targets(series[:, 0], (named == value) / per)[1] for value in by]
 
         def at(found: Configurations, rated: bool) -> tuple[Instants, NDArray[np.bool_]]:
             """Also whether rows that were left out hold all velocities."""

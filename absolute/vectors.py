@@ -4,8 +4,11 @@ from collections.abc import Sequence
 from math import comb
 
 import numpy as np
+from numpy.typing import NDArray
 
-from absolute.solution import Array
+Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
+Places = NDArray[np.intp]
 
 # From 1 to the next number.
 EPS = float(np.finfo(float).eps)

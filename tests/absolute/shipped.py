@@ -21,14 +21,13 @@ EPS = float(np.finfo(float).eps)
 
 
 class Motion(NamedTuple):
-    """A mechanism as it is compiled, the laws of its inputs (N, 3), and the displacement of its chassis."""
+    """A mechanism as it is compiled, and the laws of its inputs (N, 3)."""
 
     plain: dict[str, Any]
     inputs: dict[str, Array]
-    chassis: Array | None = None
 
     def solve(self, **options: Any) -> absolute.Solution:
-        return absolute.solve(absolute.compile(self.plain), self.inputs, self.chassis, **options)
+        return absolute.solve(absolute.compile(self.plain), self.inputs, **options)
 
 
 @cache
@@ -40,16 +39,13 @@ def shipped(scene: str, count: int = 5) -> Motion:
         name: np.array([[float(order[k][name]) for order in orders] for k in range(len(places))])
         for name in orders[0][0]
     }
-    moves = [name for name, drive in plain["inputs"].items() if "moves" in drive]
-    shifts = [laws.pop(name)[..., None] * np.array(plain["up"], float) for name in moves]
-    return Motion(plain, laws, sum(shifts) if shifts else None)
+    return Motion(plain, laws)
 
 
 def exact(motion: Motion) -> list[tuple[dict[str, Any], ...]]:
-    """Points and their first and second rates at every instant, the chassis not displaced."""
+    """Points and their first and second rates at every instant."""
     count = len(next(iter(motion.inputs.values())))
-    still = dict.fromkeys(motion.plain["inputs"], np.zeros((count, 3)))
-    laws = {name: law.tolist() for name, law in (still | motion.inputs).items()}
+    laws = {name: law.tolist() for name, law in motion.inputs.items()}
     return exact_states(motion.plain, [{name: law[k] for name, law in laws.items()} for k in range(count)])
 
 

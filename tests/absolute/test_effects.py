@@ -83,12 +83,13 @@ def lacking(*names: str, **changed: Any) -> dict[str, Any]:
 
 
 def test_a_number_by_roll_needs_a_roll_that_is_driven() -> None:
-    """The arm can be turned about a line along the car; whoever gives no angle for it has no such input."""
-    given = {name: np.zeros((1, 3)) for name in ("turn", "steer", "roll", "pitch")}
-    assert Motion(plain(), given).solve(effects=["toe_by_roll"]).effects["toe_by_roll"].size == 1
+    still = {name: np.zeros((1, 3)) for name in plain()["inputs"]}
+    assert Motion(plain(), still).solve(effects=["toe_by_roll"]).effects["toe_by_roll"].size == 1
     words = "needs exactly one driven input that rolls the chassis, and there are 0"
     with pytest.raises(absolute.DescriptionError, match=f"effect 'toe_by_roll' {words}"):
-        Motion(plain(), {name: given[name] for name in ("turn", "steer")}).solve(effects=["toe_by_roll"])
+        Motion(plain(turns=()), {"turn": still["turn"], "steer": still["steer"]}).solve(
+            effects=["toe_by_roll"]
+        )
 
 
 def test_a_number_needs_nothing_of_the_others() -> None:

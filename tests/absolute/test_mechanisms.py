@@ -108,7 +108,7 @@ def test_points_drawn_near_each_other_keep_the_digits_of_the_coordinates_given(
     car[moved] = car[fixed] + share * (car[moved] - car[fixed])
     model = absolute.compile(scene | {"points": car})
     drawing, drawn = model.drawing, absolute.close_drawing(model).inputs
-    for body in model.moving:
+    for body in model.reported:
         if {fixed, moved} <= set(model.bodies[body]):
             number = drawing.bodies[body]
             line = np.linalg.norm(drawing.arm(number, moved) - drawing.arm(number, fixed)) * drawing.size

@@ -8,7 +8,7 @@ import pickle
 import numpy as np
 import pytest
 from mechanism_files import plain_scene
-from one_arm import TURNS, plain
+from one_arm import plain
 from shipped import EPS, Array, Motion, shipped
 
 import absolute
@@ -21,9 +21,11 @@ SCENES = ("pushrod-by-damper", "bricard", "axle-roll")
 def one_arm() -> Motion:
     """Somewhere, at any rates up to the jerk."""
     random = np.random.default_rng(1)
-    scales = {"turn": 0.5, "steer": 8.0, "roll": 0.3, "pitch": 0.3}
+    scales = {"turn": 0.5, "steer": 8.0, "roll": 0.3, "pitch": 0.3, "heave": 20.0, "sway": 20.0}
     inputs = {name: scale * random.uniform(-1.0, 1.0, (3, 4)) for name, scale in scales.items()}
-    return Motion(plain(), inputs, 20.0 * random.uniform(-1.0, 1.0, (3, 4, 3)))
+    described, ways = plain(), {"heave": "up", "sway": "left"}
+    moves = {name: {"moves": "chassis", "along": along} for name, along in ways.items()}
+    return Motion({**described, "inputs": described["inputs"] | moves}, inputs)
 
 
 @pytest.fixture(scope="module", params=[*SCENES, "one arm"])
@@ -43,8 +45,7 @@ def rounding(solution: absolute.Solution, order: int) -> Array:
 def test_instants_do_not_depend_on_each_other_nor_positions_on_rates(motion: Motion) -> None:
     whole = motion.solve(conditions=True)
     places = np.random.default_rng(1).permutation(len(whole.residual))[:2]
-    chassis = None if motion.chassis is None else motion.chassis[places]
-    some = Motion(motion.plain, {name: law[places] for name, law in motion.inputs.items()}, chassis)
+    some = Motion(motion.plain, {name: law[places] for name, law in motion.inputs.items()})
     other = some.solve()
     for order in range(3):
         for name, found in other.derivatives[order].items():
@@ -66,8 +67,7 @@ def test_a_drawing_of_any_size_moves_alike(motion: Motion, scale: float) -> None
         "wheel_radius": motion.plain["wheel_radius"] and scale * motion.plain["wheel_radius"],
     }
     inputs = {name: law * (1.0 if name in angles else scale) for name, law in motion.inputs.items()}
-    chassis = None if motion.chassis is None else scale * motion.chassis
-    before, after = motion.solve(conditions=True), Motion(described, inputs, chassis).solve(conditions=True)
+    before, after = motion.solve(conditions=True), Motion(described, inputs).solve(conditions=True)
     assert before.condition is not None
     # Without a unit; of rows that depend on each other another may be left out.
     assert (after.condition <= 4.0 * before.condition).all()
@@ -96,13 +96,6 @@ def test_a_wheel_far_from_the_origin_is_driven_as_one_near_it() -> None:
     for name, near in velocities[0].items():
         # No point is faster than 100 mm/s, and no condition number above 100.
         assert np.abs(near - velocities[1][name]).max() < 100.0 * EPS * 100.0, name
-
-
-def test_a_turn_that_is_not_given_is_none() -> None:
-    arm = one_arm()
-    inputs = {name: law for name, law in arm.inputs.items() if name not in TURNS}
-    untold, none = arm._replace(inputs=inputs).solve(), Motion(plain(turns=()), inputs, arm.chassis).solve()
-    assert all(np.array_equal(untold.acceleration[name], of) for name, of in none.acceleration.items())
 
 
 def test_no_instants_give_an_empty_motion() -> None:

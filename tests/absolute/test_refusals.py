@@ -9,7 +9,7 @@ import pytest
 from changed_scenes import change
 from mechanism_files import plain_scene
 from one_arm import plain as one_arm
-from shipped import Array, Motion
+from shipped import Motion
 from test_mechanisms import four_bar
 
 import absolute
@@ -146,27 +146,6 @@ def test_the_input_at_fault_is_named_with_its_first_bad_instant(
     with pytest.raises(InputError, match=say) as caught:
         Motion(STRUT, inputs).solve()
     assert (caught.value.name, caught.value.instant) == (name, instant)
-
-
-@pytest.mark.parametrize("chassis", [TWO[:1], np.zeros((2, 3, 3)), np.full((1, 3, 3), np.nan), "still"])
-def test_chassis_motion_is_checked(chassis: Any) -> None:
-    with pytest.raises(InputError, match="chassis") as caught:
-        Motion(STRUT, HELD, chassis).solve()
-    assert caught.value.name == "chassis"
-
-
-@pytest.mark.parametrize(
-    ("law", "words"),
-    [
-        (TWO, "'roll' has 2 instants, the others have 3"),
-        (np.full((3, 3), np.nan), "'roll' is .nan, nan, nan. at instant 0"),
-        (np.tile([0.0, 1e160, 0.0], (3, 1)), "instant 0"),
-        (np.zeros(3), "'roll' has shape"),
-    ],
-)
-def test_a_turn_that_is_no_motion_is_refused_with_what_and_where(law: Array, words: str) -> None:
-    with pytest.raises(InputError, match=words):
-        Motion(one_arm(), {"turn": np.zeros((3, 3)), "steer": np.zeros((3, 3)), "roll": law}).solve()
 
 
 @pytest.mark.parametrize(

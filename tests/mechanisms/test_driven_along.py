@@ -49,7 +49,6 @@ def by_absolute(scene: Scene, effect: str) -> str:
         inputs_of(
             effects_of([f"{part}.{effect}" if part else effect for part in model.corners], model),
             model,
-            scene.inputs,
         )
     except absolute.DescriptionError as error:
         return str(error)

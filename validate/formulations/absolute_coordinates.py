@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
-from pointcoord.scene.scene_file import MechanismPart, Scene
+from pointcoord.scene.scene_file import Scene
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
@@ -21,8 +18,6 @@ try:
     import absolute
 except ModuleNotFoundError as error:
     raise MissingPackage("absolute", error) from None
-
-Array = NDArray[np.float64]
 
 
 class AbsoluteCoordinates:
@@ -52,8 +47,7 @@ class AbsoluteCoordinates:
             effects, loads = effects_in(scene, model)
             solved = absolute.solve(
                 model,
-                driving(model, part, problem.laws),
-                chassis=chassis_motion(part, problem.laws),
+                problem.laws,
                 rates=plan_effects(scene.effects).derivative > 0,
                 effects=effects,
                 loads=loads,
@@ -74,33 +68,6 @@ def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> F
     }
     states = {n: of for n, of in zip(STATES, solved.derivatives, strict=False) if n in ("position", *asked)}
     return Found({**numbers, **states}, solved.accuracy)
-
-
-def driving(model: absolute.Model, part: MechanismPart, laws: Mapping[str, Array]) -> dict[str, Array]:
-    """The laws that the model itself takes: of a displacement of the chassis where heights hang on it."""
-    moves = part.topology.chassis_motion.keys() - {*model.values}
-    return {name: law for name, law in laws.items() if name not in moves}
-
-
-def chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:
-    """What the inputs that displace the chassis come to, (N, orders, 3), mm and s; None if there are none."""
-    up, right = np.array(part.up), np.array(part.right)
-    forward = np.cross(up, right)
-    directions = {
-        "up": up,
-        "right": right,
-        "forward": forward,
-        "down": -up,
-        "left": -right,
-        "rearward": -forward,
-    }
-    with np.errstate(invalid="ignore"):  # the model refuses what is not finite
-        moves = [
-            inputs[name][:, :, None] * directions[direction]
-            for name, direction in part.topology.chassis_motion.items()
-            if name in inputs
-        ]
-        return np.asarray(sum(moves[1:], moves[0])) if moves else None
 
 
 def effects_in(scene: Scene, model: absolute.Model) -> tuple[list[str], bool]:

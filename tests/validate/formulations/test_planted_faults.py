@@ -168,8 +168,9 @@ def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
     """The heaving chassis moves the absolute model, but its velocity and acceleration are forgotten."""
     solve = absolute.solve
 
-    def wrong(model: absolute.Model, inputs: dict, chassis: np.ndarray, **options: bool) -> absolute.Solution:
-        return solve(model, inputs, chassis=chassis * (np.arange(chassis.shape[1]) == 0)[:, None], **options)
+    def wrong(model: absolute.Model, inputs: dict, **options: bool) -> absolute.Solution:
+        forgotten = {name: inputs[name] * (np.arange(inputs[name].shape[1]) == 0) for name in model.moves}
+        return solve(model, inputs | forgotten, **options)
 
     patch.setattr(absolute, "solve", wrong)
 

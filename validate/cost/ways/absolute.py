@@ -20,22 +20,15 @@ Array = NDArray[np.float64]
 def in_bodies(scene: Scene, _: float | None) -> Solve:
     """Poses of rigid bodies in Pinocchio."""
     import absolute
-    from validate.formulations.absolute_coordinates import (
-        chassis_motion,
-        driving,
-        effects_in,
-        found_of,
-    )
+    from validate.formulations.absolute_coordinates import effects_in, found_of
 
     part, asked = scene.mechanism, asked_numbers(scene)
     model = absolute.compile(part.plain(tuple(scene.inputs)))
     assembled, (effects, loads) = absolute.Assembled(model), effects_in(scene, model)
-    moves = plan_effects(scene.effects).derivative > 0
+    rates = plan_effects(scene.effects).derivative > 0
 
     def solve(instants: Array) -> Answer:
-        laws = laws_at(scene, instants)
-        chassis = chassis_motion(part, laws)
-        solved = assembled.solve(driving(model, part, laws), chassis, moves, effects=effects, loads=loads)
+        solved = assembled.solve(laws_at(scene, instants), rates, effects=effects, loads=loads)
         return Answer(
             asked_of(found_of(solved, asked).numbers, scene), {"newton_steps": int(solved.iterations.sum())}
         )
