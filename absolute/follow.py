@@ -137,7 +137,10 @@ def _predicted(
     curve = 0.5 * second
     curve[many:] -= curve[one] + curve[other]
     products = np.concatenate((shares * shares, shares[:, one] * shares[:, other]), axis=1)
-    straight, curve = np.tensordot(shares, straight[:many], 1), np.tensordot(products, curve, 1)
+    straight, curve = (
+        (parts @ of.reshape(len(of), 6 * of.shape[1])).reshape(-1, *of.shape[1:])
+        for parts, of in ((shares, straight[:many]), (products, curve))
+    )
     size, bent = lengths(straight), lengths(curve)
     # l^2 bent = LARGEST_CURVE l size + what rounding explains
     half = 0.5 * LARGEST_CURVE * size

@@ -80,7 +80,9 @@ class RowStack:
             indices(number for number, row in enumerate(rows) if row.kind == kind)
             for kind in ("distance", "turn")
         )
-        self._offset = np.array([float(row.kind in ("offset", "distance")) for row in rows])
+        # As wide as the vectors that it multiplies: numbers that are repeated on the way take longer.
+        offset = [float(row.kind in ("offset", "distance")) for row in rows]
+        self._offset, self._offsets = np.array(offset), np.repeat(np.reshape(offset, (-1, 1)), 3, axis=1)
         # What the terms of a row add up to at most, apart from the distances of the origins.
         arms = np.sqrt(np.vecdot(self._local[1:], self._local[1:])).sum(axis=0)
         self._spans = np.where(self._offset > 0.0, arms, 1.0)
@@ -98,7 +100,7 @@ class RowStack:
         x, y, z = (rotation[..., k].take(self._holders, -2) * self._components[k] for k in range(3))
         vectors = x + y + z
         a, r1, r2 = (vectors[..., kind, :, :] for kind in range(3))
-        e = self._offset[:, None] * (origin.take(self.second, -2) - origin.take(self.first, -2)) + (r2 - r1)
+        e = self._offsets * (origin.take(self.second, -2) - origin.take(self.first, -2)) + (r2 - r1)
         if self._distances.size:
             along = e[..., self._distances, :]
             a[..., self._distances, :] = along / np.sqrt(np.vecdot(along, along))[..., None]
@@ -150,7 +152,7 @@ class RowStack:
     def jacobian(self, placed: Placed) -> Array:
         """(..., rows, unknowns)."""
         a, r1, r2 = (placed.vectors[..., kind, :, :] for kind in range(3))
-        push = self._offset[:, None] * a
+        push = self._offsets * a
         none = np.zeros((*a.shape[:-2], 1, 3))
         entries = np.concatenate((-push, cross(a, r1 + placed.e), push, cross(r2, a), none), -2)
         matrix: Array = entries.reshape(*a.shape[:-2], 12 * self.count + 3).take(self._source, -1)
@@ -175,7 +177,7 @@ class RowStack:
         along = [each[..., 0, :, :] for each in turned]
         apart = [placed.e, *(each[..., 2, :, :] - each[..., 1, :, :] for each in turned[1:])]
         for n, each in enumerate(held, 1):
-            apart[n] += self._offset[:, None] * (each[..., 2, :, 0, :] - each[..., 1, :, 0, :])
+            apart[n] += self._offsets * (each[..., 2, :, 0, :] - each[..., 1, :, 0, :])
         drift = _product(along, apart, order)
         if self._distances.size:
             drift[..., self._distances] = _of_length([e[..., self._distances, :] for e in apart])

@@ -14,12 +14,11 @@ Places = NDArray[np.intp]
 EPS = float(np.finfo(float).eps)
 
 NEXT = np.array([1, 2, 0])
-LAST = np.array([2, 0, 1])
 
 
 def cross(a: Array, b: Array) -> Array:
     """a x b over the last axis, quicker than numpy's for a few vectors."""
-    product: Array = a.take(NEXT, -1) * b.take(LAST, -1) - a.take(LAST, -1) * b.take(NEXT, -1)
+    product: Array = (a * b.take(NEXT, -1) - a.take(NEXT, -1) * b).take(NEXT, -1)
     return product
 
 
