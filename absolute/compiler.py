@@ -83,7 +83,6 @@ class _Compiler:
         self.driven: Mapping[str, Mapping[str, Any]] = mechanism.get("inputs", {})
         self.guided = [point for slide in self.slides.values() for point in slide["points"]]
         self.joints: list[Row] = []
-        self.senses: list[Row] = []
         self.inputs: list[Input] = []
         self.moves: dict[str, Array] = {}
         self.reported: dict[tuple[str, ...], tuple[str, str]] = {}
@@ -124,7 +123,6 @@ class _Compiler:
             Drawing(self.points, self.middle, self.size, numbers, anchors, holders),
             tuple(self.joints),
             tuple(self.inputs),
-            tuple(self.senses),
             self.moves,
             self.corners,
             self._loads(),
@@ -317,7 +315,8 @@ class _Compiler:
         self.joints += [self._between(owner, "offset", ends, way) for way in along]
 
     def _angles(self, owner: str, first: str, second: str, pairs: Iterable[tuple[Array, Array]]) -> list[Row]:
-        """Products of directions of two bodies."""
+        """Products of directions of two bodies. A right angle also allows the reversed joint, but no way of
+        small steps leads there."""
         return [self._row(owner, "angle", first, second, one, NOTHING, other) for one, other in pairs]
 
     def _hinge(self, owner: str, first: str, second: str, point: str, axis: Array) -> None:
@@ -325,7 +324,6 @@ class _Compiler:
         # Along its own axes, so that one row at a time follows from others where hinges are parallel.
         self._meet(owner, (first, point, second, point), frame)
         self.joints += self._angles(owner, first, second, ((y, z), (x, z)))
-        self.senses += self._angles(owner, first, second, ((z, z),))
 
     def _distance_row(self, owner: str, start: str, end: str) -> tuple[Row, float]:
         """The distance of points of two bodies, and how far apart they are drawn, mm."""
@@ -413,7 +411,6 @@ class _Compiler:
                 x = turned_least(f"{what} of {second}", frame, own)[0]
                 owner = f"slide {name} of {second}"
                 self.joints += self._angles(owner, body, second, ((frame[1], x),))
-                self.senses += self._angles(owner, body, second, ((frame[0], x),))
                 return
         raise DescriptionError(
             f"{what} has turns = false, and no two of its points {list(points)} are of one body: "

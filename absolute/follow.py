@@ -62,8 +62,8 @@ def follow(
     """The poses at goals, one run of them after the other, each on the straight way from a pose before it.
 
     A pose is taken that is near, to which the way bends little, that needs a small first correction, closes,
-    keeps rows that were left out and the sense of all joints, and has the signs of the start's determinants:
-    assemblies meet where one is zero. Where other rows should be left out, these are chosen anew.
+    keeps rows that were left out, and has the signs of the start's determinants: assemblies meet where one is
+    zero. Where other rows should be left out, these are chosen anew.
 
     Args:
         start: one pose, at inputs `at`, (inputs,). goals: (N, inputs). targets: of the rows by the inputs.
@@ -95,8 +95,7 @@ def follow(
             targets(ends[:count])[0],
             LARGEST_CORRECTION * size + floor,
         )
-        senses = mechanism.senses.place(there.placed.rotation, there.placed.origin).values
-        same = (there.signs == signs).all(axis=1) & (senses > 0.0).all(axis=1)
+        same = (there.signs == signs).all(axis=1)
         count, steps = leading(there.closed & there.held & same), steps + 1
         spent += int(there.corrections[count:].sum())
         if short or steps > MOST_STEPS or not (count or size[0] > SHORTEST_STEP):

@@ -5,20 +5,25 @@ from math import comb
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from absolute.backend import pin
 from absolute.errors import DescriptionError
-from absolute.groups import Group, groups_of
 from absolute.model import Model
 from absolute.rows import Placed, RowStack
-from absolute.vectors import Array
+from absolute.vectors import Array, Places
 
 # Rows that depend on each other do so only nearly where the drawing does not close yet.
 LARGEST_DEPENDENT = 0.1
 # Rows are chosen anew where those kept span less than this share of the volume that the best choice spans.
 # They span none where a row that was left out says what they do not.
 LEAST_SPANNED = 0.5
+
+
+class Group(NamedTuple):
+    """Places of its rows and columns, as many, in the Jacobian."""
+
+    rows: Places
+    columns: Places
 
 
 class Choice(NamedTuple):
@@ -29,8 +34,8 @@ class Choice(NamedTuple):
         groups: bodies that the rows kept fix one after the other.
     """
 
-    kept: slice | NDArray[np.intp]
-    left_out: NDArray[np.intp]
+    kept: slice | Places
+    left_out: Places
     groups: Sequence[Group]
 
 
@@ -42,7 +47,6 @@ class Mechanism:
 
     Attributes:
         model, drawing, stack: what was described, its lengths, its rows.
-        senses: rows that stay positive while all joints have the sense in which they are drawn.
         columns: of [o', w] of all bodies, which are unknown: the first one stands, and points do not turn.
         joint_rows: number of rows before the rows of the inputs.
         choice: of the rows, in the drawing.
@@ -60,7 +64,6 @@ class Mechanism:
         self.columns = np.flatnonzero(np.arange(6) < self._sizes[:, None])
         rows = [*model.joints, *(drive.row for drive in model.inputs)]
         self.stack, self.joint_rows = RowStack(rows, bodies, self.columns), len(model.joints)
-        self.senses = RowStack(model.senses, bodies, self.columns)
         self.pin_model = pin.Model()
         for body in [*model.bodies][1:]:
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)
@@ -111,7 +114,7 @@ class Mechanism:
         combined, strengths, _ = np.linalg.svd(self.stack.jacobian(placed)[: self.joint_rows])
         return combined[:, self.stack.unknowns - self.stack.count :], strengths
 
-    def _leaving_out(self, rows: NDArray[np.intp]) -> Choice:
+    def _leaving_out(self, rows: Places) -> Choice:
         kept = np.setdiff1d(np.arange(self.stack.count), rows)
         groups = groups_of(self.stack.first[kept], self.stack.second[kept], self._sizes)
         # All rows are read where they are.
@@ -171,7 +174,38 @@ class Mechanism:
         return targets
 
 
-def _largest(vanishing: Array) -> NDArray[np.intp]:
+def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
+    """Groups of the moving bodies that their rows fix one after the other, each as small as can be.
+
+    The bodies of a group have as many rows among themselves, what stands and the groups before as they have
+    freedoms: a driven link alone, then what hangs between such (Assur). A group's determinant changes its
+    sign where the assemblies of it meet, and so tells more than that of the Jacobian, which is the product of
+    all. With each body as many rows are matched as it has freedoms. A body then waits for all others in its
+    own rows, and bodies that wait for each other are a group (Dulmage and Mendelsohn, 1958). Where rows
+    cannot be matched, all are one group: some body can still move.
+
+    Args:
+        first, second: the two bodies of each row. sizes: freedoms of each body, none of the first.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
+    holder = np.repeat(np.arange(len(sizes)), sizes)
+    held = csr_array((first[:, None] == holder) | (second[:, None] == holder))
+    matched = maximum_bipartite_matching(held, perm_type="column")
+    if len(first) != len(holder) or (matched < 0).any():
+        return [Group(np.arange(len(first)), np.arange(len(holder)))]
+    own = holder[matched]
+    waits = np.zeros((len(sizes), len(sizes)), dtype=np.bool_)
+    waits[own, first] = waits[own, second] = True
+    _, group = connected_components(csr_array(waits), connection="strong")
+    return [
+        Group(np.flatnonzero(group[own] == one), np.flatnonzero(group[holder] == one))
+        for one in np.unique(group[1:])
+    ]
+
+
+def _largest(vanishing: Array) -> Places:
     """Numbers of as many rows as there are combinations, (rows, combinations), with the largest parts."""
     chosen = set[int]()
     for _ in range(vanishing.shape[1]):
@@ -182,7 +216,7 @@ def _largest(vanishing: Array) -> NDArray[np.intp]:
     return np.array(sorted(chosen), dtype=np.intp)
 
 
-def too_many_rows(stack: RowStack, left_out: NDArray[np.intp]) -> DescriptionError:
+def too_many_rows(stack: RowStack, left_out: Places) -> DescriptionError:
     """The refusal of rows that say something else than the others, by those too many."""
     owners = stack.owners_of(left_out)
     return DescriptionError(

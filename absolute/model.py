@@ -164,8 +164,6 @@ class Model:
         bodies: name -> names of its points. The first one stands: the chassis, or what the chassis turns on.
         drawing: their places.
         joints, inputs: rows.
-        senses: pairs of directions whose product must stay positive, since a right angle alone also allows
-            the reversed joint.
         moves: name of an input that displaces the whole car, after all turns -> the direction.
         corners: part -> its wheel; "" for a mechanism without parts.
         loads: part -> what acts on its wheel.
@@ -180,7 +178,6 @@ class Model:
     drawing: Drawing
     joints: tuple[Row, ...]
     inputs: tuple[Input, ...]
-    senses: tuple[Row, ...]
     moves: Mapping[str, Array]
     corners: Mapping[str, Corner]
     loads: Mapping[str, Load]
