@@ -1,8 +1,12 @@
 """The refusals of this package: each says what, where, which value, what is allowed, what to try."""
 
-from collections.abc import Mapping
+from __future__ import annotations
 
-from absolute.solution import Solution
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from absolute.results import Solution
 
 
 class AbsoluteError(Exception):
@@ -12,9 +16,7 @@ class AbsoluteError(Exception):
         partial: the motion solved before the failing instant, or None if there is none.
     """
 
-    def __init__(self, message: str) -> None:
-        super().__init__(message)
-        self.partial: Solution | None = None
+    partial: Solution | None = None
 
 
 class DescriptionError(AbsoluteError):
@@ -27,15 +29,14 @@ class DescriptionError(AbsoluteError):
 
     def __init__(self, message: str, name: str = "", value: object = None) -> None:
         super().__init__(message)
-        self.name = name
-        self.value = value
+        self.name, self.value = name, value
 
 
 class InputError(AbsoluteError):
-    """Inputs or chassis motion of a wrong name, shape or value.
+    """Inputs of a wrong name, shape or value.
 
     Attributes:
-        name: the input at fault, or "chassis".
+        name: the input at fault.
         instant: index of the first bad instant, or None when the fault is not at one instant.
         value: what was found there.
     """
@@ -44,9 +45,7 @@ class InputError(AbsoluteError):
         self, message: str, name: str = "", instant: int | None = None, value: object = None
     ) -> None:
         super().__init__(message)
-        self.name = name
-        self.instant = instant
-        self.value = value
+        self.name, self.instant, self.value = name, instant, value
 
 
 class PoseError(AbsoluteError):
@@ -56,7 +55,6 @@ class PoseError(AbsoluteError):
         instant: index of the instant, or None while the drawing itself is being assembled.
         inputs: the inputs asked for, by name (rad or mm).
         reached: the inputs of the last pose that could be solved on the way there.
-        residual: largest violation of any row at that last pose, mm.
         condition: estimate of the condition number (1-norm) at that last pose.
         limits: the joints that hold each other there, the strongest first; empty where none do.
         limit: the input that meets the end of its range there, or "" where it was not one of them.
@@ -68,19 +66,14 @@ class PoseError(AbsoluteError):
         instant: int | None = None,
         inputs: Mapping[str, float] | None = None,
         reached: Mapping[str, float] | None = None,
-        residual: float = float("nan"),
         condition: float = float("nan"),
         limits: tuple[str, ...] = (),
         limit: str = "",
     ) -> None:
         super().__init__(message)
-        self.instant = instant
-        self.inputs = dict(inputs or {})
-        self.reached = dict(reached or {})
-        self.residual = residual
-        self.condition = condition
-        self.limits = limits
-        self.limit = limit
+        self.instant, self.condition = instant, condition
+        self.inputs, self.reached = dict(inputs or {}), dict(reached or {})
+        self.limits, self.limit = limits, limit
 
 
 class AssemblyError(PoseError):

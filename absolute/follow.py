@@ -13,7 +13,6 @@ from itertools import combinations
 import numpy as np
 
 from absolute.errors import AbsoluteError, SingularError, UnreachableError
-from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.mechanism import Mechanism
 from absolute.newton import (
     SMALLEST_RCOND,
@@ -44,16 +43,19 @@ SHORTEST_STEP = math.sqrt(EPS)
 MOST_STEPS = 2000
 # Instants of one step: enough to share the cost of a call, few enough to stay in fast memory.
 MOST_INSTANTS = 64
+# A motion is followed until a fold is about sqrt(eps) away, and the smallest singular value there is of that
+# order, times ratios of lengths: this is ten thousand times as much.
+LARGEST_SHARE = 1e-4
+# Joints with less of the largest force than this carry what the others hold each other with.
+SMALLEST_FORCE = 0.1
 
 
 class BlockedError(Exception):
     """The way cannot be followed to its end; carries the inputs where it ends and the last good pose."""
 
-    def __init__(self, reached: Array, pose: Configurations, corrections: int) -> None:
+    def __init__(self, reached: Array, pose: Configurations) -> None:
         super().__init__(f"blocked at {reached.tolist()}")
-        self.reached = reached
-        self.pose = pose
-        self.corrections = corrections
+        self.reached, self.pose = reached, pose
 
 
 def follow(
@@ -70,7 +72,7 @@ def follow(
     Raises:
         BlockedError: steps have become too short to go on: the mechanism locks there.
     """
-    pose, signs, longest, done, steps, spent = start, start.signs, LONGEST_STEP, 0, 0, 0
+    pose, longest, done, steps = start, LONGEST_STEP, 0, 0
     while done < len(goals):
         ends = goals[done : done + MOST_INSTANTS]
         ways = ends - at
@@ -95,11 +97,10 @@ def follow(
             targets(ends[:count])[0],
             LARGEST_CORRECTION * size + floor,
         )
-        same = (there.signs == signs).all(axis=1)
+        same = (there.signs == pose.signs).all(axis=1)
         count, steps = leading(there.closed & there.held & same), steps + 1
-        spent += int(there.corrections[count:].sum())
         if short or steps > MOST_STEPS or not (count or size[0] > SHORTEST_STEP):
-            raise BlockedError(at, pose, spent)
+            raise BlockedError(at, pose)
         if not count:
             longest = 0.5 * float(size[0])
             continue
@@ -108,13 +109,9 @@ def follow(
         choice = mechanism.choice_at(pose.placed, pose.choice)
         if choice is not pose.choice:
             pose = configurations_at(mechanism, choice, pose.q, targets(at)[:1])
-            signs = pose.signs
-        if share < 1.0:
-            spent += int(there.corrections[0])
-            continue
-        there.corrections[0] += spent
-        done, steps, spent = done + count, 0, 0
-        yield there
+        if share == 1.0:
+            done, steps = done + count, 0
+            yield there
 
 
 def _predicted(
@@ -152,45 +149,37 @@ def _predicted(
 def through(mechanism: Mechanism, drawn: Configurations, goals: Array) -> Iterator[Configurations]:
     """The poses at inputs (N, inputs) over N instants: straight, else one input after the other.
 
-    Args:
-        drawn: the assembled drawing; its corrections are counted to the first instant.
     Raises:
         UnreachableError, SingularError: at the first instant without a pose, after those before it.
     """
-    pose, at, done, spent = drawn, mechanism.drawn_inputs, 0, int(drawn.corrections[0])
+    pose, at, done = drawn, mechanism.drawn_inputs, 0
     while done < len(goals):
         try:
             for found in follow(mechanism, pose, at, goals[done:], mechanism.targets):
-                found.corrections[0] += spent
-                spent, done = 0, done + len(found.q)
+                done += len(found.q)
                 pose, at = found.part(slice(-1, None)), goals[done - 1]
                 yield found
         except BlockedError as blocked:
-            pose = _around(mechanism, pose, at, goals[done], blocked, done)
-            pose.corrections[0] += spent
-            spent, at, done = 0, goals[done], done + 1
+            around = _around(mechanism, pose, at, goals[done])
+            if around is None:
+                raise _refusal(mechanism, blocked, at, goals[done], done) from blocked
+            pose, at, done = around, goals[done], done + 1
             yield pose
 
 
-def _around(
-    mechanism: Mechanism, pose: Configurations, at: Array, goal: Array, blocked: BlockedError, instant: int
-) -> Configurations:
-    """The pose at a goal to which the straight way is blocked, by one input after the other."""
-    changed, spent = np.flatnonzero(at != goal), blocked.corrections
+def _around(mechanism: Mechanism, pose: Configurations, at: Array, goal: Array) -> Configurations | None:
+    """The pose at a goal to which the straight way is blocked, by one input after the other, if any."""
+    changed = np.flatnonzero(at != goal)
     for order in (changed, changed[::-1]) if len(changed) > 1 else ():
-        corners = [at]
-        for index in order:
-            corners.append(np.where(np.arange(len(at)) == index, goal, corners[-1]))
+        corners = np.tile(at, (len(order), 1))
+        for place, index in enumerate(order):
+            corners[place:, index] = goal[index]
         try:
-            for found in follow(mechanism, pose, at, np.array(corners[1:]), mechanism.targets):
-                spent += int(found.corrections.sum())
-        except BlockedError as again:
-            spent += again.corrections
+            *_, last = follow(mechanism, pose, at, corners, mechanism.targets)
+        except BlockedError:
             continue
-        found = found.part(slice(-1, None))
-        found.corrections[0] = spent
-        return found
-    raise _refusal(mechanism, blocked, at, goal, instant)
+        return last.part(slice(-1, None))
+    return None
 
 
 def _refusal(
@@ -208,7 +197,7 @@ def _refusal(
     # What the targets change along the straight way, at its end.
     change = mechanism.targets(blocked.reached, goal - start)[1]
     limit = limiting_input(mechanism, blocked.pose, change[mechanism.joint_rows :])
-    facts = instant, wanted, reached, residual, condition, limits, limit
+    facts = instant, wanted, reached, condition, limits, limit
     if np.allclose(blocked.reached, goal, rtol=SMALLEST_RCOND, atol=0):
         return SingularError(
             f"instant {instant}: {asked} is a singular pose ({limited_by(limits)}condition number about "
@@ -224,3 +213,43 @@ def _refusal(
         "another sequence of instants",
         *facts,
     )
+
+
+def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:
+    """Joints that hold each other near a singular pose, the strongest first; empty where none is near.
+
+    There some forces y in the rows are in equilibrium, y J = 0 nearly, without any load: in the group of
+    bodies whose block is nearest to singular.
+    """
+    numbers, jacobian = np.arange(mechanism.stack.count)[pose.choice.kept], pose.kept[0]
+    groups = pose.choice.groups
+    blocks = [(numbers[rows], np.linalg.svd(jacobian[rows[:, None], columns])) for rows, columns in groups]
+    rows, (left, strengths, _) = min(blocks, key=lambda found: float(found[1][1][-1] / found[1][1][0]))
+    if not strengths[-1] <= LARGEST_SHARE * strengths[0]:
+        return ()
+    forces: dict[str, float] = {}
+    for row, force in zip(rows.tolist(), left[:, -1].tolist(), strict=True):
+        if row < mechanism.joint_rows:
+            owner = mechanism.stack.owners[row]
+            forces[owner] = forces.get(owner, 0.0) + force * force
+    least = SMALLEST_FORCE**2 * max(forces.values(), default=0.0)
+    return tuple(
+        sorted((owner for owner in forces if forces[owner] >= least), key=lambda owner: -forces[owner])
+    )
+
+
+def limiting_input(mechanism: Mechanism, pose: Configurations, change: Array) -> str:
+    """The input whose change, (inputs,) in units of its row, the bodies cannot follow near a singular pose.
+
+    There some y has y J = 0 nearly, so that rows may only change at right angles to y: the input with
+    the largest product of its change and its part in y is named.
+    """
+    left = np.linalg.svd(pose.kept[0])[0]
+    # The rows of the inputs come last and are all kept.
+    blocked = np.abs(left[-len(change) :, -1] * change)
+    return mechanism.model.inputs[int(np.argmax(blocked))].value
+
+
+def limited_by(limits: tuple[str, ...]) -> str:
+    """The links of a refusal as part of its message."""
+    return f"limited by {', '.join(limits)}; " if limits else ""

@@ -3,8 +3,7 @@
 import numpy as np
 
 from absolute.errors import AssemblyError, SingularError
-from absolute.follow import BlockedError, follow
-from absolute.limits import limited_by, limits_at
+from absolute.follow import BlockedError, follow, limited_by, limits_at
 from absolute.mechanism import Mechanism, too_many_rows
 from absolute.newton import SMALLEST_RCOND, Configurations, configurations_at, signs_of
 from absolute.vectors import Array
@@ -20,48 +19,44 @@ def assemble(mechanism: Mechanism) -> Configurations:
     The rows keep a shrinking share of the violation they have in the drawing: rows(q) =
     (1 - share) rows(drawn) + share * target, without meeting a singular pose.
 
-    Returns:
-        The pose, with the Newton corrections of the way that led to it.
     Raises:
         SingularError: the drawing itself is singular.
         AssemblyError: the drawing stands for two assemblies; closing it locks the mechanism.
         DescriptionError: there are more rows than unknowns, and they do not follow from each other.
     """
     target = mechanism.targets(mechanism.drawn_inputs[None])[0]
-    drawn = configurations_at(mechanism, mechanism.choice, mechanism.drawn[None], target)
-    _require_regular(mechanism, drawn)
-    if drawn.closed[0]:
-        _require_redundant(mechanism, drawn)
-        return drawn
-    gap = mechanism.stack.gap(drawn.placed, target)[0]
+    pose = drawn = configurations_at(mechanism, mechanism.choice, mechanism.drawn[None], target)
+    if not SMALLEST_RCOND * drawn.condition[0] <= 1.0:
+        raise _singular(mechanism, drawn)
+    if not drawn.closed[0]:
+        gap = mechanism.stack.gap(drawn.placed, target)[0]
 
-    def closing(share: Array, *rates: Array) -> Array:
-        values = drawn.placed.values[0] + share * gap
-        return np.array(np.broadcast_arrays(values, *(rate * gap for rate in rates)))
+        def closing(share: Array, *rates: Array) -> Array:
+            values = drawn.placed.values[0] + share * gap
+            return np.array(np.broadcast_arrays(values, *(rate * gap for rate in rates)))
 
-    _require_clear(mechanism, drawn, gap)
-    try:
-        (pose,) = follow(mechanism, drawn, np.zeros(1), np.ones((1, 1)), closing)
-    except BlockedError as blocked:
-        raise _locked(mechanism, blocked, gap) from blocked
-    _require_near(mechanism, pose)
+        _require_clear(mechanism, drawn, gap)
+        try:
+            (pose,) = follow(mechanism, drawn, np.zeros(1), np.ones((1, 1)), closing)
+        except BlockedError as blocked:
+            raise _locked_while_closing(mechanism, blocked, gap) from blocked
+        _require_near(mechanism, pose)
     _require_redundant(mechanism, pose)
     return pose
 
 
-def _require_regular(mechanism: Mechanism, drawn: Configurations) -> None:
-    if not SMALLEST_RCOND * drawn.condition[0] <= 1.0:
-        limits = limits_at(mechanism, drawn)
-        raise SingularError(
-            f"the drawing is singular: condition number about {float(drawn.condition[0]):.3g}, "
-            f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
-            "Look for points on one line that should not be (a steering arm on the strut axis, "
-            "an arm along its own axis) or an input at its dead point; "
-            f"{limited_by(limits)}move a point off it",
-            inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
-            condition=float(drawn.condition[0]),
-            limits=limits,
-        )
+def _singular(mechanism: Mechanism, drawn: Configurations) -> SingularError:
+    condition, limits = float(drawn.condition[0]), limits_at(mechanism, drawn)
+    return SingularError(
+        f"the drawing is singular: condition number about {condition:.3g}, at most "
+        f"{1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
+        "Look for points on one line that should not be (a steering arm on the strut axis, "
+        "an arm along its own axis) or an input at its dead point; "
+        f"{limited_by(limits)}move a point off it",
+        inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
+        condition=condition,
+        limits=limits,
+    )
 
 
 def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
@@ -69,15 +64,13 @@ def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
     drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
     there = pose.placed.origin[0, body] + np.matvec(pose.placed.rotation[0, body], arms)
     distances = np.linalg.norm(there - drawing.origins[body] - arms, axis=1)
-    moved = float(distances.max())
-    if moved > FURTHEST:
-        furthest = list(drawing.points)[int(distances.argmax())]
+    if distances.max() > FURTHEST:
+        furthest, far = list(drawing.points)[int(distances.argmax())], float(distances.max())
         raise AssemblyError(
-            f"closing the drawing moves {furthest!r} by {moved * drawing.size:.3g} mm; beyond "
+            f"closing the drawing moves {furthest!r} by {far * drawing.size:.3g} mm; beyond "
             f"{FURTHEST * drawing.size:.3g} mm, a part of the mechanism's size, another assembly may be "
             "meant: draw the points closer to an assembled pose",
             inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
-            residual=moved * drawing.size,
         )
 
 
@@ -89,7 +82,7 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
     closed (see `RowStack.read_at_foot`). Where they differ in a sign, ways of closing that keep the one or
     the other end in different assemblies.
     """
-    stack = mechanism.stack
+    stack, of = mechanism.stack, np.array(mechanism.stack.owners)
 
     def other_side(gaps: Array) -> bool:
         read = stack.jacobian(stack.read_at_foot(drawn.placed, gaps))
@@ -97,7 +90,6 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
 
     if not other_side(gap):
         return
-    of = np.array(stack.owners)
     alone = [owner for owner in dict.fromkeys(stack.owners) if other_side(np.where(of == owner, gap, 0.0))]
     open_joints = tuple(alone) or (stack.owners[int(np.abs(gap).argmax())],)
     largest = float(np.abs(gap[np.isin(of, open_joints)]).max()) * mechanism.drawing.size
@@ -106,25 +98,21 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
         "mm from closed, and which assembly is meant depends on which of its parts is put right, "
         "since a pose where both meet lies between; draw the points closer to an assembled pose",
         inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
-        residual=largest,
         condition=float(drawn.condition[0]),
         limits=open_joints,
     )
 
 
-def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> AssemblyError:
-    size, largest = mechanism.drawing.size, float(np.abs(gap).max())
-    left = largest * float(1.0 - reached.reached[0]) * size
-    owner = mechanism.stack.owners[int(np.abs(gap).argmax())]
-    limits = limits_at(mechanism, reached.pose)
+def _locked_while_closing(mechanism: Mechanism, blocked: BlockedError, gap: Array) -> AssemblyError:
+    largest = float(np.abs(gap).max()) * mechanism.drawing.size
+    limits = limits_at(mechanism, blocked.pose)
     return AssemblyError(
-        f"the drawing cannot be assembled: rows are violated by up to {largest * size:.3g} mm "
-        f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
-        f"{limited_by(limits)}"
+        f"the drawing cannot be assembled: rows are violated by up to {largest:.3g} mm (most at "
+        f"{mechanism.stack.owners[int(np.abs(gap).argmax())]!r}) and closing them locks the mechanism with "
+        f"{largest * float(1.0 - blocked.reached[0]):.3g} mm left; {limited_by(limits)}"
         "draw the points closer to an assembled pose",
         inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
-        residual=left,
-        condition=float(reached.pose.condition[0]),
+        condition=float(blocked.pose.condition[0]),
         limits=limits,
     )
 

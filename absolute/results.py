@@ -1,7 +1,7 @@
 """The points, bodies and lines of a solved motion, from the poses and rates of its bodies."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -11,8 +11,56 @@ from numpy.typing import NDArray
 from absolute.dual import Dual, constant
 from absolute.mechanism import Mechanism
 from absolute.model import CHASSIS, Corner
-from absolute.solution import Solution
 from absolute.vectors import EPS, Array, Counts, carried, cross
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Motion of every point and body at N instants; all arrays are read-only.
+
+    Attributes:
+        position: point name -> (N, 3), mm, world axes; chassis, moving and carried points.
+        velocity: point name -> (N, 3), mm/s; empty when no rates were asked for.
+        acceleration: point name -> (N, 3), mm/s^2; empty when no rates were asked for.
+        higher: the jerk and so on of points, each point name -> (N, 3), mm/s^3, mm/s^4: as many as the inputs
+            were given with.
+        angular_velocity: moving body name -> (N, 3), rad/s, world axes; empty without rates.
+        angular_acceleration: moving body name -> (N, 3), rad/s^2, world axes; empty without rates.
+        iterations: (N,) Newton corrections at each instant, from where it was predicted.
+        residual: (N,) largest violation of any row, mm (rows of directions times the size of the
+            mechanism).
+        condition: (N,) condition number of the scaled Jacobian (1-norm).
+        accuracy: (N,) mm: the rows hold for points within this of those given, so that it is what is left
+            of the rows, and what rounds coordinates as large as the mechanism. What it makes of a number
+            depends on the pose.
+        effects: name -> (N,), those asked for, in their units (see `EFFECTS`).
+        rod_force: name of a rod, or `damper` with its part in front -> (N,) axial force, N, tension positive;
+            empty when no loads were asked for.
+        joint_force: point of a ball joint, of a hinge, there across its line, or of a slide -> (N, 3), N,
+            world axes: on the knuckle, or on the other body that moves and is named first, or on a point of
+            no body; empty without loads.
+        hinge_thrust: first point of a hinge -> (N,), N: likewise, at both along the line to the second.
+    """
+
+    position: Mapping[str, Array]
+    velocity: Mapping[str, Array]
+    acceleration: Mapping[str, Array]
+    higher: tuple[Mapping[str, Array], ...]
+    angular_velocity: Mapping[str, Array]
+    angular_acceleration: Mapping[str, Array]
+    iterations: Counts
+    residual: Array
+    condition: Array
+    accuracy: Array
+    effects: Mapping[str, Array]
+    rod_force: Mapping[str, Array] = field(default_factory=dict)
+    joint_force: Mapping[str, Array] = field(default_factory=dict)
+    hinge_thrust: Mapping[str, Array] = field(default_factory=dict)
+
+    @property
+    def derivatives(self) -> tuple[Mapping[str, Array], ...]:
+        """Of points by order, that of order 0 their positions."""
+        return self.position, self.velocity, self.acceleration, *self.higher
 
 
 class Instants(NamedTuple):
@@ -23,8 +71,7 @@ class Instants(NamedTuple):
         rates: (N, R, bodies, 2, 3) velocities [o', w], accelerations [o'', w'] and so on of the bodies; what
             stands, and all where they are not asked for, stay at zero.
         slopes: (N, K, bodies, 2, 3) velocities of the bodies for a unit rate of one input each.
-        residual: (N,) largest violation of a row.
-        corrections: (N,) of Newton.
+        residual: (N,) largest violation of a row. condition: (N,) numbers. corrections: (N,) of Newton.
     """
 
     rotation: Array
@@ -32,6 +79,7 @@ class Instants(NamedTuple):
     rates: Array
     slopes: Array
     residual: Array
+    condition: Array
     corrections: Counts
 
 
@@ -128,7 +176,6 @@ def solution_of(
     found: Instants,
     displaced: Array,
     rates: bool,
-    conditions: bool,
     **asked: Mapping[str, Array],
 ) -> Solution:
     """Instants in mm, with what is asked for, effects and forces by name.
@@ -136,16 +183,13 @@ def solution_of(
     Args:
         displaced: (N, 1 + R, 3) displacement of the car and its rates, mm and s.
     """
-    size, stack = mechanism.drawing.size, mechanism.stack
+    size = mechanism.drawing.size
     states = _points(mechanism, found, displaced, 1 + found.rates.shape[1] if rates else 1)
     points = [dict(zip(mechanism.drawing.points, map(_locked, state), strict=True)) for state in states]
     # Without rates there are none of anything.
     position, velocity, acceleration, *higher = points if rates else (*points, {}, {})
     bodies = {name: mechanism.drawing.bodies[name] for name in mechanism.model.reported if rates}
     spins = [{n: _locked(found.rates[:, order, k, 1]) for n, k in bodies.items()} for order in range(2)]
-    condition = None
-    if conditions:
-        condition = _locked(np.linalg.cond(stack.jacobian(stack.place(found.rotation, found.origin))))
     return Solution(
         position=position,
         velocity=velocity,
@@ -155,7 +199,7 @@ def solution_of(
         angular_acceleration=spins[1],
         iterations=_locked(found.corrections),
         residual=_locked(found.residual * size),
-        condition=condition,
+        condition=_locked(found.condition),
         # Points are rounded too, whatever is left of the rows: half a unit in the last place of lengths up to
         # the diameter.
         accuracy=_locked((found.residual + EPS) * size),

@@ -1,6 +1,6 @@
 """Solve a motion: assemble the drawing, follow it through the instants, and take the rates there."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,13 +10,11 @@ from absolute.effects import TIME, effects_of, inputs_of, numbers_of
 from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
 from absolute.initial_assembly import assemble, locked
-from absolute.input_arrays import input_series
 from absolute.loads import forces
 from absolute.mechanism import Mechanism
 from absolute.model import Model
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates
-from absolute.results import Instants, Motion, solution_of
-from absolute.solution import Solution
+from absolute.results import Instants, Motion, Solution, solution_of
 from absolute.vectors import EPS, Array
 
 # Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `rows`).
@@ -57,7 +55,6 @@ def solve(
     model: Model,
     inputs: Mapping[str, Array],
     rates: bool = True,
-    conditions: bool = False,
     effects: Sequence[str] = (),
     loads: bool = False,
 ) -> Solution:
@@ -68,7 +65,6 @@ def solve(
         inputs: name -> (N, 3) value, rate and acceleration of every input of the model (rad or mm, per s).
             With the jerks of all as well, (N, 4), there are jerks of points, and so on, (N, orders).
         rates: False for positions only.
-        conditions: also the condition number of the scaled Jacobian at each instant.
         effects: names of `effect_names(model)`.
         loads: also the forces of rods, joints and slides under the loads of the model.
     Returns:
@@ -95,7 +91,7 @@ def solve(
     >>> bool(abs(solution.position["end"][0, 2] - 150.0) < 1e-12)
     True
     """
-    return Assembled(model).solve(inputs, rates, conditions, effects, loads)
+    return Assembled(model).solve(inputs, rates, effects, loads)
 
 
 class Assembled:
@@ -122,7 +118,6 @@ class Assembled:
         self,
         inputs: Mapping[str, Array],
         rates: bool = True,
-        conditions: bool = False,
         effects: Sequence[str] = (),
         loads: bool = False,
     ) -> Solution:
@@ -131,9 +126,11 @@ class Assembled:
         asked = effects_of(effects, model)
         by = inputs_of(asked, model)
         rated = rates or any(one.effect.by == TIME for one in asked.values())
-        series = input_series({*mechanism.values, *model.moves}, inputs)
+        series = _series({*mechanism.values, *model.moves}, inputs)
         # Rows that take the same value have a column each.
-        columns = np.stack([series[name] for name in mechanism.values], axis=-1)
+        columns = np.zeros((0, 3, 0))
+        if series:
+            columns = np.stack([series[name] for name in mechanism.values], axis=-1)
         displaced = np.zeros((*columns.shape[:2], 3))
         for name, way in model.moves.items():
             displaced += series[name][..., None] * way
@@ -146,7 +143,7 @@ class Assembled:
         def solution(count: int | None = None) -> Solution:
             found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
             moved = displaced[: len(found.residual)]
-            return solution_of(mechanism, found, moved, rates, conditions, **numbers(found))
+            return solution_of(mechanism, found, moved, rates, **numbers(found))
 
         with np.errstate(over="ignore", invalid="ignore"):
             # What effects and loads lack is missing from no instants as well.
@@ -194,8 +191,8 @@ class Assembled:
                 moving[:] = rates(mechanism, found, *targets[1:, here])
                 residual, followed = _of_rates(mechanism, found, moving[0])
                 held &= followed
-            moving, slopes = moving.swapaxes(0, 1), slopes.swapaxes(0, 1)
-            return Instants(placed.rotation, placed.origin, moving, slopes, residual, found.corrections), held
+            moving, slopes, where = moving.swapaxes(0, 1), slopes.swapaxes(0, 1), placed[:2]
+            return Instants(*where, moving, slopes, residual, found.condition, found.corrections), held
 
         yield at(self._drawn.part(slice(0)), rated=False)[0]
         for found in through(mechanism, self._drawn, series[:, 0]):
@@ -206,6 +203,57 @@ class Assembled:
             done += good
             if not held.all():
                 raise locked(mechanism, done, found.part(slice(good, good + 1)), series[done, 0].tolist())
+
+
+def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, Array]:
+    """name -> (N, orders): value, rate, acceleration, and more with the jerk, of every input.
+
+    Raises:
+        InputError: an input is missing, unknown, of another length, or not finite.
+    """
+    unknown, missing = sorted({*inputs} - {*names}), sorted({*names} - {*inputs})
+    if unknown or missing:
+        raise InputError(
+            f"inputs must be exactly {sorted(names)}; unknown: {unknown}, missing: {missing}",
+            (unknown or missing)[0],
+        )
+    series = {name: _array(name, values) for name, values in inputs.items()}
+    orders = max([3, *(law.shape[1] for law in series.values() if law.ndim == 2)])
+    count = len(next(iter(series.values()), ()))
+    for name, law in series.items():
+        if law.shape[1:] != (orders,):
+            raise InputError(
+                f"{name!r} has shape {law.shape}; {('N', orders)} is needed: value, rate and acceleration at "
+                "each instant, and as many more of its rates as another input has",
+                name,
+                None,
+                law.shape,
+            )
+        instant = leading(np.asarray(np.isfinite(law).all(axis=1)))
+        if instant < len(law):
+            found = law[instant].tolist()
+            raise InputError(
+                f"{name!r} is {found} at instant {instant}; all its numbers must be finite",
+                name,
+                instant,
+                found,
+            )
+        if len(law) != count:
+            raise InputError(
+                f"{name!r} has {len(law)} instants, the others have {count}; give all as many",
+                name,
+                None,
+                len(law),
+            )
+    return series
+
+
+def _array(name: str, values: object) -> Array:
+    try:
+        # A copy of 0 dimensions has one instant, and no numbers there.
+        return np.atleast_1d(np.array(values, dtype=float))
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name!r} is not an array of numbers: {error}", name, None, values) from error
 
 
 def _of_rates(

@@ -57,5 +57,4 @@ def error(found: Array, wanted: Any) -> float:
 
 def off(solution: absolute.Solution) -> Array:
     """(N,) mm: points that miss their rows by the accuracy that is stated lie within so many times that."""
-    assert solution.condition is not None
     return np.asarray(solution.accuracy * solution.condition)

@@ -60,7 +60,7 @@ def test_each_of_the_eight_assemblies_of_a_double_wishbone_keeps_to_its_own(
         "rack": np.stack([drawn["rack"] + 12.0 * t, 0 * t, 0 * t], -1),
     }
     motion = Motion(WISHBONE | {"points": car}, inputs)
-    solution = motion.solve(rates=False, conditions=True)
+    solution = motion.solve(rates=False)
     for k, (points, *_) in enumerate(exact(motion)):
         for name, place in solution.position.items():
             assert error(place[k], points[name]) <= off(solution)[k], name
@@ -73,7 +73,7 @@ def test_a_pose_that_left_the_branch_is_led_to_by_nearer_ones_or_refused(
 ) -> None:
     """Planted: a determinant has another sign, or nothing closes; once or always."""
     motion, seen = shipped("bounce-and-steer", 20), 0
-    plain, assembled = motion.solve(conditions=True), absolute.Assembled(absolute.compile(motion.plain))
+    plain, assembled = motion.solve(), absolute.Assembled(absolute.compile(motion.plain))
 
     def wrong(*arguments: Any) -> Configurations:
         nonlocal seen
@@ -124,7 +124,7 @@ def test_a_long_way_close_by_a_fold_does_not_cross_it() -> None:
         table = [{"arm_angle": 0.8, "rack": 0.0}, {"arm_angle": 0.5714841988334616, "rack": 0.0}, goal]
     ways = Motion(STRUT, {name: np.array([[one[name], 0.0, 0.0] for one in table]) for name in goal})
     try:
-        solution = Motion(STRUT, held).solve(rates=False, conditions=True)
+        solution = Motion(STRUT, held).solve(rates=False)
     except absolute.UnreachableError:
         return
     for name, place in exact(ways)[-1][0].items():

@@ -119,6 +119,6 @@ def test_points_drawn_near_each_other_keep_the_digits_of_the_coordinates_given(
     assert abs(drawn["arm_angle"] - float(angle)) <= 4 * EPS
     goal = {"arm_angle": at([drawn["arm_angle"] + 0.05]), "rack": at([drawn["rack"] + 5.0])}
     motion = Motion(scene | {"points": car}, goal)
-    solution, (wanted, *_) = motion.solve(rates=False, conditions=True), exact(motion)[0]
+    solution, (wanted, *_) = motion.solve(rates=False), exact(motion)[0]
     for name, place in solution.position.items():
         assert error(place[0], wanted[name]) <= off(solution)[0], name

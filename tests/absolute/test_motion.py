@@ -36,14 +36,13 @@ def motion(request: pytest.FixtureRequest) -> Motion:
 def rounding(solution: absolute.Solution, order: int) -> Array:
     """(N, 1) mm, mm/s, mm/s^2: the poses of two solutions are off by rounding times the condition number, and
     rates see it once more each, as shares of the largest of them."""
-    assert solution.condition is not None
     condition, size = solution.condition[:, None], solution.accuracy.max() / EPS
     largest = max(size, *(float(np.abs(of).max()) for of in solution.derivatives[order].values()))
     return np.asarray(4 * EPS * largest * condition ** (1 + order))
 
 
 def test_instants_do_not_depend_on_each_other_nor_positions_on_rates(motion: Motion) -> None:
-    whole = motion.solve(conditions=True)
+    whole = motion.solve()
     places = np.random.default_rng(1).permutation(len(whole.residual))[:2]
     some = Motion(motion.plain, {name: law[places] for name, law in motion.inputs.items()})
     other = some.solve()
@@ -52,7 +51,6 @@ def test_instants_do_not_depend_on_each_other_nor_positions_on_rates(motion: Mot
             apart = np.abs(found - whole.derivatives[order][name][places])
             assert (apart <= rounding(whole, order)[places]).all(), (order, name)
     bare = motion.solve(rates=False)
-    assert bare.condition is None
     assert not any(bare.derivatives[1:])
     assert not bare.angular_velocity
     assert not bare.angular_acceleration
@@ -67,8 +65,7 @@ def test_a_drawing_of_any_size_moves_alike(motion: Motion, scale: float) -> None
         "wheel_radius": motion.plain["wheel_radius"] and scale * motion.plain["wheel_radius"],
     }
     inputs = {name: law * (1.0 if name in angles else scale) for name, law in motion.inputs.items()}
-    before, after = motion.solve(conditions=True), Motion(described, inputs).solve(conditions=True)
-    assert before.condition is not None
+    before, after = motion.solve(), Motion(described, inputs).solve()
     # Without a unit; of rows that depend on each other another may be left out.
     assert (after.condition <= 4.0 * before.condition).all()
     for order in range(3):
