@@ -19,9 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from absolute.car import car_of
 from absolute.errors import DescriptionError
-from absolute.model import CHASSIS, Corner, Drawing, Input, Load, Model, Row
+from absolute.model import CAR, CHASSIS, Corner, Drawing, Input, Load, Model, Row
 from absolute.vectors import EPS, Array, cross
 
 # The product of three vectors between such points, mm^3, and the squares of lengths are normal numbers.
@@ -32,6 +31,8 @@ SHORTEST_AXIS = math.sqrt(EPS)
 # `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
 LARGEST_SKEW = 1e-6
 SIDES = ("left", "right")
+# Which way the axle is from the middle of the car, rearward.
+CAR_AXLES = {"front": -1.0, "rear": 1.0}
 ROLES = ("wheel_axis", "steering_axis", "damper")
 INPUTS = ("angle", "travel", "steers", "height", "contact", "distance", "turns", "moves")
 # What a car that turns does so on; no name of a body is empty.
@@ -56,7 +57,10 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
                 and a dot.
             wheel_radius: of the wheel, mm, or None where nothing needs it; likewise rack_per_turn, the mm
                 that the rack travels for a turn of the steering wheel.
-            car: numbers of the car, as far as given (see `car_of`).
+            car: numbers of the car, as far as given: axle, "front" or "rear"; wheelbase, mm;
+                centre_of_gravity_height above the ground as drawn, mm; brake_share and drive_share, the parts
+                of the braking and of the driving force that act at this axle, 0 to 1; spring_rate, N/mm, and
+                spring_free_length, mm, of a spring between the ends of the damper.
             loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
     Raises:
         DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
@@ -171,11 +175,11 @@ class _Compiler:
     def _corners(self) -> dict[str, Corner]:
         """The wheel of each part, whose names have its own in front; or the only one."""
         radius = self.of.get("wheel_radius")
-        if radius is not None and not (isinstance(radius, int | float) and 0.0 < radius < math.inf):
+        if radius is not None and not (_is_number(radius) and radius > 0.0):
             raise DescriptionError(
                 f"wheel_radius is {radius!r}; a length above 0 is needed, in mm", "wheel_radius", radius
             )
-        side, car, roles = self.of.get("side"), car_of(self.of.get("car")), self.of.get("roles", {})
+        side, car, roles = self.of.get("side"), _car_of(self.of.get("car")), self.of.get("roles", {})
         sides = self.of.get("sides") or {"": "left" if side is None else side}
         corners = {}
         for part, side in sides.items():
@@ -470,8 +474,7 @@ class _Compiler:
 
     def _steers(self, name: str, given: Mapping[str, Any]) -> None:
         per_turn = self.of.get("rack_per_turn")
-        number = isinstance(per_turn, int | float) and not isinstance(per_turn, bool)
-        if not (number and per_turn and math.isfinite(per_turn)):
+        if not _is_number(per_turn) or not per_turn:
             raise DescriptionError(
                 f"input {name!r} needs rack_per_turn, not {per_turn!r}; give the travel of the rack for a "
                 "turn of the steering wheel, in mm",
@@ -557,6 +560,26 @@ def turned_least(what: str, frame: Array, z: Array) -> Array:
         )
     axis = cross(frame[2], z)
     return np.asarray(frame + cross(axis, frame) + cross(axis, cross(axis, frame)) / (1.0 + cosine))
+
+
+def _car_of(given: Any) -> dict[str, float]:
+    """The numbers of a car, or a DescriptionError about an unknown name, a wrong type or range."""
+    if not isinstance(given, Mapping | None):
+        raise DescriptionError(f"car is {given!r}; a table of {list(CAR)} is needed", "car", given)
+    car = {}
+    for name, value in (given or {}).items():
+        _one_of("a name in car", CAR, name)
+        if name == "axle":
+            _one_of("axle", CAR_AXLES, value)
+        elif not (_is_number(value) and (0.0 <= value <= 1.0 if name.endswith("share") else value > 0.0)):
+            allowed = "from 0 to 1" if name.endswith("share") else "above 0, in mm or N/mm,"
+            raise DescriptionError(f"{name} is {value!r}; a number {allowed} is needed", name, value)
+        car[name] = CAR_AXLES[value] if name == "axle" else float(value)
+    return car
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _one_of(what: str, allowed: Iterable[str], *values: object) -> None:

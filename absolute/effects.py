@@ -14,10 +14,6 @@ As the wheel travels, c as a point of the knuckle has a velocity v, and the knuc
 the plane of a horizontal h and up through c, the knuckle's points move about the instant centre
 
     c - (v . up / w . a) h + (v . h / w . a) up,    a = h x up.
-
-To add a number of places, add it to `ANGLES` or to `LENGTHS`, or to `AXIS_LENGTHS` if both the steering axis
-and the screw axis have it; one of velocities, which has no gradients, to `OF_VELOCITIES` or `OF_RACK`; one of
-both wheels of an axle to `AXLE_EFFECTS`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -25,7 +21,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from absolute.car import needed
 from absolute.dual import Dual, arctan2, constant, hypot
 from absolute.errors import DescriptionError, InputError
 from absolute.model import Model
@@ -282,7 +277,7 @@ def _anti(motion: Motion, velocity: Array, share: str) -> Array:
     """100 share s (v . rearward / v . up) wheelbase / (height of the centre of gravity - contact travel) with
     s = -1 at the front and 1 at the rear, (N,)."""
     names = ("axle", "wheelbase", "centre_of_gravity_height", share)
-    sign, wheelbase, drawn_height, part = needed(motion.corner.car, *names)
+    sign, wheelbase, drawn_height, part = motion.corner.numbers(*names)
     height = drawn_height - LENGTHS["contact_travel"](motion).value
     return np.asarray(
         100.0 * part * sign * _ratio(velocity[REARWARD] * wheelbase, _rising(velocity) * height)
@@ -322,13 +317,13 @@ def wheel_per_damper(motion: Motion) -> Array:
 
 def spring_force(motion: Motion) -> Array:
     """Rate times what the spring is shorter than free, N: it pushes its ends apart."""
-    rate, free = needed(motion.corner.car, "spring_rate", "spring_free_length")
+    rate, free = motion.corner.numbers("spring_rate", "spring_free_length")
     return np.asarray(rate * (free - LENGTHS["damper_length"](motion).value))
 
 
 def wheel_rate(motion: Motion) -> Array:
     """What a constant motion ratio makes of the spring's rate at the wheel, N/mm."""
-    rate, _ = needed(motion.corner.car, "spring_rate", "spring_free_length")
+    rate, _ = motion.corner.numbers("spring_rate", "spring_free_length")
     return np.asarray(rate * damper_per_wheel(motion) ** 2)
 
 
@@ -454,7 +449,7 @@ def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
 def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
     """Steer angles of the inner and of the outer wheel, not numbers where the wheels are not steered to one
     side; the wheelbase, and the track as drawn."""
-    (wheelbase,) = needed(left.corner.car, "wheelbase")
+    (wheelbase,) = left.corner.numbers("wheelbase")
     one, other = (steer_angle(of).value for of in (left, right))
     sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
     inner, outer = np.where(one > 0.0, sizes, sizes[::-1])
@@ -541,18 +536,9 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
 
     Raises:
         InputError: there is no such effect; it names those there are.
-        DescriptionError: one of an axle, of a mechanism that is none.
     """
     known = _effects_in(model) if names else {}
     for name in names:
-        if name not in known and name in AXLE_EFFECTS:
-            sides = {part: corner.side for part, corner in model.corners.items() if part}
-            raise DescriptionError(
-                f"effect {name!r} needs a mechanism with exactly two parts, on opposite sides, and this one "
-                f"has {sides or 'none'}: ask for other effects",
-                name,
-                sides,
-            )
         if name not in known:
             raise InputError(
                 f"there is no effect {name!r}; it must be one of {list(known)}", name, None, name

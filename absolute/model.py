@@ -1,5 +1,6 @@
 """A linkage as `compile` makes it: bodies and their places in the drawing, rows, wheels."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,6 +11,16 @@ from absolute.errors import DescriptionError
 from absolute.vectors import Array, Places
 
 CHASSIS = "chassis"
+# Numbers of the whole car that some effects need and the linkage does not have, and examples of them.
+CAR: Mapping[str, str | float] = {
+    "axle": "front",
+    "wheelbase": 2700.0,
+    "centre_of_gravity_height": 550.0,
+    "brake_share": 0.6,
+    "drive_share": 0.5,
+    "spring_rate": 30.0,
+    "spring_free_length": 350.0,
+}
 KINDS = {
     "travel": "is not the travel of a slide",
     "rack": "is the travel of a slide",
@@ -121,7 +132,7 @@ class Corner:
             and `damper`, as far as the linkage has them.
         knuckle: the body that carries the wheel, "" if there is none.
         wheel_radius: of the wheel, mm, if it is given.
-        car: numbers of the car, as far as they are given (see `car_of`).
+        car: numbers of the car, as far as they are given; its axle is -1 for the front and 1 for the rear.
     """
 
     side: str
@@ -150,6 +161,18 @@ class Corner:
         if self.wheel_radius is None:
             raise _lacking("wheel_radius", "it in [mechanism], in mm", "wheel_radius")
         return self.wheel_radius
+
+    def numbers(self, *names: str) -> list[float]:
+        """Some of the car's numbers; DescriptionError that names all it lacks."""
+        lacking = [name for name in names if name not in self.car]
+        if lacking:
+            lines = ", ".join(f"{name} = {json.dumps(CAR[name])}" for name in lacking)
+            raise DescriptionError(
+                f"needs {' and '.join(lacking)}, and none is given: write in [car], for example, {lines}, or "
+                "ask for other effects",
+                lacking[0],
+            )
+        return [self.car[name] for name in names]
 
 
 def _lacking(what: str, where: str, name: str) -> DescriptionError:
