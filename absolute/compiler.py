@@ -231,17 +231,11 @@ class _Compiler:
         places = np.array(list(self.points.values()))
         middle = places.mean(axis=0)
         size, largest = float(np.linalg.norm(places - middle, axis=1).max()), float(np.abs(places).max())
-        if not size >= SMALLEST_SIZE:
+        least = max(SMALLEST_SIZE, SHORTEST_AXIS * largest)
+        if not size > least:
             raise DescriptionError(
-                f"the points lie within {size:.3g} mm, too near to zero for their products; a mechanism "
-                f"of at least {SMALLEST_SIZE:g} mm is needed: draw it larger or in a smaller unit of length",
-                "points",
-                size,
-            )
-        if not size > SHORTEST_AXIS * largest:
-            raise DescriptionError(
-                f"the points lie within {size:.3g} mm at coordinates up to {largest:.3g} mm: "
-                "too few digits tell them apart; draw the mechanism nearer to the origin",
+                f"the points lie within {size:.3g} mm at coordinates up to {largest:.3g} mm: too few digits "
+                f"tell them apart; more than {least:.3g} mm are needed: draw them larger or nearer to the origin",
                 "points",
                 size,
             )
