@@ -235,7 +235,7 @@ class _Compiler:
         if not size > least:
             raise DescriptionError(
                 f"the points lie within {size:.3g} mm at coordinates up to {largest:.3g} mm: too few digits "
-                f"tell them apart; more than {least:.3g} mm are needed: draw them larger or nearer to the origin",
+                f"tell them apart; more than {least:.3g} mm are needed: draw them larger or nearer to it",
                 "points",
                 size,
             )
