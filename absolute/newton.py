@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from absolute.mechanism import Choice, Mechanism
-from absolute.rows import Placed
+from absolute.rows import ROUNDINGS, Placed
 from absolute.vectors import EPS, Array, Counts
 
 # Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two
@@ -109,11 +109,12 @@ def newton(
 ) -> Configurations:
     """Solve  rows(q) = target  near N configurations, up to the first whose first correction is too large.
 
-    After a correction s about s^2 condition is left, as the rows are quadratic with second derivatives of
-    order 1. Newton stops when that is below eps, or when corrections no longer shrink, and then the next
-    correction must be as small as rounding explains and the rows closed to rounding. The correction alone
-    proves nothing near a fold: there it falls as the root of the residual, and just beyond the fold, where
-    there is no pose, it is as small.
+    After a correction s about k s^2 is left: with the one before, k = s / before^2, and at first at most the
+    condition number, as the rows are quadratic with second derivatives of order 1. Newton stops when that is
+    no more than a row is rounded by, or when corrections no longer shrink, and then the next correction must
+    be as small as rounding explains and the rows closed to rounding. The correction alone proves nothing near
+    a fold: there it falls as the root of the residual, and just beyond the fold, where there is no pose, it
+    is as small.
 
     Args:
         near: one configuration nearby, for its condition number and its choice of rows.
@@ -137,7 +138,8 @@ def newton(
         q[more] = mechanism.moved(q[more], rotation, mechanism.spread(step))
         corrections[more] += 1
         # What is not a number is not corrected any more.
-        again = (size * size * condition > EPS) & (size <= 0.5 * previous)
+        left = np.minimum(condition, size / previous**2 if count else np.inf) * size**2
+        again = (left > ROUNDINGS) & (size <= 0.5 * previous)
         more, previous = more[again], size[again]
         if not more.size:
             break
