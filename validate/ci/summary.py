@@ -10,16 +10,18 @@ from collections.abc import Sequence
 
 from validate.ci.record import Record
 from validate.ci.verdict import (
-    agreement,
+    HEAD,
     by_scene,
     complaints,
     disagreements,
+    scene_row,
     sentence,
     since_lines,
     undecided,
 )
+from validate.comparison.examined import Examined
 from validate.exit_status import MEANINGS, ExitStatus
-from validate.output.table import markdown
+from validate.output.table import Cell, Table, markdown
 
 # A service shows no more than a megabyte of it (GitHub: 1 MiB a step); a line has some 200 characters.
 LISTED = 200
@@ -33,8 +35,12 @@ def summary(record: Record, status: ExitStatus) -> str:
         f"**{status.verdict.capitalize()}**: {markdown(sentence(record))} "
         f"(exit status {status.value}: {markdown(MEANINGS[status])}).",
     ]
-    table = agreement(record, ROWS)
-    blocks += [table.markdown, markdown(table.caption)]
+    rows = [_row(one) for one in sorted(record.examined, key=lambda one: one.status == 0)[:ROWS]]
+    more = len(record.examined) - len(rows)
+    blocks += [
+        Table(HEAD, tuple(rows)).markdown,
+        *([f"and {more} scenes more: --json has them all"] if more else ()),
+    ]
     for title, of in (
         ("What disagrees", disagreements),
         ("Without a verdict", undecided),
@@ -46,6 +52,11 @@ def summary(record: Record, status: ExitStatus) -> str:
         lines += [f"{name} is gone: it is in the baseline and not in this run" for name in record.gone]
         blocks += _list(f"### Since the baseline {markdown(record.baseline.target)}", lines)
     return "\n\n".join(blocks) + "\n"
+
+
+def _row(examined: Examined) -> tuple[str, Cell, str]:
+    name, verdict, told = scene_row(examined)
+    return name, Cell(verdict, verdict=verdict), told.strip()
 
 
 def _list(title: str, lines: Sequence[str]) -> list[str]:

@@ -7,8 +7,8 @@ from itertools import islice
 from typing import get_args
 
 from validate.ci.baseline import Move, Since
-from validate.ci.record import Record
-from validate.comparison.compare import Comparison, Verdict
+from validate.ci.record import CUT_OFF, Record
+from validate.comparison.compare import Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.output.report import (
@@ -17,17 +17,13 @@ from validate.output.report import (
     counted_as,
     explained_lines,
     held_to,
-    kind,
     pair_of,
     severity,
     share_of,
     silent_lines,
     told_row,
-    used,
     when,
-    worst_rows,
 )
-from validate.output.table import Cell, Table
 from validate.plain_text import gathered, shown, some_of
 from validate.solvers.plain import SolverFailed
 
@@ -87,7 +83,7 @@ def _of_scenes(record: Record) -> Iterator[str]:
     yield agreeing(len(by_verdict.pop("agrees", ())), len(record.names))
     yield from _by_verdict(by_verdict)
     if record.not_run:
-        yield f"not run ({record.stopped}): {some_of(record.not_run, NAMED)}"
+        yield f"not run ({CUT_OFF}): {some_of(record.not_run, NAMED)}"
     # How much of what is asked for was compared, of a solver that may give what it has.
     stated = [outcome.counts for outcome in record.outcomes if outcome.stated]
     counts = {key: sum(one[key] for one in stated) for key in (*get_args(Verdict), "given back")}
@@ -126,16 +122,12 @@ def _since(record: Record) -> Iterator[str]:
         yield f"gone, in the baseline and not in this run: {some_of(record.gone, NAMED)}"
 
 
-def scene_head(width: int) -> str:
-    """What the columns of the scenes' lines are."""
-    return f"{'scene'.ljust(width)}  {'verdict':<10}    time  largest share of a tolerance, and where"
+HEAD = ("scene", "verdict", "largest share of a tolerance, and where")
+"""Of the table of scenes, in a terminal and in Markdown."""
 
 
-def scene_lines(examined: Examined, seconds: float, width: int) -> Iterator[str]:
-    """A scene in a line: its verdict, how long it took, the largest share of a tolerance and where.
-
-    Below it stands what would explain that it does not agree.
-    """
+def scene_row(examined: Examined) -> tuple[str, str, str]:
+    """A scene in a line: its verdict, the largest share of a tolerance and where, or why there is none."""
     verdict, why = standing(examined)
     told = why or (silence(examined) if verdict == NOT_TESTED else "")
     if not told and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
@@ -143,8 +135,19 @@ def scene_lines(examined: Examined, seconds: float, width: int) -> Iterator[str]
         told = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
         if outcome is not examined.outcomes[0]:
             told += f", {outcome.solutions[0].formulation}"
+    return examined.name, verdict, told
+
+
+def scene_line(row: Sequence[str], seconds: float | str, width: int) -> str:
+    """Such a row, or the head of all, in a terminal, where it is said as soon as the scene is done."""
+    name, verdict, told = row
+    took = f"{seconds:>5.1f} s" if isinstance(seconds, float) else seconds.rjust(7)
     said = verdict.upper() if verdict == "disagrees" else verdict
-    yield f"{examined.name.ljust(width)}  {said:<10}  {seconds:>5.1f} s  {told}".rstrip()
+    return f"{name.ljust(width)}  {said:<10}  {took}  {told}".rstrip()
+
+
+def scene_notes(examined: Examined) -> Iterator[str]:
+    """What stands below the line of a scene: what would explain that it does not agree."""
     for outcome in examined.outcomes:
         if not outcome.passed:
             yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
@@ -219,50 +222,6 @@ def by_scene(record: Record, *lines: Lines) -> list[str]:
         scenes = gathered((line, one.name) for one in record.examined for line in of(one))
         told += [f"{some_of([*dict.fromkeys(names)], NAMED)}: {line}" for line, names in scenes.items()]
     return told
-
-
-def agreement(record: Record, most: int) -> Table:
-    """Scenes by quantities: the verdict of each, and how much of its tolerance it uses.
-
-    Args:
-        most: rows; where there are more, those that agree are left out first.
-    """
-    rows = [row for one in record.examined for row in _rows(one)]
-    rows += [
-        (name, "", Cell(NOT_TESTED, f"not run: {record.stopped}", NOT_TESTED), {}) for name in record.not_run
-    ]
-    quantities = list(dict.fromkeys(words for *_, cells in rows for words in cells))
-    rest = {*sorted(range(len(rows)), key=lambda i: rows[i][2].verdict == "agrees")[most:]}
-    kept = [row for i, row in enumerate(rows) if i not in rest]
-    blank = {True: Cell("not asked for"), False: Cell(NOT_TESTED, verdict=NOT_TESTED)}
-    lines: tuple[tuple[str | Cell, ...], ...] = tuple(
-        (name, pair, verdict, *(cells.get(quantity, blank[bool(cells)]) for quantity in quantities))
-        for name, pair, verdict, cells in kept
-    )
-    caption = "For each quantity the verdict, and below it the number that uses most of its tolerance."
-    if rest:
-        caption += f" and {len(rest)} rows more: --json has them all."
-    return Table(("scene", "compared", "verdict", *quantities), lines, caption=caption)
-
-
-def _rows(one: Examined) -> Iterator[tuple[str, str, Cell, dict[str, Cell]]]:
-    """A row for each pair that was compared; of a scene without one, why there is none."""
-    why = ": ".join(complaints(one))
-    if not one.outcomes:
-        yield one.name, "", Cell(NOT_TESTED, why, NOT_TESTED), {}
-    for outcome in one.outcomes:
-        verdict = word(outcome.status)
-        if why and verdict == "agrees":
-            verdict = standing(one)[0]  # one of the other formulations has no answer
-        cells = {kind(row.quantity, row.name): _cell(row) for row in worst_rows(outcome, kind)}
-        yield one.name, pair_of(outcome), Cell(verdict, why, verdict), cells
-
-
-def _cell(row: Comparison) -> Cell:
-    if row.verdict == "not given":
-        return Cell(row.verdict, row.name, row.verdict)
-    text = f"disagrees, {used(row.share)}" if row.verdict == "disagrees" else row.verdict
-    return Cell(text, f"{used(row.share)}: {row.name}, {when(row, 4)}", row.verdict)
 
 
 def since_lines(since: Since) -> Iterator[str]:

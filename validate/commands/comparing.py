@@ -10,14 +10,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pointcoord import Scene
-from validate.ci.baseline import Since
-from validate.ci.files import Files
+from validate.ci.baseline import Recorder, Since
 from validate.ci.record import Record
 from validate.comparison.examined import Examined
 from validate.errors import UsageError
+from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
 from validate.output.document import Ending, Head, Journal, at_the_end
+from validate.output.files import OutputError
 from validate.output.report import share_of_all
 from validate.plain_text import shown
 
@@ -78,18 +79,23 @@ class Page:
 
 @dataclass(frozen=True)
 class Comparing:
-    """A run of comparisons that goes on; `ending.status` is what it ended with."""
+    """A run of comparisons that goes on; `ending.status` is what it ended with.
+
+    Attributes:
+        recorder: keeps what a baseline is made of; None where none is asked for.
+        drawings: likewise of a page.
+    """
 
     record: Record
-    files: Files
+    recorder: Recorder | None
     journal: Journal
     drawings: Drawings | None
     ending: Ending
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
         """Take in what came of a scene, and write what there is so far."""
-        if scene is not None and self.files.baseline is not None:
-            self.files.recorder.add(examined.name, scene, examined.outcomes)
+        if scene is not None and self.recorder is not None:
+            self.recorder.add(examined.name, scene, examined.outcomes)
         self.record.add(examined, since, scene)
         # Of a file's scene no motion is solved.
         if self.drawings is not None and examined.name not in self.record.files:
@@ -118,15 +124,18 @@ def comparing(
 
         drawings = Drawings(len(record.names))
     head = Head.of("validate", options.command, options.timings)
-    files = Files(options.junit, options.summary, options.save_baseline)
-
+    recorder = None if options.save_baseline is None else Recorder()
     journal = Journal(
         options.json, head, console, record.data, lambda: share_of_all(record.examined, record.names, noun)
     )
+
+    def leave(end: Ending) -> None:
+        _leave_files(options, record, recorder, end, console)
+
     mute, brief = console.mute, page is not None and page.with_more is not None
     console.mute = mute or brief
-    with journal.closing() as ending, at_the_end(lambda end: files.write(record, end, console)):
-        yield Comparing(record, files, journal, drawings, ending)
+    with journal.closing() as ending, at_the_end(leave):
+        yield Comparing(record, recorder, journal, drawings, ending)
         ending.status = record.status
         if page is not None and drawings is not None:
             made = page.write(Run(head, record, drawings.kept), console)
@@ -134,3 +143,42 @@ def comparing(
             console.mute = mute
             if brief:
                 console.say(f"{made.sentence}\n{page.place}")
+
+
+def _leave_files(
+    options: argparse.Namespace, record: Record, recorder: Recorder | None, ending: Ending, console: Console
+) -> None:
+    """Write what services read, however the run ends, if it came to anything; a baseline of a whole run only.
+
+    Raises:
+        OutputError: one of them cannot be written; the others are tried all the same.
+    """
+    if not record.examined:
+        return
+    problems: list[OutputError] = []
+
+    def attempt(target: str, content: str | bytes) -> None:
+        try:
+            console.put(target, content, f"{len(record.examined)} of {len(record.names)} scenes")
+        except OutputError as error:
+            problems.append(error)
+
+    if recorder is not None:
+        why = "" if len(recorder) else "no scene was compared"
+        if why := "the run did not come to its end" if record.not_run else why:
+            console.complain(f"baseline {options.save_baseline}: not written, because {why}")
+        else:
+            attempt(options.save_baseline, recorder.content())
+    # Most runs leave no such files.
+    if options.junit is not None:
+        from validate.ci.junit import junit
+
+        attempt(options.junit, junit(record))
+    if options.summary is not None:
+        from validate.ci.summary import summary
+
+        # It is the last one, so that it can say that another one is not there.
+        status = record.status if ending.complete else ending.status
+        attempt(options.summary, summary(record, ExitStatus.NOT_FINISHED if problems else status))
+    if problems:
+        raise problems[0]

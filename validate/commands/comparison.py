@@ -11,7 +11,7 @@ from dataclasses import replace
 from pointcoord import Scene, SceneError
 from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
-from validate.ci.record import Record, ends_the_run
+from validate.ci.record import Record
 from validate.ci.scene_folder import scenes_below
 from validate.commands.comparing import comparing, results_of
 from validate.commands.usage import (
@@ -50,7 +50,7 @@ GOES_WITH: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys((A_SOLVER, "--traceback", "--solver-timeout", "--in-process"), (A_SOLVER,)),
     **dict.fromkeys((A_FILE, "--map"), (A_FILE,)),
     "--accuracy": (A_SOLVER, A_FILE),
-    **dict.fromkeys(("--scenes-dir", "--fail-fast", "--save-baseline", "--baseline"), (SCENES, A_SOLVER)),
+    **dict.fromkeys(("--scenes-dir", "--save-baseline", "--baseline"), (SCENES, A_SOLVER)),
     **dict.fromkeys(("--hard", "--cost"), (SCENES, A_SOLVER)),
     **dict.fromkeys(("scenes", "--report", "--tolerance-factor"), (SCENES, A_SOLVER, A_FILE)),
 }
@@ -118,7 +118,7 @@ def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus
         told_pairs = "; ".join(" and ".join(pair) for pair in pairs)
         console.say(f"{told_pairs}: {counted_as(len(names), 'scene')}\n")
         if not options.verbose:
-            console.say(verdict.scene_head(width))
+            console.say(verdict.scene_line(verdict.HEAD, "time", width))
         for place, (name, scene) in enumerate(zip(names, loaded, strict=True)):
             since, began = None, time.monotonic()
             told(shown_names[place], place)
@@ -131,10 +131,7 @@ def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus
                 examined = scene
             _say(examined, since, time.monotonic() - began, options.verbose, console, width)
             compared.add(examined, since, scene if isinstance(scene, Scene) else None)
-            if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
-                record.stopped = f"--fail-fast ended the run at {examined.name}"
-                break
-        if not own and not record.not_run and not options.scenes and options.scenes_dir is None:
+        if not own and not options.scenes and options.scenes_dir is None:
             record.paper = compare_with_paper()
         _say_at_the_end(record, options.verbose, console)
     return compared.ending.status
@@ -216,7 +213,8 @@ def _say(
     if examined.complaint and examined.problem is None:
         console.complain(examined.complaint)
     if not verbose:
-        console.show([*verdict.scene_lines(examined, seconds, width)])
+        line = verdict.scene_line(verdict.scene_row(examined), seconds, width)
+        console.show([line, *verdict.scene_notes(examined)])
     for i, outcome in enumerate(examined.outcomes if verbose else ()):
         notes = (f"  note: {note}" for note in examined.defaults if not i)
         brief = i and outcome.passed

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, fields
 
 from validate.comparison.compare import Comparison
-from validate.html.hard_cases import HardCases
 from validate.html.run import Run
 from validate.output.document import json_text
 from validate.output.table import csv_of
@@ -18,15 +17,12 @@ WORDS = {
     "numbers.csv": "a line for each number of the file of results that was compared, beside ours",
     "published.csv": "a line for each number of other programs' tables",
     "hard.json": "the hard cases, as pointcoord hard --json writes them",
-    "hard.csv": "a line for each answer of a hard case",
     "cost.json": "what accuracy costs in time, with everything that was measured",
-    "cost.csv": "a line for each way and setting",
 }
 """Every file that a report may write beside its page, and what it holds."""
 # Of the files of lines; a comparison's columns are what it is made of.
 NUMBERS = ("row", "over", "at", "column", "is", "unit", "given", "ours", "difference", "held_to")
 PUBLISHED = ("table", "over", "at", "quantity", "name", "unit", "printed", *MODELS)
-HARD = ("case", "value", "formulation", "outcome", "error", "bound", "unit", "reason")
 
 
 def data_files(run: Run) -> Mapping[str, str]:
@@ -39,13 +35,9 @@ def data_files(run: Run) -> Mapping[str, str]:
     if run.published:
         files["published.csv"] = csv_of(PUBLISHED, _published(run.published))
     if run.hard is not None:
-        if run.head.kind != "hard":
-            files["hard.json"] = json_text(run.hard.document)
-        files["hard.csv"] = csv_of(HARD, _hard(run.hard))
+        files["hard.json"] = json_text(run.hard.document)
     if run.cost is not None:
-        if run.head.kind != "cost":
-            files["cost.json"] = json_text(run.cost.data())
-        files["cost.csv"] = run.cost.csv()
+        files["cost.json"] = json_text(run.cost.data())
     return files
 
 
@@ -71,9 +63,3 @@ def _published(tables: Iterable[Published]) -> Iterator[Iterable[object]]:
             for at, printed, *ours in zip(one.at, column.printed, *column.ours, strict=True):
                 what = (one.table.title, one.over, float(at), row.quantity, row.name, row.unit)
                 yield (*what, float(printed), *map(float, ours))
-
-
-def _hard(hard: HardCases) -> Iterator[Iterable[object]]:
-    for case in hard.cases:
-        for value, a in case.answers:
-            yield case.name, value, a.formulation, a.outcome, a.error, a.bound, case.unit, a.reason

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,18 +11,10 @@ from pydantic import BaseModel, ValidationError
 
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.hard.answer import Answer
 from validate.output.report import counted_as
 from validate.plain_text import shown, some_of
 
 NAMED = 10  # cases that a sentence names
-
-
-class Trial(BaseModel):
-    """What formulations made of one value of a case's parameter."""
-
-    value: float
-    answers: tuple[Answer, ...]
 
 
 class Unexpected(BaseModel):
@@ -40,21 +32,7 @@ class Case(BaseModel):
     name: str
     group: str
     why: str
-    parameter: str
-    unit: str
-    behaviour: str
-    trials: tuple[Trial, ...]
     unexpected: tuple[Unexpected, ...]
-
-    @property
-    def answers(self) -> Iterator[tuple[float, Answer]]:
-        """Every answer, with the value of the parameter."""
-        return ((trial.value, answer) for trial in self.trials for answer in trial.answers)
-
-    @property
-    def formulations(self) -> tuple[str, ...]:
-        """That were tried, in their order."""
-        return tuple(dict.fromkeys(answer.formulation for _, answer in self.answers))
 
 
 class HardCases(BaseModel):
@@ -93,14 +71,10 @@ class HardCases(BaseModel):
     @property
     def sentence(self) -> str:
         """What came of them in a few words."""
-        scenes = sum(len({value for value, _ in one.answers}) for one in self.cases)
         count = counted_as(len(self.cases), "hard case")
-        other = [one.name for one in self.cases if one.unexpected]
-        came = "all as expected" if self.as_expected else "disagrees, not as expected"
-        named = f": {some_of(other, NAMED)}" if other and not self.as_expected else ""
-        left = [one.name for one in self.cases if any(a.outcome == "unjudged" for _, a in one.answers)]
-        unjudged = f"; some answers not judged: {some_of(left, NAMED)}" if left else ""
-        return f"{count} at {scenes} values compared with the many-digit reference: {came}{named}{unjudged}"
+        other = some_of([one.name for one in self.cases if one.unexpected], NAMED)
+        came = "all as expected" if self.as_expected else f"disagrees, not as expected: {other}"
+        return f"{count} compared with the many-digit reference: {came}"
 
 
 def read_hard_cases(file: str) -> HardCases:

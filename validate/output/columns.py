@@ -1,6 +1,7 @@
 """Named columns as files: CSV, NPZ and Parquet, written block by block.
 
-A block has some rows of every column; however many rows there are, no more memory is taken than for a block.
+A block has some rows of every column; however many rows there are, CSV and Parquet take no more memory
+than a block.
 Motions have a row for each instant. Sweeps have one for each design and instant, with the design's number,
 what varies in it, and whether it was solved; in NPZ they have arrays instead, (designs, instants) of numbers
 and (designs,) of what belongs to a design. The numbers of a design that could not be solved are NaN.
@@ -9,7 +10,6 @@ and (designs,) of what belongs to a design. The numbers of a design that could n
 from __future__ import annotations
 
 import re
-import tempfile
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
@@ -171,26 +171,16 @@ def _lines(block: list[NDArray[Any]]) -> str:
 
 
 def _npz(stream: BinaryIO, blocks: Iterable[Block]) -> None:
-    """One member for each column, as `numpy.savez` would, which wants all of them at once.
-
-    Columns come together from block to block, and lie on disk until all of one are there.
-    """
-    parts: dict[str, list[tuple[int, np.dtype[Any], tuple[int, ...]]]] = {}
-    with zipfile.ZipFile(stream, "w", allowZip64=True) as archive, tempfile.TemporaryFile() as gathered:
-        for block in blocks:
-            for name, column in block.items():
-                parts.setdefault(name, []).append((gathered.tell(), column.dtype, column.shape))
-                gathered.write(column.tobytes())
+    """One member for each column, all of them in memory until they are written."""
+    parts: dict[str, list[NDArray[Any]]] = {}
+    for block in blocks:
+        for name, column in block.items():
+            parts.setdefault(name, []).append(column)
+    with zipfile.ZipFile(stream, "w", allowZip64=True) as archive:
         for name, found in parts.items():
-            kind = np.result_type(*(dtype for _, dtype, _ in found))
-            shape = (sum(shape[0] for *_, shape in found), *found[0][2][1:])
-            header = {"descr": kind.str, "fortran_order": False, "shape": shape}
+            # Names may hold characters that keywords of numpy.savez do not.
             with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
-                np.lib.format.write_array_header_1_0(member, header)
-                for place, dtype, part in found:
-                    gathered.seek(place)
-                    read = np.frombuffer(gathered.read(dtype.itemsize * int(np.prod(part))), dtype)
-                    member.write(read.astype(kind, copy=False).tobytes())
+                np.lib.format.write_array(member, np.concatenate(found))
 
 
 def _parquet(stream: BinaryIO, blocks: Iterator[Block], group: int) -> None:

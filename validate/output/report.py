@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
+from collections.abc import Iterable, Iterator, Sequence, Sized
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -88,27 +88,17 @@ def pair_of(outcome: Outcome) -> str:
     return " and ".join(solution.formulation for solution in outcome.solutions)
 
 
-def kind(quantity: str, name: str) -> str:
-    """Under which words all numbers of its kind stand together: position, angle, dimension."""
-    return QUANTITIES[quantity].words
-
-
-def worst_rows(outcome: Outcome, by: Callable[[str, str], str] = heading) -> list[Comparison]:
+def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that uses most of its tolerance, or exceeds it the most."""
     # A solver that states an accuracy need not give everything.
-    order = OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING
-    return list(worst_of(outcome.rows, order, by).values())
+    return list(worst_of(outcome.rows, OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING).values())
 
 
-def worst_of(
-    rows: Iterable[Comparison],
-    order: Sequence[str] = OF_WHAT_IS_GIVEN,
-    by: Callable[[str, str], str] = heading,
-) -> dict[str, Comparison]:
+def worst_of(rows: Iterable[Comparison], order: Sequence[str] = OF_WHAT_IS_GIVEN) -> dict[str, Comparison]:
     """By heading the row whose verdict is the last one in an order, of several the largest share."""
     worst: dict[str, Comparison] = {}
     for row in rows:
-        key = by(row.quantity, row.name)
+        key = heading(row.quantity, row.name)
         if key not in worst or severity(row, order) > severity(worst[key], order):
             worst[key] = row
     return worst
@@ -149,17 +139,13 @@ def verdict_of(row: Comparison) -> str:
 
 
 def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) -> tuple[Part, ...]:
-    """The same with its table apart; angles are in degrees.
+    """What came of a comparison as a table with lines around it; angles are in degrees.
 
     Args:
         over: what the rows of a file of results go over, if it is of one. absent: what such a file lacks.
     """
-    of_one: dict[str, list[Comparison]] = {}
-    for row in outcome.rows:
-        of_one.setdefault(heading(row.quantity, row.name), []).append(row)
-    worst = {heading(row.quantity, row.name): row for row in worst_rows(outcome)}
-    rows = [(words, *_told(mine, worst[words])) for words, mine in of_one.items()]
-    rows += [(words, "", "-", "-", "-", "-", "-", "not given") for words in absent]
+    rows = [*quantity_rows(outcome)]
+    rows += [(words, "", "-", "-", "-", "-", "-", Cell("not given")) for words in absent]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
     count = counted_as(len(outcome.solutions[0].times), "row" if over else "instant")
     return (
@@ -167,6 +153,17 @@ def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) 
         Table(HEAD, tuple(rows)),
         *lines_below(outcome),
     )
+
+
+def quantity_rows(outcome: Outcome) -> Iterator[tuple[str | Cell, ...]]:
+    """A row for each quantity, under `HEAD`; angles are in degrees."""
+    of_one: dict[str, list[Comparison]] = {}
+    for row in outcome.rows:
+        of_one.setdefault(heading(row.quantity, row.name), []).append(row)
+    for worst in worst_rows(outcome):
+        words = heading(worst.quantity, worst.name)
+        *cells, verdict = _told(of_one[words], worst)
+        yield words, *cells, Cell(verdict, verdict=worst.verdict)
 
 
 def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:

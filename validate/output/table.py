@@ -24,7 +24,7 @@ NUMBER = re.compile(r"[-+]?\d|-?$|not a number$")
 PLAIN_NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]\d+)?")
 # Green, red and yellow of a terminal, by the words of verdicts; the words say it too.
 COLOURS = {"agrees|as expected": "32", "DISAGREES|NOT": "1;31", "not tested|not given": "33"}
-SAFE = frozenset(" ,.;:/()=-'?")
+SAFE = frozenset(" ,.:;/()=-'?")
 """Characters beside letters and digits that begin nothing inside of a line of Markdown."""
 
 
@@ -80,7 +80,7 @@ class Table:
         """Columns of text, words to the left and numbers to the right.
 
         Where they do not fit into the room, they stand in bands one below the other, each with the first
-        columns again; where a band is too wide too, each row is a list.
+        columns again.
         """
         columns = [(name, *(row[i] for row in self.texts)) for i, name in enumerate(self.head)]
         widths = [max(map(len, column)) for column in columns]
@@ -90,12 +90,6 @@ class Table:
             if len(bands[-1]) > self.kept and self._width(widths, [*bands[-1], i]) > most:
                 bands.append([*first])
             bands[-1].append(i)
-        if max(self._width(widths, band) for band in bands) > most:
-            return [
-                f"    {name}: {cell}" if i else f"  {cell}"
-                for row in self.texts
-                for i, (name, cell) in enumerate(zip(self.head, row, strict=True))
-            ]
         found: list[str] = []
         for band in bands:
             told = [
@@ -159,19 +153,13 @@ def markdown(text: str) -> str:
     """Text that Markdown shows as it is, in one line: what could act is written as a character reference."""
     if PLAIN_NUMBER.fullmatch(text):
         return text
-    text = shown(text)
-    return "".join(_character(text, i) for i in range(len(text)))
+    plain = shown(text)
 
+    def acts(place: int, one: str) -> bool:
+        # A colon before slashes makes a link.
+        return not one.isalnum() and (one not in SAFE or not place or plain[place : place + 2] == ":/")
 
-def _character(text: str, place: int) -> str:
-    one = text[place]
-    inside = 0 < place < len(text) - 1 and text[place - 1].isalnum() and text[place + 1].isalnum()
-    # A colon before slashes makes a link; an underscore inside of a word is one.
-    if one == ":" and text[place + 1 : place + 3] == "//":
-        return "&#58;"
-    if one.isalnum() or (one in SAFE and (place or one == "/")) or (one == "_" and inside):
-        return one
-    return f"&#{ord(one)};"
+    return "".join(f"&#{ord(one)};" if acts(place, one) else one for place, one in enumerate(plain))
 
 
 def is_terminal(stream: TextIO | None) -> bool:

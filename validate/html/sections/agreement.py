@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 
-from validate.ci.verdict import agreement
+from validate.ci.verdict import complaints, standing
 from validate.comparison.compare import Comparison
 from validate.comparison.examined import Examined
 from validate.html.plot import Panel, Plots, plain
 from validate.html.run import Run
 from validate.html.section import Block, Section
-from validate.output.report import about, used, when, worst_of
+from validate.output.report import HEAD, about, pair_of, quantity_rows, used, when, worst_of
+from validate.output.table import Cell, Table
 
 MOST = 1000  # rows of the table: a page stays small
 DRAWN = 60  # rows of the picture
@@ -27,14 +27,30 @@ ROW, EDGE = 1.4, 8.0  # rem, of a row of the picture and of what stands around i
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    table = agreement(run.record, MOST)
-    if not table.rows:
-        return []
-    compared = [] if run.record.files else [one for one in run.record.examined if one.outcomes]
     # Where something is not as wanted it is seen however many scenes there are.
-    kept = {one.name for one in sorted(compared, key=lambda one: one.status == 0)[:DRAWN]}
-    drawn = [one for one in compared if one.name in kept]
-    return [*([_picture(drawn)] if drawn else ()), replace(table, folded=bool(drawn))]
+    compared = sorted(run.record.examined, key=lambda one: one.status == 0)
+    rows = sorted((row for one in compared for row in _rows(one)), key=lambda row: _agrees(row[-1]))
+    if not rows:
+        return []
+    drawn = [one for one in compared if one.outcomes and not run.record.files][:DRAWN]
+    caption = "For each quantity the verdict, and the number that is closest to its tolerance."
+    if len(rows) > MOST:
+        caption += f" and {len(rows) - MOST} rows more: the data beside this page have them all."
+    head = ("scene", "compared", *HEAD)
+    table = Table(head, tuple(rows[:MOST]), caption=caption, folded=bool(drawn))
+    return [*([_picture(drawn)] if drawn else ()), table]
+
+
+def _rows(one: Examined) -> Iterator[tuple[str | Cell, ...]]:
+    """A row for each quantity of each pair that was compared; of a scene without one, why there is none."""
+    if why := ": ".join(complaints(one)):
+        yield one.name, *("-" for _ in HEAD), Cell(standing(one)[0], why, standing(one)[0])
+    for outcome in one.outcomes:
+        yield from ((one.name, pair_of(outcome), *row) for row in quantity_rows(outcome))
+
+
+def _agrees(cell: str | Cell) -> bool:
+    return isinstance(cell, Cell) and cell.verdict == "agrees"
 
 
 def _picture(drawn: Sequence[Examined]) -> Block:

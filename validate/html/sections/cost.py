@@ -35,7 +35,7 @@ def _blocks(run: Run) -> Iterator[Block]:
         here = accuracy[accuracy.scene == scene]
         panels = tuple(_panel(of, q, ways) for q, of in here.groupby("quantity", sort=False))
         pictures.append(Plots(f"{scene}: error against time, a line for each way", panels))
-    # First what accuracy costs, in a sentence and one picture.
+    # What accuracy costs, in a sentence and one picture, then the rest.
     yield from (Paragraph(sentence) for sentence in cost.sentences[:1])
     for picture in pictures[:1]:
         first = replace(picture.panels[0], rem=20.0)
@@ -48,11 +48,11 @@ def _blocks(run: Run) -> Iterator[Block]:
     yield from pictures
     if len(scenes) > SCENES:
         yield Paragraph(f"Drawn are the first {SCENES} of {len(scenes)} scenes.")
-    if run.head.kind == "cost":
-        yield from (replace(one, rows=one.rows[:LINES], folded=True) for one in cost.tables()[:TABLES])
     for row in cost.rows:
         if row.verdict == "failed":
             yield Paragraph(f"{row.scene}, {row.way} {row.setting}: failed: {row.reason}")
+    if run.head.kind == "cost":
+        yield from (replace(one, rows=one.rows[:LINES], folded=True) for one in cost.tables()[:TABLES])
 
 
 def _panel(here: pd.DataFrame, quantity: str, ways: Mapping[str, Look]) -> Panel:

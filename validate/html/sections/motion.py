@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -18,7 +18,6 @@ from validate.formulations.protocol import Solution
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, fewer, marks, panel, plain
 from validate.html.run import Drawn, Run
 from validate.html.section import PLOTLY, Block, Section, which
-from validate.output.table import Table
 
 Array = NDArray[np.float64]
 
@@ -27,11 +26,6 @@ DIGITS = 2  # behind the point of places, mm
 MARKS = 25
 ROUNDING = 1e-6  # mm; a drawing that closes comes back to less
 PLACE = ALWAYS[0].quantities[0].name
-CLOSING = (
-    "How far each point of the drawing moves until it closes at its own inputs, mm: links are as long as "
-    "drawn, and what does not fit moves. A large number is another car than the one drawn; "
-    f"rounding is less than {ROUNDING:g} mm."
-)
 
 
 @dataclass(frozen=True)
@@ -56,7 +50,7 @@ class Spatial:
 
 def _blocks(run: Run) -> Sequence[Block]:
     blocks = [_of_scene(one, one.scene, run) for one in run.drawn if one.scene is not None]
-    return [*which(run), *blocks, *_closing(run)]
+    return [*which(run), *blocks]
 
 
 def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
@@ -137,21 +131,6 @@ def _frames(
 
 def _rounded(places: Array) -> Any:
     return np.round(places, DIGITS).tolist()
-
-
-def _closing(run: Run) -> Iterator[Block]:
-    """How far the points of the drawings move until they close."""
-    closings = {one.examined.name: one.examined.closing or {} for one in run.drawn}
-    moved = {name: closing["movements"] for name, closing in closings.items() if closing}
-    points = list(dict.fromkeys(point for movements in moved.values() for point in movements))
-    rows = tuple((name, *(_size(one.get(point)) for point in points)) for name, one in moved.items())
-    if points:
-        yield Table(("scene", *points), rows, caption=CLOSING, folded=True)
-
-
-def _size(movement: float | None) -> str:
-    # Less is rounding, and says nothing of the drawing.
-    return "" if movement is None else f"{movement:.3g}" if movement > ROUNDING else "rounding"
 
 
 def _caption(one: Drawn) -> str:

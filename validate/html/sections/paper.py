@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, marks, panel
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
@@ -38,10 +36,7 @@ def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
     yield Paragraph(FIGURES)
     yield Plots("Figures 5 to 8 of the paper", tuple(map(_of_figure, figures())))
     yield Paragraph(f"{WHY_NOT_EQUAL} {paper_sentence(rows)}")
-    for table, number in zip(paper_tables(rows), (2, 3), strict=True):
-        panels = tuple(_panels([row for row in rows if row.printed.table == number]))
-        yield Plots(f"Table {number}: crosses as printed, rings as computed", panels)
-        yield table
+    yield from paper_tables(rows)
     lines = tuple((str(e.number), e.where, e.wrong, e.measures or "changes no number") for e in errata(rows))
     caption = "What is wrong in the paper, and what it measures."
     yield Table(("no.", "where", "what", "measures"), lines, caption=caption)
@@ -58,21 +53,6 @@ def _traces(figure: Figure) -> Iterator[Trace]:
     if figure.printed is not None:
         at, values = figure.printed
         yield marks("printed", at, values, OTHER)
-
-
-def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
-    kinds = (
-        ("wheel centre", "mm", [(row.printed.wheel_centre, row.wheel_centre) for row in rows]),
-        ("omega", "rad/s", [(row.printed.omega, row.omega) for row in rows]),
-        ("alpha", "rad/s^2", [(row.printed.alpha, row.alpha) for row in rows]),
-    )
-    times = [row.printed.time for row in rows]
-    for words, unit, pairs in kinds:
-        for i, component in enumerate("xyz"):
-            printed, ours = np.array(pairs)[:, :, i].T
-            crosses = marks("printed", times, printed, OTHER)
-            rings = marks("computed", times, ours, OURS, "circle-open")
-            yield panel(f"{words}, {component}, over time", "time [s]", f"[{unit}]", (crosses, rings))
 
 
 SECTION = Section("paper", "The paper", 60, _blocks, folded=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from validate.html.plot import OTHER, OURS, Plots, curve, marks, panel, plain
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.table import Cell, Table
@@ -23,20 +22,6 @@ def _of_table(one: Published) -> Iterator[Block]:
     )
     told += f" Note: {'; '.join(notes)}." if notes else ""
     yield Paragraph(told + (f" Left out: {table.left_out}." if table.left_out else ""))
-    # Curves only: differences are below the printed digits.
-    panels = tuple(
-        panel(
-            f"{plain(column.name)} over {plain(one.over)}: {column.verdict}",
-            plain(one.over),
-            f"[{column.unit}]",
-            (
-                curve(MODELS[0], one.at, column.ours[0] / column.per, OURS),
-                marks("printed", one.at, column.printed / column.per, OTHER),
-            ),
-        )
-        for column in one.columns
-    )
-    yield Plots(f"{table.title}: crosses as printed, line as computed", panels)
     head = (one.over, *(f"{column.name} [{column.unit}]" for column in one.columns))
     caption = f"{table.title}: printed, below it what {' and '.join(MODELS)} compute; held to printed digits"
     yield Table(head, tuple(_cells(one)), caption=caption)
