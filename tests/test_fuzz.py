@@ -291,5 +291,5 @@ def test_every_mutated_store_of_rows_is_told_in_one_line(tmp_path: Path) -> None
     sample = path.read_bytes()
     for number in range(FILES):
         path.write_bytes(mutated(sample, number))
-        seen = run("cost", "--from-rows", str(path))
+        seen = run("cost", "--from-rows", "--rows", str(path))
         assert not wrong_words(seen), number
