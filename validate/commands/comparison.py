@@ -7,12 +7,12 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 
 from pointcoord import Scene, SceneError
 from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
 from validate.ci.record import Record
-from validate.ci.scene_folder import scenes_below
 from validate.commands.comparing import comparing, results_of
 from validate.commands.usage import (
     STANDARD_INPUT,
@@ -166,10 +166,26 @@ def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
 
 def _names(options: argparse.Namespace) -> list[str]:
     """The scenes that are named, then those of a folder; where neither is given, all built-in ones."""
-    folder = [] if options.scenes_dir is None else list(scenes_below(options.scenes_dir))
+    folder = [] if options.scenes_dir is None else _scenes_below(options.scenes_dir)
     named = [*options.scenes, *folder] or list(DEFAULT_SCENES)
     # A scene that is named again would say the same again, under the same name; standard input is refused.
     return [name for i, name in enumerate(named) if name == STANDARD_INPUT or name not in named[:i]]
+
+
+def _scenes_below(folder: str) -> list[str]:
+    """The paths of all scene files in a folder and those below it, sorted; links to folders are not followed.
+
+    Raises:
+        UsageError: there is no such folder, or it holds no scene.
+    """
+    try:
+        found = sorted(path for path in Path(folder).rglob("*.toml") if path.is_file())
+        problem = "holds no scene" if Path(folder).is_dir() else "is no folder"
+    except (OSError, ValueError) as error:
+        found, problem = [], f"cannot be read ({error})"
+    if not found:
+        raise UsageError(f"--scenes-dir {folder}: {problem}; allowed: a folder with a .toml file below it")
+    return list(map(str, found))
 
 
 def _pairs(options: argparse.Namespace, console: Console) -> tuple[tuple[str, str], ...]:

@@ -40,7 +40,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.map is not None and not os.path.exists(options.map):
         return to_be_filled_in(options.map, map_to_fill_in(options.data, scene), console)
     head = Head.of("fit", options.command)
-    with told_as(name), console.progress("designs", total=None, lines=False) as told:
+    with told_as(name), console.progress("designs", lines=False) as told:
         measured = read_results(options.data, options.map, scene)
         count = len(free_coordinates(scene, options.free))
         numbers = len(measured.numbers) * len(measured.rows)

@@ -53,7 +53,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     called = [number.called for number in numbers]
     time = {"start": scene.time.start, "stop": scene.time.stop, "samples": min(SAMPLES, scene.time.samples)}
     random = np.random.default_rng(options.seed)
-    with told_as(name), console.progress(f"solving {name}", total=None, lines=False):
+    with told_as(name), console.progress(f"solving {name}", lines=False):
         scene = asking_for(scene, numbers).model_copy(update={"time": time})
         found = sensitivity(scene, called, options.point)
         offsets = {one: random.normal(0.0, options.tolerance, DESIGNS) for one in found.coordinates}

@@ -94,7 +94,7 @@ def solved(
     name = name_of(options.scene)
     problem: PointcoordError | None = None
     try:
-        with told_as(name), console.progress(f"solving {name}", total=None, lines=False):
+        with told_as(name), console.progress(f"solving {name}", lines=False):
             motion = simulate(scene, method)
     except SceneError:
         raise

@@ -24,11 +24,8 @@ from validate.published.tables import Published
 
 # Scenes that are drawn, and not only told in tables: the first ones, and so many more that do not agree.
 FIRST, FURTHER = 8, 8
-# Points of one curve, in all scenes together that are drawn (see `points`), and instants of a drawing in
-# space.
-POINTS = 1600
-FEWEST, MOST = 100, 600
-FRAMES, FEWER_FRAMES = 121, 61
+# Points of one curve, and instants of a drawing in space, at most: a page stays small.
+POINTS, FRAMES = 120, 61
 
 
 @dataclass(frozen=True)
@@ -136,16 +133,6 @@ class Run:
         if self.cost is not None and not self.record.names:
             parts.append((*self.cost.sentences, "nothing was measured")[0].rstrip("."))
         return f"{'; '.join(parts)}."
-
-    @property
-    def points(self) -> int:
-        """Points of a curve, at most: a page stays small however many scenes and instants there are."""
-        return min(max(POINTS // max(len(self.drawn), 1), FEWEST), MOST)
-
-    @property
-    def frames(self) -> int:
-        """Instants of a drawing in space, at most."""
-        return FRAMES if len(self.drawn) <= FIRST else FEWER_FRAMES
 
     @cached_property
     def document(self) -> Mapping[str, Any]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 
 from validate.output.files import OutputError, unwritable, write_content
-from validate.output.progress import OFTEN, PATIENCE, PAUSE, Progress, Told, rewrite
+from validate.output.progress import PATIENCE, PAUSE, Progress, Told
 from validate.output.table import Part, is_terminal, text_for
 from validate.plain_text import one_line
 
@@ -68,8 +68,6 @@ class Console:
         Once the reader of a pipe has gone, such as `head`, the text is dropped: the work and its verdict
         are wanted all the same.
         """
-        if self._progress is not None:
-            self._progress.stand_aside()
         if not self._reader_gone:
             try:
                 code = getattr(sys.stdout, "encoding", None) or "utf-8"
@@ -106,8 +104,6 @@ class Console:
 
     def complain(self, message: str) -> None:
         """One line on standard error."""
-        if self._progress is not None:
-            self._progress.stand_aside()
         # Without a standard error `print` would take standard output.
         if sys.stderr is not None:
             with suppress(OSError, ValueError):
@@ -125,29 +121,24 @@ class Console:
 
     @contextmanager
     def progress(
-        self, message: str, first: float = PAUSE, total: int | None = 0, lines: bool = True
+        self, message: str, first: float = PAUSE, total: int | None = None, lines: bool = True
     ) -> Iterator[Told]:
         """Says how far the block is, unless the run is quiet; inside of another such block, in its place.
 
         Args:
             message: what is done, until something else is told. first: seconds before the first line in a
-                pipe. total: of how much, 0 or None until it is told. lines: whether a pipe has lines too.
+                pipe. total: of how much, if it is known. lines: whether a pipe has lines too.
         """
         outer, terminal = self._progress, is_terminal(sys.stderr)
         if outer is not None:
             outer.told(message, 0, total)
             yield outer.told
-            return
-        if self.quiet or sys.stderr is None or not (terminal or lines):
+        elif self.quiet or sys.stderr is None or not (terminal or lines):
             yield lambda message, done, total=None: None
-            return
-        self._progress = said = (
-            Progress(rewrite, message, total, PATIENCE, OFTEN, lambda: rewrite(""))
-            if terminal
-            else Progress(self.note, message, total, first)
-        )
-        try:
-            yield said.told
-        finally:
-            self._progress = None
-            said.end()
+        else:
+            self._progress = said = Progress(self.note, message, total, PATIENCE if terminal else first)
+            try:
+                yield said.told
+            finally:
+                self._progress = None
+                said.end()

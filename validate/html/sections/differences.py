@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.over_time import over_time
 from validate.html.plot import Panel, Plots, fewer, gaps
-from validate.html.run import Run
+from validate.html.run import POINTS, Run
 from validate.html.section import Block, Section, which
 from validate.output.report import about, pair_of, worst_rows
 
@@ -22,7 +22,7 @@ def _blocks(run: Run) -> Sequence[Block]:
     compared = ((one.scene, outcome) for one in run.drawn if one.scene for outcome in one.examined.outcomes)
     for scene, outcome in compared:
         rows = worst_rows(outcome)
-        panels = [_panel(outcome, row, scene.instants, run.points) for row in rows]
+        panels = [_panel(outcome, row, scene.instants, POINTS) for row in rows]
         if drawn := tuple(panel for panel in panels if panel is not None):
             apart = any(row.verdict == "disagrees" for row in rows)
             blocks.append(Plots(f"{outcome.scene}: {pair_of(outcome)}", drawn, at_once=apart))

@@ -9,7 +9,7 @@ import numpy as np
 
 from validate.comparison.compare import Comparison
 from validate.html.plot import OTHER, OURS, Panel, Plots, curve, fewer, gaps, marks, panel, plain
-from validate.html.run import Run
+from validate.html.run import POINTS, Run
 from validate.html.section import Block, Paragraph, Section
 from validate.measured.comparing import DataOutcome
 from validate.output.report import about, counted_as, held_to, in_degrees, when, worst_rows
@@ -41,7 +41,7 @@ def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:
     cells += [(words, absent, "-", "-", "", "the scene asks for it") for words in file.absent]
     yield Table(HEAD, tuple(cells), caption=caption)
     worst = worst_rows(outcome)
-    if panels := tuple(one for row in worst for one in _panels(file, row, run.points)):
+    if panels := tuple(one for row in worst for one in _panels(file, row, POINTS)):
         apart = any(row.verdict == "disagrees" for row in worst)
         yield Plots(f"{source}: crosses: the file; line: pointcoord", panels, at_once=apart)
 

@@ -16,7 +16,7 @@ from validate.closed_drawing import closed_drawing
 from validate.curves.numbers import TRAVEL, Number, angles_of, usual
 from validate.formulations.protocol import Solution
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, fewer, marks, panel, plain
-from validate.html.run import Drawn, Run
+from validate.html.run import FRAMES, POINTS, Drawn, Run
 from validate.html.section import PLOTLY, Block, Section, which
 
 Array = NDArray[np.float64]
@@ -58,7 +58,8 @@ def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
     # Instants of the scene that any of the models gives; of a scene that nobody solves the drawing stands.
     given = np.isin(scene.instants, np.concatenate([m.times for m in models])) if models else [True]
     reached = np.flatnonzero(given)
-    at = scene.instants[reached[:: max(-(-len(reached) // run.frames), 1)]]
+    some = np.linspace(0, len(reached) - 1, min(len(reached), FRAMES)).round().astype(int)
+    at = scene.instants[reached[some]]
     known = {name: np.array(part.points[name]) for name in topology.points if name in part.points}
     number = {name: i for i, name in enumerate(known)}
     lines = [ends for constraint in topology.constraints for ends in constraint.segments]
@@ -80,7 +81,7 @@ def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
             {"name": m.formulation, "frames": _frames(scene, one.motion, m, known, at)} for m in models
         ],
     }
-    curves, why = _wheel_angles(one, scene, run.points)
+    curves, why = _wheel_angles(one, scene, POINTS)
     return Spatial(
         one.examined.name,
         _caption(one) + (f"; {why}" if why else ""),
