@@ -455,12 +455,6 @@ def test_the_page_loads_nothing_and_forbids_to_and_takes_names_as_text(bounce: D
     assert len(set(ids)) == len(ids)
 
 
-def test_a_folder_called_as_a_scene_can_be_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert main(["report", "-q", "./steer/", "steer"]) == 0
-    assert (tmp_path / "steer" / "index.html").is_file()
-
-
 def test_a_run_that_is_stopped_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def stopped(*words: object, **more: object) -> None:
         raise KeyboardInterrupt

@@ -45,22 +45,3 @@ def test_the_rest_is_told_at_the_pace_since_this_run_began(monkeypatch: pytest.M
     lines.told("scenes", 2000)
     assert lines.line() == "after 10 s: scenes, 2,000 of 2,000 done"
     lines.end()
-
-
-def test_a_pipe_gets_a_line_now_and_then_while_a_run_only_waits_and_none_of_a_quick_one() -> None:
-    said: list[str] = []
-    lines = Progress(said.append, "processes start", first=0.05, pause=0.2)
-    while len(said) < 2:
-        time.sleep(0.01)
-    lines.told("scenes", 1000, 2000)
-    while len(said) < 4:
-        time.sleep(0.01)
-    lines.end()
-    count = len(said)
-    time.sleep(0.3)
-    assert len(said) == count
-    assert re.fullmatch(r"after \d+ s: processes start", said[0])
-    assert re.fullmatch(r"after \d+ s: scenes, 1,000 of 2,000 done", said[-1])
-    quick = Progress(said.append, "processes start", first=60.0)
-    quick.end()
-    assert len(said) == count
