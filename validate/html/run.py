@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
-
-import numpy as np
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from validate.ci.record import Record
@@ -16,7 +15,7 @@ from validate.comparison.examined import Examined
 from validate.comparison.given import usable
 from validate.cost.report import Report
 from validate.exit_status import ExitStatus, combined
-from validate.formulations.protocol import Accuracy, Solution
+from validate.formulations.protocol import Solution
 from validate.html.hard_cases import HardCases
 from validate.output.document import Head
 from validate.output.report import outcome_data
@@ -30,39 +29,17 @@ POINTS, FRAMES = 120, 61
 
 @dataclass(frozen=True)
 class Drawn:
-    """A scene of the run that the page draws, with its numbers.
-
-    Attributes:
-        scene: None where its file could not be read.
-        motion: as pointcoord solves it, or the part that could be solved; None if nothing could.
-    """
+    """A scene of the run that the page draws, with its numbers; motion is as pointcoord solves it."""
 
     examined: Examined
-    scene: Scene | None
-    motion: Motion | None = None
-
-    @property
-    def stopped(self) -> str:
-        """Why no two models could be compared on the scene; empty if they were."""
-        if self.examined.outcomes or not self.examined.complaint:
-            return ""
-        return self.examined.complaint.removeprefix(f"{self.examined.name}: ")
+    scene: Scene
+    motion: Motion
 
     @property
     def models(self) -> tuple[Solution, ...]:
-        """Both solutions of its first comparison: what each really gives, when it does.
-
-        Of a scene that is refused there is one at most: what pointcoord solves of it before it stops.
-        """
-        if self.scene is None:
-            return ()
-        if self.examined.outcomes:
-            both = self.examined.outcomes[0].solutions
-            return tuple(usable(solution, self.scene.instants) for solution in both)
-        if self.motion is None:
-            return ()
-        times = self.motion.times
-        return (Solution("pointcoord", times, self.motion.numbers, Accuracy(np.ones(len(times)))),)
+        """Both solutions of its first comparison: what each really gives, when it does."""
+        both = self.examined.outcomes[0].solutions
+        return tuple(usable(solution, self.scene.instants) for solution in both)
 
 
 @dataclass(frozen=True)
@@ -77,19 +54,13 @@ class Drawings:
     kept: list[Drawn] = field(default_factory=list)
 
     def add(self, examined: Examined, scene: Scene | None) -> None:
-        """Keep a scene if it is one of the first, or one of some more that were compared and do not agree."""
-        disagrees = examined.outcomes and examined.status is not ExitStatus.AGREE
+        """Keep a scene that was compared if it is one of the first, or one of some more that do not agree."""
+        disagrees = examined.status is not ExitStatus.AGREE
         room = FIRST + FURTHER if disagrees or self.count <= FIRST + FURTHER else FIRST
-        if len(self.kept) >= room:
-            return
-        motion = None
-        if scene is not None:
-            try:
-                motion = simulate(scene)
-            except PointcoordError as error:
-                # Why it is refused is told already.
-                motion = error.partial if isinstance(error.partial, Motion) else None
-        self.kept.append(Drawn(examined, scene, motion))
+        if scene is not None and examined.outcomes and len(self.kept) < room:
+            # Why pointcoord refuses it is told already.
+            with suppress(PointcoordError):
+                self.kept.append(Drawn(examined, scene, simulate(scene)))
 
 
 @dataclass(frozen=True)

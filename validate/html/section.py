@@ -59,13 +59,13 @@ class Section:
 
 def which(run: Run) -> list[Block]:
     """Which scenes are drawn, where these are not all."""
-    drawn, all_of_them = len(run.drawn), len(run.record.examined)
-    if drawn == all_of_them or run.record.files:
+    drawn, compared = len(run.drawn), sum(bool(one.outcomes) for one in run.record.examined)
+    if drawn == compared or run.record.files:
         # Of a file's scene no motion is solved, which the page says in a place of its own.
         return []
     return [
         Paragraph(
-            f"Drawn are {drawn} of {all_of_them} scenes: the first {FIRST}, and the first {FURTHER} further "
-            "ones that were compared and do not agree. The tables and the data beside this page have all."
+            f"Drawn are {drawn} of {compared} scenes: the first {FIRST}, and the first {FURTHER} further "
+            "ones that do not agree. The tables and the data beside this page have all."
         )
     ]

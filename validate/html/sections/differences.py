@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 def _blocks(run: Run) -> Sequence[Block]:
     blocks: list[Block] = []
-    compared = ((one.scene, outcome) for one in run.drawn if one.scene for outcome in one.examined.outcomes)
+    compared = ((one.scene, outcome) for one in run.drawn for outcome in one.examined.outcomes)
     for scene, outcome in compared:
         rows = worst_rows(outcome)
         panels = [_panel(outcome, row, scene.instants, POINTS) for row in rows]

@@ -10,10 +10,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, PointcoordError, Scene
 from pointcoord.effects.registry import ALWAYS
 from validate.closed_drawing import closed_drawing
-from validate.curves.numbers import TRAVEL, Number, angles_of, usual
+from validate.curves.numbers import Number, angles_of, usual
 from validate.formulations.protocol import Solution
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, fewer, marks, panel, plain
 from validate.html.run import FRAMES, POINTS, Drawn, Run
@@ -49,17 +48,13 @@ class Spatial:
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    blocks = [_of_scene(one, one.scene, run) for one in run.drawn if one.scene is not None]
-    return [*which(run), *blocks]
+    return [*which(run), *map(_of_scene, run.drawn)]
 
 
-def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
-    models, topology, part = one.models, scene.mechanism.topology, scene.mechanism
-    # Instants of the scene that any of the models gives; of a scene that nobody solves the drawing stands.
-    given = np.isin(scene.instants, np.concatenate([m.times for m in models])) if models else [True]
-    reached = np.flatnonzero(given)
-    some = np.linspace(0, len(reached) - 1, min(len(reached), FRAMES)).round().astype(int)
-    at = scene.instants[reached[some]]
+def _of_scene(one: Drawn) -> Block:
+    models, scene, part = one.models, one.scene, one.scene.mechanism
+    topology, every = part.topology, np.unique(np.concatenate([model.times for model in models]))
+    at = every[np.linspace(0, len(every) - 1, min(len(every), FRAMES)).round().astype(int)]
     known = {name: np.array(part.points[name]) for name in topology.points if name in part.points}
     number = {name: i for i, name in enumerate(known)}
     lines = [ends for constraint in topology.constraints for ends in constraint.segments]
@@ -68,7 +63,7 @@ def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
         lines.append((inner, centre))
     for body in topology.bodies.values():
         lines += zip(body, (*body[1:], body[0]), strict=True)
-    up, right = np.array(part.up), np.array(part.right)
+    up, right, closed = np.array(part.up), np.array(part.right), closed_drawing(scene).places
     data: dict[str, Any] = {
         "times": [float(f"{time:.6g}") for time in at],
         "points": [*known],
@@ -76,46 +71,32 @@ def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
         "lines": [[number[a], number[b]] for a, b in lines if a in number and b in number],
         "axes": [right.tolist(), np.cross(right, up).tolist(), up.tolist()],
         "drawn": _rounded(np.stack([*known.values()])),
-        "closed": _closed(scene, known),
-        "models": [
-            {"name": m.formulation, "frames": _frames(scene, one.motion, m, known, at)} for m in models
-        ],
+        "closed": _rounded(np.stack([closed.get(name, place) for name, place in known.items()])),
+        "models": [{"name": m.formulation, "frames": _frames(one, m, known, at)} for m in models],
     }
-    curves, why = _wheel_angles(one, scene, POINTS)
+    curves, why = _wheel_angles(one)
     return Spatial(
         one.examined.name,
         _caption(one) + (f"; {why}" if why else ""),
         json.dumps(data, allow_nan=False),
-        max(len(at), 1),
+        len(at),
         curves,
         bool(one.examined.status),
     )
 
 
-def _closed(scene: Scene, known: Mapping[str, Array]) -> Any:
-    """Where the points of the drawing are once it is closed; None of one that cannot be."""
-    try:
-        places = closed_drawing(scene).places
-    except PointcoordError:
-        return None
-    return _rounded(np.stack([places.get(name, place) for name, place in known.items()])) if places else None
-
-
-def _frames(
-    scene: Scene, motion: Motion | None, model: Solution, known: Mapping[str, Array], shown: Array
-) -> Any:
+def _frames(one: Drawn, model: Solution, known: Mapping[str, Array], shown: Array) -> Any:
     """Of each instant that is shown a place for each point, None for one that is not given.
 
     Points of the chassis are given to every model: they are where the chassis is moved to.
     """
-    places: dict[str, Array] = {}
-    if motion is not None:
-        chassis, origin = motion.solved.readout.chassis, motion.solved.readout.mechanism.origin
-        still = np.zeros((len(model.times), 3))
-        drawn = {n: known[n] - origin + still for n in scene.mechanism.topology.chassis if n in known}
-        shift = origin + sum(chassis.states(model.times, 0), np.zeros(3))
-        turned = chassis.turned_by(motion.solved.readout.laws(model.times), [drawn])[0]
-        places = {name: place + shift for name, place in turned.items()}
+    readout = one.motion.solved.readout
+    chassis, origin = readout.chassis, readout.mechanism.origin
+    still = np.zeros((len(model.times), 3))
+    drawn = {n: known[n] - origin + still for n in one.scene.mechanism.topology.chassis if n in known}
+    shift = origin + sum(chassis.states(model.times, 0), np.zeros(3))
+    turned = chassis.turned_by(readout.laws(model.times), [drawn])[0]
+    places: dict[str, Array] = {name: place + shift for name, place in turned.items()}
     places |= model.numbers.get(PLACE, {})
     rows = np.full((len(shown), len(known), 3), np.nan)
     given = np.isin(shown, model.times)
@@ -142,60 +123,47 @@ def _caption(one: Drawn) -> str:
         closing = f"; closing it moves {moved['point']} by {moved['largest']:.3g} mm"
         if moved["largest"] <= ROUNDING:
             closing = "; it closes, no point moves by more than rounding"
-    stopped = f". Stopped: {one.stopped}" if one.stopped else ""
     called = f"{one.examined.title}. " if one.examined.title else ""
-    return f"{called}{'; '.join([*filter(None, [', '.join(told)]), 'dashed: the drawing'])}{closing}{stopped}"
+    return f"{called}{', '.join(told)}; dashed: the drawing{closing}"
 
 
-def _wheel_angles(one: Drawn, scene: Scene, points: int) -> tuple[Plots | None, str]:
+def _wheel_angles(one: Drawn) -> tuple[Plots | None, str]:
     """The curves of a scene, or why there are none."""
-    if one.motion is None or not one.models:
-        return None, "no curves: pointcoord solves no instant of it"
-    pairs = usual(scene, one.motion, angles_of(scene)).pairs
-    first, *rest = one.models
-    if panels := [drawn for pair in pairs if (drawn := _angle_panel(pair, one.models, one.motion, points))]:
-        dots = "".join(f"; dots: {other.formulation}" for other in rest)
-        return Plots(f"line: {first.formulation}{dots}", tuple(panels)), ""
+    pairs = usual(one.scene, one.motion, angles_of(one.scene)).pairs
+    first, second = one.models
+    if panels := tuple(drawn for pair in pairs if (drawn := _angle_panel(pair, one))):
+        return Plots(f"line: {first.formulation}; dots: {second.formulation}", panels), ""
     names = dict.fromkeys(n.words for pair in pairs for n in pair if len(n.path) > 1)
     return None, f"no curves: {first.formulation} gives no {' and no '.join(names)}"
 
 
-def _angle_panel(
-    pair: tuple[Number, Number], models: Sequence[Solution], motion: Motion, points: int
-) -> Panel | None:
+def _angle_panel(pair: tuple[Number, Number], one: Drawn) -> Panel | None:
     """The line of the first model and the dots of the second; None where the first does not give it.
 
-    The travel is that of the model's own wheel centre; of a model that gives none it is pointcoord's, and the
-    panel says so.
+    The travel of the wheel is pointcoord's.
     """
     traces: list[Trace] = []
-    lacking: list[str] = []
-    for model in models:
-        given, lacks = [], False
-        for number in pair:
-            try:
-                given.append(number.shown(motion, model))
-            except KeyError:
-                there = np.isin(motion.times, model.times)
-                if number.path[0] == TRAVEL and there.sum() == len(model.times):
-                    given.append(number.shown(motion, motion)[there])
-                    lacks = True
-        if len(given) < 2:
-            if model is models[0]:
+    for model in one.models:
+        there = np.isin(one.motion.times, model.times)
+        try:
+            x, y = (
+                n.shown(one.motion, one.motion)[there] if len(n.path) == 1 else n.shown(one.motion, model)
+                for n in pair
+            )
+        except KeyError:
+            if not traces:
                 return None
             continue
-        x, y = given
-        lacking += [model.formulation] * lacks
-        if model is models[0]:
+        name = plain(model.formulation)
+        if not traces:
             # Of a stretch of a curve the place farthest out is kept.
-            at = fewer(np.abs(np.nan_to_num(x - np.nanmean(x))), points) if np.isfinite(x).any() else range(0)
-            traces.append(curve(plain(model.formulation), x[at], y[at], OURS))
+            at = fewer(np.abs(np.nan_to_num(x - np.nanmean(x))), POINTS) if np.isfinite(x).any() else range(0)
+            traces.append(curve(name, x[at], y[at], OURS))
         else:
             some = slice(None, None, max(len(x) // MARKS, 1))
-            traces.append(marks(plain(model.formulation), x[some], y[some], OTHER, "circle-open", 5))
+            traces.append(marks(name, x[some], y[some], OTHER, "circle-open", 5))
     across, up = pair
-    whose = f" (wheel travel of {', '.join(lacking)} as pointcoord has it)" if lacking else ""
-    return panel(f"{up.words} over {across.words}{whose}", _title(across), _title(up), traces)
+    return panel(f"{up.words} over {across.words}", _title(across), _title(up), traces)
 
 
 def _title(number: Number) -> str:
