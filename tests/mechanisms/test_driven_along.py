@@ -56,9 +56,8 @@ def by_absolute(scene: Scene, effect: str) -> str:
 
 
 def by_reference(scene: Scene, effect: str) -> str:
-    return " ".join(
-        number.lacks and f"needs {number.lacks}" for number in numbers_of(design_of(scene), [effect])
-    )
+    design = design_of(scene)
+    return "" if len(numbers_of(design, [effect])) == len(design.corners) else ALONG
 
 
 @pytest.mark.parametrize("way", ["travel", "rack", "roll"])

@@ -78,8 +78,7 @@ from validate.formulations.protocol import NOTHING, Accuracy, Numbers
 from validate.reference import Design
 from validate.reference.design import Known, values_only
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, numbers_of
-from validate.reference.effects.car import KNUCKLE, Car
-from validate.reference.effects.effect import RACK, TIME
+from validate.reference.effects.car import KNUCKLE, RACK, TIME, Car
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.in_doubles import (
     inverse_of,
@@ -261,7 +260,7 @@ class _Held:
         self.origin = np.array([float(x) for x in design.origin])
         self.asked = asked_numbers(scene)
         known = [name for name in asked_of_the_car(scene) if name.rpartition(".")[2] in EFFECTS]
-        self.of_car = [number for number in numbers_of(design, known) if not number.lacks]
+        self.of_car = numbers_of(design, known)
         needs = {(p, need) for number in self.of_car for p in number.corners for need in number.effect.needs}
         # Each point has columns of its own: only those that a number is made of.
         whole = {prefix: drawn_car(design, float, prefix) for prefix, _ in sorted(needs)}

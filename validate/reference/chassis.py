@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from validate.reference.car_data import directed
+from validate.reference.car_data import directions
 from validate.reference.jet import Jet, value_of
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, minus, plus, root, times
 
@@ -53,10 +53,10 @@ class ChassisMotion:
         turns, rise = [], None
         for name, spec in plain["inputs"].items():
             if "moves" in spec:
-                part = times(each(exact, directed(plain, spec["along"])), driven[name] * exact(1 / unit))
+                part = times(each(exact, directions(plain)[spec["along"]]), driven[name] * exact(1 / unit))
                 rise = part if rise is None else plus(rise, part)
             elif "turns" in spec:
-                about, along = each(exact, table[spec["about"]]), directed(plain, spec["along"])
+                about, along = each(exact, table[spec["about"]]), directions(plain)[spec["along"]]
                 # A turn keeps lengths only about a vector whose length is exactly 1.
                 unit_vector = times(each(exact, along), 1 / root(exact(dot(along, along))))
                 turns.append(Turn(about, unit_vector, *driven[name].sin_cos()))

@@ -6,10 +6,10 @@ r"""Kinds of input: the rows that say them, the numbers w that these take, and w
     travel of a slide         s = w                             w = travel / length of the slide's line
     turn of a steering wheel  s = w                             travel = rack_per_turn angle / (2 pi)
     height of a point         P . direction = w
-    contact height            (centre - s up) . direction = w,  s^2 + (r m / l)^2 = r^2,
-                              m = (centre - inner) . up, l their distance, r the wheel's radius
-    the same over the ground  centre . g + w4 - s = w5,  m = (centre - inner) . g,  g = (w1, w2, w3) and w4
-                              such that a place p of the chassis is p . g + w4 high when the car is moved
+    contact height            centre . g + w4 - s = w5,  s^2 + (r m / l)^2 = r^2,  m = (centre - inner) . g,
+                              l their distance, r the wheel's radius, and over the chassis g = up, w4 = 0;
+                              over the ground g = (w1, w2, w3) and w4 such that a place p of the chassis is
+                              p . g + w4 high when the car is moved
     distance of two points    |P - Q|^2 = w,                    w = distance^2
 
 All lengths are local (see `design`), and so is the drawing.
@@ -24,7 +24,7 @@ from typing import Any
 
 from flint import arb
 
-from validate.reference.car_data import directed
+from validate.reference.car_data import directions
 from validate.reference.chassis import ChassisMotion
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball, as_fraction
@@ -34,23 +34,11 @@ from validate.reference.polynomial import Polynomial
 from validate.reference.vectors import Scalar, across, cross, dot, each, minus, root
 
 
-def drive_of(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    """The drive that a description's input is; its rows go to the mechanism, the one with the numbers last.
-
-    Raises:
-        BadInputError: there is no such kind of input, or it cannot drive the car as drawn.
-    """
-    for kind, make in KINDS.items():
-        if kind in spec:
-            return make(mechanism, name, spec)
-    raise BadInputError(f"inputs.{name}", dict(spec), f"one of {', '.join(KINDS)}, moves or turns")
-
-
 def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     if spec["from"] == "drawing":
         return _angle_from_drawing(mechanism, name, spec)
     end, pivot = spec["of"], spec["about"]
-    along = directed(mechanism.plain, spec["from"])
+    along = directions(mechanism.plain)[spec["from"]]
     drawn = minus(mechanism.table[end], mechanism.table[pivot])
     d2, height = dot(drawn, drawn), dot(drawn, along)
     if d2 == 0:
@@ -111,23 +99,13 @@ def _travel(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
 
 
 def _steers(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    given = mechanism.plain.get("rack_per_turn")
-    if given is None:
-        raise BadInputError("rack_per_turn", None, f"a number of mm, which inputs.{name} needs")
     return _slid(mechanism, name, spec["steers"], partial(travel_per_radian, mechanism.plain))
 
 
 def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scalar:
-    """What a rack goes as the steering wheel turns, rack_per_turn / (2 pi), mm, in a kind of number.
-
-    Raises:
-        BadInputError: rack_per_turn is no number other than 0.
-    """
-    per_turn = as_fraction(plain["rack_per_turn"], "rack_per_turn")
-    if per_turn == 0:
-        raise BadInputError("rack_per_turn", plain["rack_per_turn"], "a number of mm other than 0")
+    """What a rack goes as the steering wheel turns, rack_per_turn / (2 pi), mm, in a kind of number."""
     quarter = angle(exact(Fraction(1)), exact(Fraction(0)))
-    return exact(per_turn) / (4 * quarter)
+    return exact(as_fraction(plain["rack_per_turn"], "rack_per_turn")) / (4 * quarter)
 
 
 def _slid(
@@ -142,7 +120,6 @@ def _slid(
         off = minus(mechanism.table[told["points"][0]], mechanism.table[told["through"]])
         drawn.append(dot(off, along) / dot(along, along))
         lengths.append(squared)
-    per_input(as_ball)  # what it refuses is refused here
 
     def numbers(value: Jet, exact: Exact) -> list[Jet]:
         local = value * (per_input(exact) * exact(1 / unit))
@@ -153,93 +130,60 @@ def _slid(
         numbers,
         lambda: [as_ball(one) for one in drawn],
         lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(as_ball),
-        required=False,
     )
 
 
 def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    along = directed(mechanism.plain, spec.get("along", "up"))
+    """It counts, in mm, from the drawing on."""
+    along, unit = directions(mechanism.plain)[spec.get("along", "up")], mechanism.unit
     drawn = dot(mechanism.table[spec["height"]], along)
     mechanism.row(name, dot(mechanism.place(spec["height"]), along) - mechanism.number())
-    return _risen(name, mechanism.unit, lambda exact: exact(drawn))
+    return _own(
+        name,
+        lambda value, exact: [value * exact(1 / unit) + exact(drawn)],
+        lambda: [as_ball(drawn)],
+        lambda w: (w[0] - as_ball(drawn)) * as_ball(unit),
+    )
 
 
 def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
+    """Over the ground along the true up, which the chassis' inputs turn in the chassis' frame."""
     inner, centre = spec["contact"]
-    radius = mechanism.plain.get("wheel_radius")
-    if radius is None:
-        raise BadInputError("wheel_radius", None, f"a number of mm, which inputs.{name} needs")
-    up, r = directed(mechanism.plain, "up"), Fraction(radius) / mechanism.unit
-    axis = minus(mechanism.table[centre], mechanism.table[inner])
-    l2, m, high = dot(axis, axis), dot(axis, up), dot(mechanism.table[centre], up)
+    plain, table, unit, first = mechanism.plain, mechanism.table, mechanism.unit, mechanism.count
+    up, r = directions(plain)["up"], Fraction(plain["wheel_radius"]) / unit
+    axis = minus(table[centre], table[inner])
+    l2, m, high = dot(axis, axis), dot(axis, up), dot(table[centre], up)
     if l2 == 0:
         raise BadInputError(f"the distance from {inner} to {centre}", 0, "more than 0")
-    share2 = r * r / l2
-
-    over = spec.get("over", CHASSIS)
-    if over not in (CHASSIS, "ground"):
-        raise BadInputError(f"inputs.{name}: over", over, "'chassis' or 'ground'")
-
-    def drawn(exact: Exact) -> Scalar:
-        return exact(high) - root(exact(r * r - m * m * share2))
-
-    if over == "ground":
-        return _over_ground(mechanism, name, (inner, centre), (r * r, share2), drawn)
-
-    def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
-        lean = dot(minus(points[centre], points[inner]), each(exact, up))
-        return [root(exact(r * r) - lean * lean * exact(share2))]
-
-    (drop,) = mechanism.unknowns(1, read)
-    mechanism.positive.append(drop)
-    lean = dot(minus(mechanism.place(centre), mechanism.place(inner)), up)
-    if isinstance(lean, Polynomial):
-        mechanism.row(f"contact of {name}", drop * drop + lean * lean * share2 - r * r)
-    mechanism.row(name, dot(mechanism.place(centre), up) - drop - mechanism.number())
-    return _risen(name, mechanism.unit, drawn)
-
-
-def _over_ground(
-    mechanism: Mechanism,
-    name: str,
-    axis: tuple[str, str],
-    disc: tuple[Fraction, Fraction],
-    drawn: Callable[[Exact], Scalar],
-) -> Drive:
-    """A contact height along the true up, which the chassis' inputs turn in the chassis' frame.
-
-    Args:
-        disc: r^2 and (r / l)^2.
-    """
-    (inner, centre), (square, share) = axis, disc
-    up, plain, first = directed(mechanism.plain, "up"), mechanism.plain, mechanism.count
-    x, y, z, lift, level = (mechanism.number() for _ in range(5))
-    seen = (x, y, z)
+    share2, grounded = r * r / l2, spec.get("over") == "ground"
+    seen, lift = (mechanism.number(), mechanism.number(), mechanism.number()), mechanism.number()
 
     def read(points: Table, _: Sequence[Scalar], exact: Exact, numbers: Sequence[Scalar]) -> list[Scalar]:
         a, b, c = numbers[first : first + 3]
         lean = dot(minus(points[centre], points[inner]), (a, b, c))
-        return [lean, root(exact(square) - lean * lean * exact(share))]
+        return [lean, root(exact(r * r) - lean * lean * exact(share2))]
 
     lean, drop = mechanism.unknowns(2, read)
     mechanism.positive.append(drop)
     mechanism.row(f"lean of {name}", lean - dot(minus(mechanism.place(centre), mechanism.place(inner)), seen))
-    mechanism.row(f"contact of {name}", drop * drop + lean * lean * share - square)
-    mechanism.row(name, dot(mechanism.place(centre), seen) + lift - drop - level)
+    mechanism.row(f"contact of {name}", drop * drop + lean * lean * share2 - r * r)
+    mechanism.row(name, dot(mechanism.place(centre), seen) + lift - drop - mechanism.number())
+
+    def drawn(exact: Exact) -> Scalar:
+        return exact(high) - root(exact(r * r - m * m * share2))
 
     def numbers(inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
-        chassis = ChassisMotion.of(plain, mechanism.table, mechanism.unit, inputs, exact)
-        zero = inputs[name] * 0
-        nowhere, upward = (zero, zero, zero), each(exact, up)
+        chassis = ChassisMotion.of(plain if grounded else {"inputs": {}}, table, unit, inputs, exact)
+        zero, upward = inputs[name] * 0, each(exact, up)
         ways = ([zero + int(i == k) for i in range(3)] for k in range(3))
         ground = [zero + dot(chassis.turned((a, b, c)), upward) for a, b, c in ways]
-        risen = inputs[name] * exact(1 / mechanism.unit) + drawn(exact)
-        return [*ground, zero + dot(chassis.moved(nowhere), upward), risen]
+        risen = inputs[name] * exact(1 / unit) + drawn(exact)
+        return [*ground, zero + dot(chassis.moved((zero, zero, zero)), upward), risen]
 
     return Drive(
         numbers,
         lambda: [*each(as_ball, up), arb(0), drawn(as_ball)],
-        lambda w: (w[4] - drawn(as_ball)) * as_ball(mechanism.unit),
+        lambda w: (w[4] - drawn(as_ball)) * as_ball(unit),
     )
 
 
@@ -248,21 +192,10 @@ def _own(
     numbers: Callable[[Jet, Exact], Sequence[Jet]],
     drawn: Callable[[], Sequence[arb]],
     input_of: Callable[[Sequence[arb]], arb],
-    required: bool = True,
     turns: bool = False,
 ) -> Drive:
     """An input whose numbers hang on its own value alone."""
-    return Drive(lambda inputs, exact: numbers(inputs[name], exact), drawn, input_of, required, turns)
-
-
-def _risen(name: str, unit: Fraction, drawn: Callable[[Exact], Scalar]) -> Drive:
-    """An input that counts, in mm, from the drawing on."""
-    return _own(
-        name,
-        lambda value, exact: [value * exact(1 / unit) + drawn(exact)],
-        lambda: [drawn(as_ball)],
-        lambda w: (w[0] - drawn(as_ball)) * as_ball(unit),
-    )
+    return Drive(lambda inputs, exact: numbers(inputs[name], exact), drawn, input_of, turns)
 
 
 def _distance(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -296,10 +229,7 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
     """
     mechanism = Mechanism(plain, table, unit, hangs)
     for name, spec in plain["inputs"].items():
-        if "moves" not in spec and "turns" not in spec:
-            mechanism.drives[name] = drive_of(mechanism, name, spec)
+        for kind in KINDS.keys() & spec.keys():
+            mechanism.drives[name] = KINDS[kind](mechanism, name, spec)
             mechanism.driving[name] = len(mechanism.rows) - 1
-    for name in table:
-        if name not in mechanism.holder and name not in mechanism.free:
-            raise BadInputError(f"points.{name}", "in no body, rod or slide", "a point of one of them")
     return mechanism

@@ -58,14 +58,12 @@ class Drive:
             what makes a fraction one of that kind.
         drawn: these numbers as drawn.
         input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
-        required: whether it must be given; else it rests at zero.
         turns: whether it is an angle of any number of turns.
     """
 
     numbers: Callable[[Mapping[str, Jet], Exact], Sequence[Jet]]
     drawn: Callable[[], Sequence[arb]]
     input_of: Callable[[Sequence[arb]], arb]
-    required: bool = True
     turns: bool = False
 
 
@@ -197,8 +195,6 @@ class Mechanism:
         if point in self.holder:
             return self.bodies[self.holder[point]].place(point)
         if point not in self.free:
-            if point not in self.table:
-                raise BadInputError("a point", point, f"one of {', '.join(self.table)}")
             x, y, z = self.unknowns(3, lambda points, *_: points[point])
             self.free[point] = (x, y, z)
         return self.free[point]
@@ -216,8 +212,6 @@ class Mechanism:
     def _add_body(self, name: str) -> None:
         points: list[str] = self.plain["bodies"][name]
         shared = {other: [p for p in points if p in self.plain["bodies"][other]] for other in self.bodies}
-        if any(len(both) > 2 for both in shared.values()):
-            raise BadInputError(f"the body {name}", "three points with another body", "at most two")
         # A hinge is told by both its points: bodies with two come first.
         ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
         if len(shared[CHASSIS]) == 2 and self.hangs:
@@ -321,8 +315,6 @@ class Mechanism:
     def _add_slide(self, name: str, slide: Mapping[str, Any]) -> None:
         """Points on a line of a body."""
         body, through = slide["body"], slide["through"]
-        if through not in self.plain["bodies"][body]:
-            raise BadInputError(f"slides.{name}: through", through, f"a point of {body}")
         along = directions(self.plain).get(slide["along"])
         # A direction of the car is a unit vector to its rounding; a line towards a point is as long as it is.
         squared = Fraction(1)

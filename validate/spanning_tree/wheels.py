@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from validate.reference.car_data import corners
 from validate.reference.chassis import ChassisMotion
 from validate.reference.effects.at_pose import car_at
-from validate.reference.effects.car import DrawnCar
-from validate.reference.effects.effect import PAIR
+from validate.reference.effects.car import PAIR, DrawnCar
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.vectors import Vector
 from validate.spanning_tree.cut import SpanningTree
@@ -75,7 +74,7 @@ class Wheels:
             one_each = [(part,) for part in cars]
             for parts in one_each if PAIR not in effect.needs else [self.pair] if self.pair else []:
                 has = [{PAIR, *self.cars[part].ends, *self.cars[part].data} for part in parts]
-                if not any(map(effect.lacks, has)):
+                if all(map(effect.of, has)):
                     label = name if PAIR in effect.needs else parts[0] + name
                     value = effect.evaluate(*(cars[part] for part in parts))
                     found[label] = value * self.unit**effect.power

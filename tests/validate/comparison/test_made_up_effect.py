@@ -33,7 +33,7 @@ from validate.output.report import outcome_parts
 from validate.output.table import text_of
 from validate.reference.effects import registry as reference_registry
 from validate.reference.effects.car import WHEEL
-from validate.reference.effects.effect import Effect as ReferenceEffect
+from validate.reference.effects.car import Effect as ReferenceEffect
 from validate.reference.jet import angle
 from validate.reference.vectors import dot
 

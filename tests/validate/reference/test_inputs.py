@@ -14,7 +14,6 @@ from mpmath import mpf
 from plain_mechanisms import solve_car
 
 from validate.reference import BadInputError
-from validate.reference.effects.registry import OF_POSITIONS
 from validate.reference.exact import as_fraction
 
 Table = dict[str, tuple[Any, ...]]
@@ -64,6 +63,6 @@ def test_an_angle_that_is_undefined_is_left_out_and_the_others_are_not(table: Ta
     assert "camber" not in reference.effects
 
 
-def test_an_effect_that_does_not_exist_is_refused_and_the_message_names_those_that_do(table: Table) -> None:
-    with pytest.raises(BadInputError, match="allowed is one of " + ", ".join(OF_POSITIONS)):
+def test_an_effect_that_does_not_exist_is_refused_by_name(table: Table) -> None:
+    with pytest.raises(BadInputError, match="effect is 'scrub'"):
         solve_car(table, STILL, effects=["scrub"], closure="collinear")

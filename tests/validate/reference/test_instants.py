@@ -11,7 +11,7 @@ from mpmath import mpf
 from reference_cars import ReferenceCar
 
 from validate.reference import NotDecidedError
-from validate.reference.effects.effect import Effect
+from validate.reference.effects.car import Effect
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import bits
 from validate.reference.instant import prove_instant

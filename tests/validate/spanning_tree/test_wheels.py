@@ -13,7 +13,8 @@ from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.linkage import linkage_of
 from validate.peers.motion import numbers as numbers_of
 from validate.reference import Design, instants_of
-from validate.reference.effects.registry import ANGLES, EFFECTS, OF_POSITIONS
+from validate.reference.effects.registry import ANGLES, EFFECTS
+from validate.reference.effects.wheel import OF_POSITIONS
 from validate.spanning_tree.cut import CutError, cut
 from validate.spanning_tree.wheels import OF_CAR
 
@@ -59,7 +60,7 @@ def test_witnesses_give_every_number_of_positions(name: str) -> None:
     plain, laws = moved(name)
     numbers = found(plain, laws, EFFECTS)
     each = [{n: tuple(law[i].tolist()) for n, law in laws.items()} for i in range(3)]
-    exact = list(instants_of(Design.from_plain(plain), each, effects=OF_POSITIONS))
+    exact = list(instants_of(Design.from_plain(plain), each, effects=[one.name for one in OF_POSITIONS]))
     assert set(numbers) == set(exact[0].effects)
     assert ("damper_length" in numbers) == ("damper" in plain["roles"])
     for number, values in numbers.items():

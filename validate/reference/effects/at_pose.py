@@ -12,9 +12,21 @@ from flint import arb
 from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
 from validate.reference.drives import travel_per_radian
-from validate.reference.effects.car import KNUCKLE, LINES, Car, DrawnCar, Frame, Line, lines_of
-from validate.reference.effects.effect import PAIR, RACK, ROLL, TIME, TRAVEL, Effect
-from validate.reference.effects.registry import named
+from validate.reference.effects.car import (
+    KNUCKLE,
+    LINES,
+    PAIR,
+    RACK,
+    ROLL,
+    TIME,
+    TRAVEL,
+    Car,
+    DrawnCar,
+    Effect,
+    Line,
+    lines_of,
+)
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball
 from validate.reference.jet import value_of
@@ -29,35 +41,30 @@ class Number:
     Attributes:
         name: what results call it, `left.camber`.
         corners: the prefixes of the parts whose cars `effect.evaluate` takes, in this order.
-        lacks: what the car does not have of its needs, in words; empty if it can be had.
     """
 
     name: str
     effect: Effect
     corners: tuple[str, ...]
-    lacks: str
 
 
 def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
-    """The numbers that names mean. Of a wheel's number without a prefix each part has one.
+    """The numbers that names mean and the car can have; without a prefix each part has one of a wheel's.
 
     Raises:
-        BadInputError: there is no such effect, or no such part.
+        BadInputError: there is no such effect.
     """
     found: dict[str, Number] = {}
-    for name, effect in named(names).items():
+    for name in names:
         part, dot, base = name.rpartition(".")
-        if PAIR in effect.needs:
-            pair = pair_of(design)
-            parts = [provided(design, prefix) for prefix in pair or design.corners]
-            has = frozenset.intersection(*parts) | ({PAIR} if pair else frozenset())
-            found[name] = Number(name, effect, pair, effect.lacks(has))
-            continue
-        if dot and part + dot not in design.corners:
-            raise BadInputError("effect", name, f"{base} with the prefix of a part, or without")
-        for prefix in [part + dot] if dot else design.corners:
-            lacks = effect.lacks(provided(design, prefix))
-            found[prefix + base] = Number(prefix + base, effect, (prefix,), lacks)
+        if base not in EFFECTS:
+            raise BadInputError("effect", name, "a name of `effects.registry`")
+        effect, pair = EFFECTS[base], pair_of(design)
+        of_both = ((name, pair),) if pair else ()
+        of_each = ((prefix + base, (prefix,)) for prefix in ([part + dot] if dot else design.corners))
+        for label, prefixes in of_both if PAIR in effect.needs else of_each:
+            if all(effect.of(provided(design, prefix) | {PAIR}) for prefix in prefixes):
+                found[label] = Number(label, effect, prefixes)
     return tuple(found.values())
 
 
@@ -90,14 +97,17 @@ def drivers(design: Design, prefix: str = "") -> dict[str, str]:
 
 
 def provided(design: Design, prefix: str = "") -> frozenset[str]:
-    """What effects may need and a part of the car has, of `effect.NEEDS`."""
+    """What effects may need and a part of the car has, see `Effect.needs`."""
     lines = (role for role in LINES if design.role(prefix + role) is not None)
     knuckle = [KNUCKLE] if design.role(prefix + KNUCKLE) in design.mechanism.frames else []
     return frozenset({*lines, *drivers(design, prefix), *design.car, *knuckle})
 
 
 def car_at(
-    drawn: DrawnCar, chassis: ChassisMotion, places: Mapping[str, Vector], knuckle: Frame | None = None
+    drawn: DrawnCar,
+    chassis: ChassisMotion,
+    places: Mapping[str, Vector],
+    knuckle: tuple[Vector, Vector] | None = None,
 ) -> Car:
     """The car at a pose, local.
 
@@ -107,10 +117,7 @@ def car_at(
         knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
     """
     turning, lines = chassis.without_displacement(), lines_of(drawn.ends, places)
-    turned = {
-        role: Line(turning.moved(line.start), turning.moved(line.end), turning.turned(line.along))
-        for role, line in lines.items()
-    }
+    turned = {role: Line(turning.moved(one.start), turning.moved(one.end)) for role, one in lines.items()}
     frame = None if knuckle is None else (turning.turned(knuckle[0]), turning.turned(knuckle[1]))
     return Car(drawn, turned, lines, frame)
 
@@ -118,7 +125,7 @@ def car_at(
 def effects_at(
     design: Design, known: Known, enclosure: Sequence[arb], solver: Solved, numbers: Iterable[Number]
 ) -> dict[str, arb]:
-    """Those of some numbers that the car can have, in balls, rad, mm and %.
+    """Numbers in balls, rad, mm and %.
 
     Gradients are those of the pose y(q): C(y, w(q)) = 0 differentiated by one driven input q, which is the
     velocity of a motion that drives it at unit rate; those by time are of the motion itself.
@@ -148,7 +155,8 @@ def effects_at(
         return car_at(drawn, driven.chassis.with_slopes(), equations.points_of(pose, drawn.points), frame)
 
     found = {}
-    for name, effect, corners in ((one.name, one.effect, one.corners) for one in numbers if not one.lacks):
-        value = effect.evaluate(*(car(prefix, effect.along) for prefix in corners))
-        found[name] = arb(value_of(value)) * unit**effect.power
+    for number in numbers:
+        effect = number.effect
+        value = effect.evaluate(*(car(prefix, effect.along) for prefix in number.corners))
+        found[number.name] = arb(value_of(value)) * unit**effect.power
     return found

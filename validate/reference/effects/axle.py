@@ -12,8 +12,7 @@ from math import nan
 import numpy as np
 
 from validate.reference.car_data import WHEELBASE
-from validate.reference.effects.car import Car
-from validate.reference.effects.effect import PAIR, TRAVEL, Effect
+from validate.reference.effects.car import PAIR, TRAVEL, Car, Effect
 from validate.reference.effects.wheel import MOVING, ON_GROUND, steer_angle, velocity_of_contact
 from validate.reference.jet import Jet, angle, slope_of, value_of
 from validate.reference.vectors import Scalar, Vector, dot, each, minus, root

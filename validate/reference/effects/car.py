@@ -1,8 +1,8 @@
-"""A wheel's corner of the car as its effects see it: lines through points that roles name, in any number."""
+"""A wheel's corner of the car in any kind of number, and what an effect is: one number that a pose has."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,24 +10,56 @@ from validate.reference.car_data import LENGTHS, RADIUS, car_data, corners
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, times
 
 WHEEL, STEERING, DAMPER = LINES = ("wheel_axis", "steering_axis", "damper")
-KNUCKLE = "knuckle"
+KNUCKLE, PAIR = "knuckle", "pair"
+TRAVEL, RACK, ROLL, TIME = "by_travel", "by_rack", "by_roll", "by_time"
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A number of a pose.
+
+    Attributes:
+        name: what results call it, behind the prefix of its part if there are parts.
+        unit: of the number, a unit or a quotient of two.
+        needs: what the car must have: lines by their roles, a knuckle that moves, an entry of `car_data`,
+            exactly one driven input that goes along; with `PAIR` two parts on opposite sides, which each do.
+        evaluate: the number of a `Car`, or with `PAIR` of the left and the right one, in their kind of scalar
+            and their lengths; not a finite ball where it is undefined.
+        along: None, or `TRAVEL`, `RACK`, `ROLL` or `TIME`: the numbers of the car are duals, whose slopes are
+            by the one driven input that is not the travel of a slide, in any unit, by the one that is, in the
+            car's own lengths, or by the one that rolls the chassis, rad, while the others rest; or by time,
+            as all of them move.
+    """
+
+    name: str
+    unit: str
+    needs: tuple[str, ...]
+    evaluate: Callable[..., Scalar]
+    along: str | None = None
+
+    @property
+    def power(self) -> int:
+        """Of a unit of length, which the number in the car's own lengths is multiplied by."""
+        # A force is the rate of a spring, N/mm, times a length.
+        above, below = (int(part in ("mm", "N")) for part in f"{self.unit}/".split("/")[:2])
+        return above - below
+
+    def of(self, has: Collection[str]) -> bool:
+        """Whether a car that has these has the number."""
+        return {*self.needs} <= {*has}
 
 
 @dataclass(frozen=True)
 class Line:
-    """From one point to another.
-
-    Attributes:
-        along: end - start; whoever knows it more exactly than both points says it apart.
-    """
+    """From one point to another."""
 
     start: Vector
     end: Vector
-    along: Vector
 
-
-Lines = Mapping[str, Line]
-Frame = tuple[Vector, Vector]
+    @property
+    def along(self) -> Vector:
+        """The one less the other."""
+        return minus(self.end, self.start)
 
 
 @dataclass(frozen=True)
@@ -46,7 +78,7 @@ class DrawnCar:
     """
 
     ends: Mapping[str, tuple[str, str]]
-    lines: Lines
+    lines: Mapping[str, Line]
     up: Vector
     forward: Vector
     outboard: Vector
@@ -107,9 +139,9 @@ class Car:
     """
 
     drawn: DrawnCar
-    lines: Lines
-    on_chassis: Lines
-    knuckle: Frame | None = None
+    lines: Mapping[str, Line]
+    on_chassis: Mapping[str, Line]
+    knuckle: tuple[Vector, Vector] | None = None
 
     @property
     def up(self) -> Vector:
@@ -127,11 +159,6 @@ class Car:
         return self.drawn.outboard
 
     @property
-    def rearward(self) -> Vector:
-        """Unit vector."""
-        return times(self.forward, -1)
-
-    @property
     def is_right(self) -> bool:
         """Whether outboard is the right of the car, which is forward x up."""
         return bool(dot(self.outboard, cross(self.forward, self.up)) > 0)
@@ -142,11 +169,6 @@ class Car:
         return self.lines[WHEEL]
 
     @property
-    def steering(self) -> Line:
-        """The steering axis, from below."""
-        return self.lines[STEERING]
-
-    @property
     def contact(self) -> Vector:
         """The contact point, see `contact_of`."""
         return contact_of(self.drawn, self.wheel)
@@ -154,8 +176,7 @@ class Car:
 
 def lines_of(ends: Mapping[str, tuple[str, str]], points: Mapping[str, Vector]) -> dict[str, Line]:
     """The lines through these points."""
-    both = {role: (points[start], points[end]) for role, (start, end) in ends.items()}
-    return {role: Line(start, end, minus(end, start)) for role, (start, end) in both.items()}
+    return {role: Line(points[start], points[end]) for role, (start, end) in ends.items()}
 
 
 def contact_of(drawn: DrawnCar, wheel: Line) -> Vector:

@@ -11,18 +11,20 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from validate.reference.car_data import (
-    AXLE,
-    BRAKE_SHARE,
-    DRIVE_SHARE,
-    FREE_LENGTH,
-    HEIGHT,
-    RADIUS,
-    SPRING_RATE,
-    WHEELBASE,
+import validate.reference.car_data as data
+from validate.reference.effects.car import (
+    DAMPER,
+    KNUCKLE,
+    RACK,
+    ROLL,
+    STEERING,
+    TIME,
+    TRAVEL,
+    WHEEL,
+    Car,
+    Effect,
+    contact_of,
 )
-from validate.reference.effects.car import DAMPER, KNUCKLE, STEERING, WHEEL, Car, Line, contact_of
-from validate.reference.effects.effect import RACK, ROLL, TIME, TRAVEL, Effect
 from validate.reference.jet import angle, slope_of, value_of
 from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, plus, root, times
@@ -42,16 +44,16 @@ LEANS: dict[str, tuple[str, Callable[[Scalar, Scalar, Scalar], Scalar]]] = {
 """Angles of a line by its components outboard, forward and up; by arcsine as Adams/Car and OptimumK do."""
 
 
-def _lean(name: str, car: Car, line: Line | None = None) -> Scalar:
-    """One of `LEANS`, of its own line unless another one is given."""
+def _lean(name: str, car: Car, along: Vector | None = None) -> Scalar:
+    """One of `LEANS`, of its own line unless another direction is given."""
     role, formula = LEANS[name]
-    v = (line or car.lines[role]).along
+    v = along or car.lines[role].along
     return formula(dot(v, car.outboard), dot(v, car.forward), dot(v, car.up))
 
 
 def _toe_change_by_arcsine(car: Car) -> Scalar:
     """asin(n . forward) - asin(drawn n . forward) (OptimumK's steer angle, the other way)."""
-    return _lean("toe_by_arcsine", car) - _lean("toe_by_arcsine", car, car.drawn.lines[WHEEL])
+    return _lean("toe_by_arcsine", car) - _lean("toe_by_arcsine", car, car.drawn.lines[WHEEL].along)
 
 
 def steer_angle(car: Car) -> Scalar:
@@ -113,7 +115,7 @@ def _offset(name: str, car: Car, start: Vector, k: Vector, known: Callable[[Vect
 
 
 def _from_steering(name: str, car: Car) -> Scalar:
-    return _offset(name, car, car.steering.start, car.steering.along, lambda vector: vector)
+    return _offset(name, car, car.lines[STEERING].start, car.lines[STEERING].along, lambda vector: vector)
 
 
 # Of motion.
@@ -152,7 +154,7 @@ def _arm_roll_centre_height(car: Car) -> Scalar:
     """The same with the turn omega + f k about the steering axis besides, f such that no point of the axis of
     this motion moves along it: (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
     """
-    lower, k, omega = _values(car.steering.start), _values(car.steering.along), _turning(car)
+    lower, k, omega = _values(car.lines[STEERING].start), _values(car.lines[STEERING].along), _turning(car)
     u = plus(_slopes(car.wheel.end), cross(omega, minus(lower, _values(car.wheel.end))))
     turn = minus(omega, times(k, dot(omega, u) / dot(k, u)))
     return _roll_centre(car, plus(u, cross(turn, minus(_values(car.contact), lower))))
@@ -170,8 +172,8 @@ def _wheel_per_damper(car: Car) -> Scalar:
 
 def _spring_force(car: Car) -> Scalar:
     """K (l_0 - l)."""
-    data = car.drawn.data
-    return data[SPRING_RATE] * (data[FREE_LENGTH] - value_of(_damper_length(car)))
+    given = car.drawn.data
+    return given[data.SPRING_RATE] * (given[data.FREE_LENGTH] - value_of(_damper_length(car)))
 
 
 # As the rack moves, all else held, the carrier turns with omega about an axis that leads through
@@ -188,7 +190,7 @@ def _from_screw(name: str, car: Car) -> Scalar:
 def _screw_lean(name: str, car: Car) -> Scalar:
     """Of the axis omega (omega . up), which leads up."""
     omega = _turning(car)
-    return _lean(name, car, Line(omega, omega, times(omega, dot(omega, car.up))))
+    return _lean(name, car, times(omega, dot(omega, car.up)))
 
 
 def _screw_pitch(car: Car) -> Scalar:
@@ -224,15 +226,15 @@ def _above(car: Car, h: Vector) -> Scalar:
 
 
 def _anti(car: Car, share: str, v: Vector) -> Scalar:
-    data = car.drawn.data
-    lever = data[WHEELBASE] / (data[HEIGHT] - value_of(_contact_travel(car)))
-    return 100 * data[share] * data[AXLE] * dot(v, car.rearward) / dot(v, car.up) * lever
+    given = car.drawn.data
+    lever = given[data.WHEELBASE] / (given[data.HEIGHT] - value_of(_contact_travel(car)))
+    return 100 * given[share] * given[data.AXLE] * -dot(v, car.forward) / dot(v, car.up) * lever
 
 
-ON_GROUND = (WHEEL, RADIUS)
+ON_GROUND = (WHEEL, data.RADIUS)
 MOVING = (*ON_GROUND, KNUCKLE, TRAVEL)
-_SPRUNG = (DAMPER, WHEEL, TRAVEL, SPRING_RATE, FREE_LENGTH)
-_OF_THE_CAR = (*MOVING, AXLE, WHEELBASE, HEIGHT)
+_SPRUNG = (DAMPER, WHEEL, TRAVEL, data.SPRING_RATE, data.FREE_LENGTH)
+_OF_THE_CAR = (*MOVING, data.AXLE, data.WHEELBASE, data.HEIGHT)
 
 OF_POSITIONS = (
     *(Effect(name, "rad", (role,), partial(_lean, name)) for name, (role, _) in LEANS.items()),
@@ -241,10 +243,13 @@ OF_POSITIONS = (
     Effect("travel", "mm", (WHEEL,), _travel),
     Effect("contact_travel", "mm", ON_GROUND, _contact_travel),
     Effect("half_track_change", "mm", ON_GROUND, lambda car: _contact_moved(car, car.outboard)),
-    Effect("recession", "mm", ON_GROUND, lambda car: _contact_moved(car, car.rearward)),
+    Effect("recession", "mm", ON_GROUND, lambda car: -_contact_moved(car, car.forward)),
     *(
         Effect(
-            name, "mm", (WHEEL, STEERING, *([RADIUS] if at_contact else [])), partial(_from_steering, name)
+            name,
+            "mm",
+            (WHEEL, STEERING, *([data.RADIUS] if at_contact else [])),
+            partial(_from_steering, name),
         )
         for name, (at_contact, _) in OFFSETS.items()
     ),
@@ -272,25 +277,25 @@ OF_MOTION = (
         "wheel_rate",
         "N/mm",
         _SPRUNG,
-        lambda car: car.drawn.data[SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car),
+        lambda car: car.drawn.data[data.SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car),
     ),
     _of_travel("arm_roll_centre_height", "mm", (*MOVING, STEERING), _arm_roll_centre_height),
     _of_travel("roll_centre_height", "mm", MOVING, lambda car: _roll_centre(car, velocity_of_contact(car))),
     _of_travel("front_view_swing_arm", "mm", MOVING, lambda car: -_beside(car, car.outboard)),
     _of_travel("front_view_centre_height", "mm", MOVING, lambda car: _above(car, car.outboard)),
-    _of_travel("side_view_swing_arm", "mm", MOVING, lambda car: _beside(car, car.rearward)),
-    _of_travel("side_view_centre_height", "mm", MOVING, lambda car: _above(car, car.rearward)),
+    _of_travel("side_view_swing_arm", "mm", MOVING, lambda car: _beside(car, times(car.forward, -1))),
+    _of_travel("side_view_centre_height", "mm", MOVING, lambda car: _above(car, times(car.forward, -1))),
     _of_travel(
         "anti_brake",
         "%",
-        (*_OF_THE_CAR, BRAKE_SHARE),
-        lambda car: _anti(car, BRAKE_SHARE, velocity_of_contact(car)),
+        (*_OF_THE_CAR, data.BRAKE_SHARE),
+        lambda car: _anti(car, data.BRAKE_SHARE, velocity_of_contact(car)),
     ),
     _of_travel(
         "anti_drive",
         "%",
-        (*_OF_THE_CAR, DRIVE_SHARE),
-        lambda car: _anti(car, DRIVE_SHARE, _slopes(car.wheel.end)),
+        (*_OF_THE_CAR, data.DRIVE_SHARE),
+        lambda car: _anti(car, data.DRIVE_SHARE, _slopes(car.wheel.end)),
     ),
 )
 
