@@ -91,7 +91,7 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
 def _of_unknowns(
     one: Polynomial, _: Table, unknown: Sequence[Scalar], exact: Exact, *__: object
 ) -> list[Scalar]:
-    return [one.at(unknown, exact)]
+    return [one.of_kind(exact).at(unknown)]
 
 
 def _travel(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:

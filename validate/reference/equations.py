@@ -10,11 +10,9 @@ from functools import cached_property
 from flint import arb
 
 from validate.reference.krawczyk import Matrix, matrix_of
-from validate.reference.mechanism import Mechanism
-from validate.reference.polynomial import Monomial, ordered, polynomial, value_of
-from validate.reference.vectors import Scalar, Vector, each
-
-Terms = tuple[tuple[Monomial, Scalar], ...]
+from validate.reference.mechanism import Mechanism, at, of_kind
+from validate.reference.polynomial import Polynomial, ordered
+from validate.reference.vectors import Scalar, Vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,27 +21,27 @@ class Equations:
 
     Attributes:
         size: unknowns, and equations.
-        rows: of each row its terms, in the unknowns and the numbers w.
-        entries: (row, column, terms) of the Jacobian by the unknowns, zeros left out.
+        rows: in the unknowns and the numbers w.
+        entries: (row, column, entry) of the Jacobian by the unknowns, zeros left out.
         places: of each point, relative to the chassis.
         frames: of each moving body two vectors fixed in it.
     """
 
     size: int
-    rows: tuple[Terms, ...]
-    entries: tuple[tuple[int, int, Terms], ...]
-    places: Mapping[str, tuple[Terms, Terms, Terms]]
-    frames: Mapping[str, tuple[tuple[Terms, Terms, Terms], tuple[Terms, Terms, Terms]]]
+    rows: tuple[Polynomial, ...]
+    entries: tuple[tuple[int, int, Polynomial], ...]
+    places: Mapping[str, Vector]
+    frames: Mapping[str, tuple[Vector, Vector]]
 
     def residual(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
         """C(y, w)."""
         values = ordered(unknown, numbers)
-        return [value_of(row, values) for row in self.rows]
+        return [row.at(values) for row in self.rows]
 
     def jacobian(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[tuple[int, int, Scalar]]:
         """dC/dy as (row, column, entry), zeros left out."""
         values = ordered(unknown, numbers)
-        return [(row, column, value_of(terms, values)) for row, column, terms in self.entries]
+        return [(row, column, entry.at(values)) for row, column, entry in self.entries]
 
     def matrix(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> Matrix:
         """dC/dy as a square matrix of balls."""
@@ -51,27 +49,25 @@ class Equations:
 
     def bend(self, change: Sequence[arb]) -> Matrix:
         """By how much a change of y changes dC/dy, which is linear in y."""
-        return matrix_of(self.size, ((i, j, value_of(terms, change)) for i, j, terms in self._bending))
+        return matrix_of(self.size, ((i, j, entry.at(change)) for i, j, entry in self._bending))
 
     @cached_property
-    def _bending(self) -> list[tuple[int, int, Terms]]:
+    def _bending(self) -> list[tuple[int, int, Polynomial]]:
         """Of the entries the terms that y changes."""
         bending = (
-            (i, j, tuple(term for term in terms if term[0] and term[0][0] >= 0))
-            for i, j, terms in self.entries
+            (i, j, Polynomial({m: x for m, x in entry.terms.items() if m and m[0] >= 0}))
+            for i, j, entry in self.entries
         )
-        return [entry for entry in bending if entry[2]]
+        return [entry for entry in bending if entry[2].terms]
 
     def points_of(self, unknown: Sequence[Scalar], names: Iterable[str] | None = None) -> dict[str, Vector]:
         """Where every point is, or some are, relative to the chassis."""
-        return {
-            name: _vector(self.places[name], unknown) for name in (self.places if names is None else names)
-        }
+        return {n: at(self.places[n], unknown) for n in (self.places if names is None else names)}
 
     def frame_of(self, unknown: Sequence[Scalar], body: str) -> tuple[Vector, Vector]:
         """Two vectors fixed in a body and not parallel."""
         one, two = self.frames[body]
-        return _vector(one, unknown), _vector(two, unknown)
+        return at(one, unknown), at(two, unknown)
 
 
 def equations_in(
@@ -83,24 +79,15 @@ def equations_in(
         rows: those that are solved, as many as unknowns.
         number: a fraction in that kind.
     """
-
-    def terms(one: Scalar) -> Terms:
-        found = polynomial(one).terms
-        return tuple((m, number(found[m])) for m in sorted(found, key=lambda m: -len(m)))
-
     chosen = [mechanism.rows[row][1] for row in rows]
     return Equations(
         size=mechanism.size,
-        rows=tuple(terms(row) for row in chosen),
+        rows=tuple(row.of_kind(number) for row in chosen),
         entries=tuple(
-            (i, j, terms(row.derivative(j)))
+            (i, j, row.derivative(j).of_kind(number))
             for i, row in enumerate(chosen)
             for j in sorted({s for m in row.terms for s in m if s >= 0})
         ),
-        places={name: each(terms, place) for name, place in mechanism.places.items()},
-        frames={name: (each(terms, u), each(terms, v)) for name, (u, v) in mechanism.frames.items()},
+        places={name: of_kind(place, number) for name, place in mechanism.places.items()},
+        frames={n: (of_kind(u, number), of_kind(v, number)) for n, (u, v) in mechanism.frames.items()},
     )
-
-
-def _vector(terms: tuple[Terms, Terms, Terms], values: Sequence[Scalar]) -> Vector:
-    return each(lambda one: value_of(one, values), terms)

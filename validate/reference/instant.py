@@ -130,7 +130,7 @@ def _require_others(design: Design, enclosure: Sequence[arb], known: Known, leas
     values = ordered(enclosure, known.numbers)
     for i in set(range(len(design.mechanism.rows))) - set(design.chosen):
         name, row = design.mechanism.rows[i]
-        missed = row.at(values, as_ball)
+        missed = row.of_kind(as_ball).at(values)
         if not missed.contains(0):
             raise NoReferenceError(
                 f"the row {name!r}, which depends on the others in the drawing, is violated "

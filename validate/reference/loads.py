@@ -36,7 +36,7 @@ from validate.reference.exact import as_ball
 from validate.reference.jet import Dual, slope_of
 from validate.reference.kinematics import body_rates
 from validate.reference.krawczyk import column
-from validate.reference.mechanism import CHASSIS, Mechanism, at
+from validate.reference.mechanism import CHASSIS, Mechanism, at, of_kind
 from validate.reference.vectors import cross, dot, each, length, minus, plus, times
 
 FORCES = ROD, JOINT, THRUST = ("rod_force", "joint_force", "hinge_thrust")
@@ -105,7 +105,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         if len(points) == 2:
             (other,) = (point for point in points if point != met)
             row, *sides = mechanism.closing[other]
-            one, two = (at(side, unknown, as_ball) for side in sides)
+            one, two = (at(of_kind(side, as_ball), unknown) for side in sides)
             pulls[other] = chassis.turned(
                 times(plus(times(one, solved[row]), times(two, solved[row + 1])), sense)
             )

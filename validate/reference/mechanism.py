@@ -167,7 +167,7 @@ class Mechanism:
     def handed(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> bool:
         """Whether a zero that a drawing leads to is an assembly, proven: no hinge is the wrong way round."""
         values = ordered(unknown, numbers)
-        return all(polynomial(one).at(values, as_ball) > 0 for one in self.positive)
+        return all(polynomial(one).of_kind(as_ball).at(values) > 0 for one in self.positive)
 
     def unknowns(self, count: int, read: Reader) -> list[Polynomial]:
         """New ones; `read` gives their values from points, the unknowns before them and the numbers w."""
@@ -335,7 +335,7 @@ class Mechanism:
         shorter = times(line, 1 / dot(along, along))
 
         def read(points: Table, unknown: Sequence[Scalar], exact: Exact, *_: object) -> list[Scalar]:
-            now = each(exact, shorter) if body == CHASSIS else at(shorter, unknown, exact)
+            now = each(exact, shorter) if body == CHASSIS else at(of_kind(shorter, exact), unknown)
             return [dot(minus(points[point], points[through]), now)]
 
         (share,) = self.unknowns(1, read)
@@ -365,9 +365,14 @@ class Mechanism:
         self.positive.append(dot(one.turned(u), other.turned(u)))
 
 
-def at(vector: Vector, values: Sequence[Scalar], exact: Exact) -> Vector:
+def of_kind(vector: Vector, number: Exact) -> Vector:
+    """A vector of polynomials and fractions as polynomials in one kind of number."""
+    return each(lambda one: polynomial(one).of_kind(number), vector)
+
+
+def at(vector: Vector, values: Sequence[Scalar]) -> Vector:
     """The values of a vector of polynomials."""
-    return each(lambda one: polynomial(one).at(values, exact), vector)
+    return each(lambda one: one.at(values), vector)
 
 
 def _spread(k: Vector, m: Vector) -> float:

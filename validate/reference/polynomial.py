@@ -5,9 +5,10 @@ The unknowns are the symbols 0, 1 and so on, the numbers w of the inputs are -1,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain, product
 
 from validate.reference.vectors import Scalar
 
@@ -16,9 +17,9 @@ Monomial = tuple[int, ...]  # at most two symbols, in ascending order
 
 @dataclass(frozen=True)
 class Polynomial:
-    """A sum of products of at most two symbols, with exact coefficients."""
+    """A sum of products of at most two symbols, with exact coefficients, or in one kind of number."""
 
-    terms: Mapping[Monomial, Fraction]
+    terms: Mapping[Monomial, Scalar]
 
     @classmethod
     def symbol(cls, number: int) -> Polynomial:
@@ -26,23 +27,14 @@ class Polynomial:
         return cls({(number,): Fraction(1)})
 
     def __add__(self, other: Scalar) -> Polynomial:
-        terms = dict(self.terms)
-        for monomial, coefficient in polynomial(other).terms.items():
-            terms[monomial] = terms.get(monomial, Fraction(0)) + coefficient
-        return _without_zeros(terms)
+        return _summed(chain(self.terms.items(), polynomial(other).terms.items()))
 
     def __mul__(self, other: Scalar) -> Polynomial:
-        terms: dict[Monomial, Fraction] = {}
-        for one, a in self.terms.items():
-            for two, b in polynomial(other).terms.items():
-                if len(one) + len(two) > 2:
-                    raise ValueError("a product of more than two symbols: no row may be more than quadratic")
-                monomial = tuple(sorted(one + two))
-                terms[monomial] = terms.get(monomial, Fraction(0)) + a * b
-        return _without_zeros(terms)
+        pairs = product(self.terms.items(), polynomial(other).terms.items())
+        return _summed((tuple(sorted(one + two)), a * b) for (one, a), (two, b) in pairs)
 
     def __neg__(self) -> Polynomial:
-        return Polynomial({monomial: -coefficient for monomial, coefficient in self.terms.items()})
+        return self * -1
 
     def __sub__(self, other: Scalar) -> Polynomial:
         return self + -polynomial(other)
@@ -55,7 +47,7 @@ class Polynomial:
 
     def derivative(self, symbol: int) -> Polynomial:
         """By one symbol."""
-        terms: dict[Monomial, Fraction] = {}
+        terms: dict[Monomial, Scalar] = {}
         for monomial, coefficient in self.terms.items():
             if symbol in monomial:
                 rest = list(monomial)
@@ -63,10 +55,23 @@ class Polynomial:
                 terms[tuple(rest)] = coefficient * monomial.count(symbol)
         return Polynomial(terms)
 
-    def at(self, values: Sequence[Scalar], exact: Callable[[Fraction], Scalar]) -> Scalar:
-        """Its value, in the kind of number of the values, into which `exact` takes a fraction."""
+    def of_kind(self, number: Callable[[Fraction], Scalar]) -> Polynomial:
+        """With coefficients in another kind of number, a constant last."""
         ordered = sorted(self.terms.items(), key=lambda term: -len(term[0]))
-        return value_of([(monomial, exact(coefficient)) for monomial, coefficient in ordered], values)
+        return Polynomial({monomial: number(coefficient) for monomial, coefficient in ordered})
+
+    def at(self, values: Sequence[Scalar]) -> Scalar:
+        """Its value in the kind of number of the values, even where no symbol is in it; see `of_kind`."""
+        total: Scalar = None
+        for monomial, coefficient in self.terms.items():
+            if len(monomial) == 2:
+                term = values[monomial[0]] * values[monomial[1]] * coefficient
+            elif monomial:
+                term = values[monomial[0]] * coefficient
+            else:
+                term = coefficient if total is not None else values[0] * 0 + coefficient
+            total = term if total is None else total + term
+        return values[0] * 0 if total is None else total
 
 
 def polynomial(number: Scalar) -> Polynomial:
@@ -79,19 +84,10 @@ def ordered(unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar
     return [*unknown, *reversed(numbers)]
 
 
-def value_of(terms: Sequence[tuple[Monomial, Scalar]], values: Sequence[Scalar]) -> Scalar:
-    """The sum of the terms, a constant last; of the kind of the values even where no symbol is in it."""
-    total: Scalar = None
+def _summed(terms: Iterable[tuple[Monomial, Fraction]]) -> Polynomial:
+    found: dict[Monomial, Fraction] = {}
     for monomial, coefficient in terms:
-        if len(monomial) == 2:
-            term = values[monomial[0]] * values[monomial[1]] * coefficient
-        elif monomial:
-            term = values[monomial[0]] * coefficient
-        else:
-            term = coefficient if total is not None else values[0] * 0 + coefficient
-        total = term if total is None else total + term
-    return values[0] * 0 if total is None else total
-
-
-def _without_zeros(terms: Mapping[Monomial, Fraction]) -> Polynomial:
-    return Polynomial({monomial: coefficient for monomial, coefficient in terms.items() if coefficient})
+        if len(monomial) > 2:
+            raise ValueError("a product of more than two symbols: no row may be more than quadratic")
+        found[monomial] = found.get(monomial, Fraction(0)) + coefficient
+    return Polynomial({monomial: coefficient for monomial, coefficient in found.items() if coefficient})

@@ -24,6 +24,7 @@ from validate.reference.design import values_only
 from validate.reference.exact import bits
 from validate.reference.fold import Fold, fold_ahead, pose_before
 from validate.reference.krawczyk import Contraction, Curve, less, middle_inverse, newton
+from validate.reference.polynomial import Polynomial
 from validate.reference.route import closed
 from validate.reference.way import Way, next_pose, proven_tube, series_of, start_pose
 
@@ -57,15 +58,13 @@ def test_a_refined_solution_is_certified_and_a_planted_error_in_any_unknown_or_r
     assert all(ball.rad() < arb("1e-70") for ball in start_pose(way, solution, arb(0)).box)
     for place, x in enumerate(solution):
         assert not holds_one(way, [*solution[:place], (x + arb("1e-50")).mid(), *solution[place + 1 :]])
-    rows = [list(row) for row in way.equations.rows]
-    for i, k in [(i, k) for i, row in enumerate(rows) for k in range(len(row))][::7]:
-        monomial, coefficient = rows[i][k]
-        planted = [*rows[i][:k], (monomial, coefficient + arb("1e-40")), *rows[i][k + 1 :]]
-        every = tuple(tuple(planted if n == i else row) for n, row in enumerate(rows))
+    rows = way.equations.rows
+    for i, monomial in [(i, monomial) for i, row in enumerate(rows) for monomial in row.terms][::7]:
+        planted = Polynomial({**rows[i].terms, monomial: rows[i].terms[monomial] + arb("1e-40")})
+        every = (*rows[:i], planted, *rows[i + 1 :])
         wrong = replace(way, equations=replace(way.equations, rows=every))
-        if not all(
-            abs(x) < arb("1e-60") for x in wrong.rows(solution, arb(0))
-        ):  # else of an unknown that is 0
+        # Not where it multiplies an unknown that is 0.
+        if not all(abs(x) < arb("1e-60") for x in wrong.rows(solution, arb(0))):
             assert not holds_one(wrong, solution)
 
 
