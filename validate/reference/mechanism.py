@@ -31,7 +31,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, combinations_with_replacement
 from typing import Any
 
 from flint import arb
@@ -44,8 +44,10 @@ from validate.reference.polynomial import Polynomial, ordered, polynomial
 from validate.reference.vectors import Scalar, Vector, across, cross, dot, each, minus, near_one, plus, times
 
 CHASSIS = "chassis"
+X, Y, Z = AXES = ((Fraction(1), 0, 0), (0, Fraction(1), 0), (0, 0, Fraction(1)))
 Table = Mapping[str, Vector]
 Exact = Callable[[Fraction], Scalar]
+Columns = tuple[Vector, Vector, Vector]
 Reader = Callable[[Table, Sequence[Scalar], Exact, Sequence[Scalar]], Sequence[Scalar]]
 
 
@@ -69,10 +71,24 @@ class Drive:
 
 @dataclass(frozen=True)
 class Body:
-    """A body in the equations: where a vector fixed in it points to, and where a point of it is."""
+    """A body in the equations: the columns of its matrix R, and where it takes the origin of the drawing."""
 
-    turned: Callable[[Vector], Vector]
-    place: Callable[[str], Vector]
+    columns: Columns
+    origin: Vector
+
+    @classmethod
+    def of(cls, columns: Columns, drawn: Vector, place: Vector) -> Body:
+        """The body that has a point of the drawing at a place."""
+        return cls(columns, minus(place, cls(columns, place).turned(drawn)))
+
+    def turned(self, v: Vector) -> Vector:
+        """Where a vector fixed in it points to."""
+        x, y, z = (times(column, part) for column, part in zip(self.columns, v, strict=True))
+        return plus(plus(x, y), z)
+
+    def place(self, drawn: Vector) -> Vector:
+        """Where a point of it is."""
+        return plus(self.origin, self.turned(drawn))
 
 
 class Mechanism:
@@ -119,7 +135,7 @@ class Mechanism:
         self.sliding: dict[str, int] = {}
         self.lines: dict[str, tuple[list[Polynomial], Vector, Fraction]] = {}
         self.free: dict[str, Vector] = {}
-        self.bodies = {CHASSIS: Body(lambda v: v, lambda name: self.table[name])}
+        self.bodies = {CHASSIS: Body(AXES, (Fraction(0),) * 3)}
         self.holder = dict.fromkeys(plain["bodies"][CHASSIS], CHASSIS)
         for name in self._in_order():
             self._add_body(name)
@@ -185,19 +201,23 @@ class Mechanism:
         """One equation: what is named is 0."""
         self.rows.append((name, polynomial(row)))
 
-    def _meet(self, name: str, one: Vector, other: Vector) -> None:
-        """Two places are one: three rows."""
-        for apart in minus(one, other):
-            self.row(name, apart)
+    def _vanish(self, name: str, apart: Vector) -> int:
+        """Two places are one: three rows; the first of them."""
+        for part in apart:
+            self.row(name, part)
+        return len(self.rows) - 3
 
     def place(self, point: str) -> Vector:
         """Where a point is."""
         if point in self.holder:
-            return self.bodies[self.holder[point]].place(point)
+            return self.bodies[self.holder[point]].place(self.table[point])
         if point not in self.free:
-            x, y, z = self.unknowns(3, lambda points, *_: points[point])
-            self.free[point] = (x, y, z)
+            self.free[point] = self._free_place(point)
         return self.free[point]
+
+    def _free_place(self, point: str) -> Vector:
+        x, y, z = self.unknowns(3, lambda points, *_: points[point])
+        return x, y, z
 
     def _in_order(self) -> Iterator[str]:
         """The moving bodies, each after those that it hangs on."""
@@ -212,28 +232,30 @@ class Mechanism:
     def _add_body(self, name: str) -> None:
         points: list[str] = self.plain["bodies"][name]
         shared = {other: [p for p in points if p in self.plain["bodies"][other]] for other in self.bodies}
-        # A hinge is told by both its points: bodies with two come first.
+        # A hinge is told by both its points: bodies with two come first, and of these the chassis.
         ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
         if len(shared[CHASSIS]) == 2 and self.hangs:
-            tied = set(shared[CHASSIS])
-            body = self._hinged(name, points, *shared[CHASSIS])
+            columns, tied = self._hinged(name, *shared[CHASSIS]), {*shared[CHASSIS]}
         else:
-            hung = ties[0][1][0] if ties and self.hangs else None
-            base = self.bodies[ties[0][0]].place(hung) if hung else None
-            tied = {hung} if hung else set()
-            body = self._loose(name, points, hung or points[0], base)
-        self.bodies[name] = body
+            columns, tied = self._loose(name, points), set[str]()
+        base = ties[0][1][0] if ties and self.hangs else points[0]
+        if ties and self.hangs:
+            tied |= {base}
+            place = self.bodies[ties[0][0]].place(self.table[base])
+        else:
+            place = self._free_place(base)
+        body = self.bodies[name] = Body.of(columns, self.table[base], place)
+        self.frames[name] = columns[:2]
         for other, both in ties:
             for i, point in enumerate(both):
                 if point in tied:
                     continue
                 tied.add(point)
-                place, there = body.place(point), self.bodies[other].place(point)
+                apart = minus(*(one.place(self.table[point]) for one in (body, self.bodies[other])))
                 if i == 0:
-                    self.joints[point] = name, len(self.rows)
-                    self._meet(f"{point} of {name} and {other}", place, there)
+                    self.joints[point] = name, self._vanish(f"{point} of {name} and {other}", apart)
                 else:
-                    self._close_hinge(name, other, both, minus(place, there))
+                    self._close_hinge(name, other, both, apart)
         for point in points:
             self.holder.setdefault(point, name)
 
@@ -247,24 +269,19 @@ class Mechanism:
             self.row(f"hinge of {name} and {other}", dot(side, apart))
         self.positive.append(dot(self.bodies[other].turned(axis), self.bodies[name].turned(axis)))
 
-    def _hinged(self, name: str, points: Sequence[str], a: str, b: str) -> Body:
+    def _hinged(self, name: str, a: str, b: str) -> Columns:
         """A body on a hinge of the chassis."""
-        n = near_one(minus(self.table[b], self.table[a]))
+        n, start = near_one(minus(self.table[b], self.table[a])), self.table[a]
         if n is None:
             raise BadInputError(f"the hinge of {name}", f"{a} and {b} in one place", "a line")
-        nn, start = dot(n, n), self.table[a]
-
-        def beside(point: str) -> Vector:
-            return cross(n, minus(self.table[point], start))
-
-        seen = max(points, key=lambda point: float(dot(beside(point), beside(point))))
-        g = beside(seen)
-        gg = dot(g, g)
-        if gg == 0:
+        nn, axis = dot(n, n), n
+        beside = {point: cross(axis, minus(self.table[point], start)) for point in self.plain["bodies"][name]}
+        seen = max(beside, key=lambda point: float(dot(beside[point], beside[point])))
+        g = beside[seen]
+        if dot(g, g) == 0:
             raise BadInputError(f"the points of {name}", "all on one line", "a point beside the hinge")
         h = times(cross(g, n), Fraction(1) / nn)  # from the hinge to the point seen, square to it
-
-        cosine, sine = times(h, 1 / dot(h, h)), times(g, 1 / gg)
+        cosine, sine = times(h, 1 / dot(h, h)), times(g, 1 / dot(g, g))
 
         def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
             r = minus(points[seen], points[a])
@@ -274,13 +291,12 @@ class Mechanism:
         self.row(f"turn of {name}", c * c + s * s * nn - 1)
 
         def turned(v: Vector) -> Vector:
-            along = times(n, dot(n, v) / nn)
-            return plus(along, plus(times(minus(v, along), c), times(cross(n, v), s)))
+            along = times(axis, dot(axis, v) / nn)
+            return plus(along, plus(times(minus(v, along), c), times(cross(axis, v), s)))
 
-        self.frames[name] = (turned(h), turned(n))
-        return Body(turned, lambda point: plus(start, turned(minus(self.table[point], start))))
+        return turned(X), turned(Y), turned(Z)
 
-    def _loose(self, name: str, points: Sequence[str], base: str, origin: Vector | None) -> Body:
+    def _loose(self, name: str, points: Sequence[str]) -> Columns:
         """A body that hangs on a point, or on none."""
         ends = {(p, q): minus(self.table[p], self.table[q]) for p, q in combinations(points, 2)}
         (i, j), (k, m) = max(combinations(ends, 2), key=lambda pair: _spread(ends[pair[0]], ends[pair[1]]))
@@ -298,19 +314,10 @@ class Mechanism:
             return [dot(row, column) for column in zip(*g, strict=True) for row in rows]
 
         y = self.unknowns(9, read)
-        c1, c2, c3 = columns = ((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7], y[8]))
-        for p in range(3):
-            for q in range(p, 3):
-                self.row(f"turn of {name}", dot(columns[p], columns[q]) - int(p == q))
-        if origin is None:
-            px, py, pz = self.unknowns(3, lambda points, *_: points[base])
-            origin = (px, py, pz)
-
-        def turned(v: Vector) -> Vector:
-            return plus(plus(times(c1, v[0]), times(c2, v[1])), times(c3, v[2]))
-
-        self.frames[name] = (c1, c2)
-        return Body(turned, lambda point: plus(origin, turned(minus(self.table[point], self.table[base]))))
+        columns = ((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7], y[8]))
+        for p, q in combinations_with_replacement(range(3), 2):
+            self.row(f"turn of {name}", dot(columns[p], columns[q]) - int(p == q))
+        return columns
 
     def _add_slide(self, name: str, slide: Mapping[str, Any]) -> None:
         """Points on a line of a body."""
@@ -323,29 +330,26 @@ class Mechanism:
             if along is None:
                 raise BadInputError(f"slides.{name}: along", f"{slide['along']} in {through}", "a line")
             squared = dot(along, along)
-        line, start = self.bodies[body].turned(along), self.bodies[body].place(through)
-        shares = [self._on_line(name, point, body, through, along, line, start) for point in slide["points"]]
+        line, start = self.bodies[body].turned(along), self.bodies[body].place(self.table[through])
+        shorter, shares = times(line, 1 / dot(along, along)), list[Polynomial]()
+        for point in slide["points"]:
+
+            def read(
+                points: Table, unknown: Sequence[Scalar], exact: Exact, *_: object, point: str = point
+            ) -> list[Scalar]:
+                now = at(of_kind(shorter, exact), [*unknown, exact(Fraction(0))])
+                return [dot(minus(points[point], points[through]), now)]
+
+            (share,) = self.unknowns(1, read)
+            shares.append(share)
+            there = plus(start, times(line, share))
+            if self.hangs and body == CHASSIS and point not in self.holder and point not in self.free:
+                self.free[point] = there  # its place needs no unknowns besides
+            else:
+                self.sliding[point] = self._vanish(f"{point} on {name}", minus(self.place(point), there))
         self.lines[name] = (shares, along, squared)
         if not slide["turns"]:
             self._hold(name, slide, along)
-
-    def _on_line(
-        self, name: str, point: str, body: str, through: str, along: Vector, line: Vector, start: Vector
-    ) -> Polynomial:
-        shorter = times(line, 1 / dot(along, along))
-
-        def read(points: Table, unknown: Sequence[Scalar], exact: Exact, *_: object) -> list[Scalar]:
-            now = each(exact, shorter) if body == CHASSIS else at(of_kind(shorter, exact), unknown)
-            return [dot(minus(points[point], points[through]), now)]
-
-        (share,) = self.unknowns(1, read)
-        there = plus(start, times(line, share))
-        if self.hangs and body == CHASSIS and point not in self.holder and point not in self.free:
-            self.free[point] = there  # its place needs no unknowns besides
-        else:
-            self.sliding[point] = len(self.rows)
-            self._meet(f"{point} on {name}", self.place(point), there)
-        return share
 
     def _hold(self, name: str, slide: Mapping[str, Any], along: Vector) -> None:
         """A sliding joint that may not turn."""
@@ -354,15 +358,12 @@ class Mechanism:
         holders = [b for b in self.bodies if b != slide["body"] and points <= set(self.plain["bodies"][b])]
         if not holders:
             raise BadInputError(f"slides.{name}: turns", False, "points of one other body")
-        u, v = across(along)
         other = self.bodies[holders[0]]
+        (u, v), (u2, v2) = ([body.turned(side) for side in across(along)] for body in (one, other))
         # The axis of the turn from the one body to the other has no component along the line: what is drawn
         # off it is turned onto it by the smallest rotation.
-        self.row(
-            f"turn of {name}",
-            dot(one.turned(u), other.turned(v)) - dot(one.turned(v), other.turned(u)),
-        )
-        self.positive.append(dot(one.turned(u), other.turned(u)))
+        self.row(f"turn of {name}", dot(u, v2) - dot(v, u2))
+        self.positive.append(dot(u, u2))
 
 
 def of_kind(vector: Vector, number: Exact) -> Vector:
