@@ -76,23 +76,23 @@ from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import NOTHING, Accuracy, Numbers
 from validate.reference import Design
+from validate.reference.car_data import KNUCKLE, RACK, TIME
 from validate.reference.design import Known, values_only
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, numbers_of
-from validate.reference.effects.car import KNUCKLE, RACK, TIME, Car
+from validate.reference.effects.car import Car
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.in_doubles import (
+    by_doubles,
     inverse_of,
     jacobian_of,
     known_in_doubles,
     local_places,
     motion_of_a_miss,
-    newton_step,
-    unknown_jets_of,
     values_of,
     with_slopes,
 )
 from validate.reference.jet import Dual, Jet, part_of, slope_of, value_of
-from validate.reference.kinematics import body_turns
+from validate.reference.kinematics import body_turns, with_rates
 from validate.reference.mechanism import CHASSIS
 from validate.reference.vectors import Scalar, Vector, each
 
@@ -286,7 +286,7 @@ class _Held:
         off = accuracy / self.unit
         known = known_in_doubles(self.design, laws, len(next(iter(places.values()))))
         values, inverse, matrix, blind = self._pose(places, values_only(known))
-        jets = unknown_jets_of(values, inverse, known)
+        jets = with_rates(values, known, by_doubles(inverse))
         missed = off[:, None] * self._missed(places, matrix, values_only(known))
         # Missing a row by delta moves the unknowns by a column of the inverse.
         first = np.einsum("nij,nj->ijn", inverse, missed)
@@ -298,7 +298,7 @@ class _Held:
         for way, driver in self._drivers().items():
             # The derivatives by an input are the rates of a motion that drives it alone, at 1 a unit of time.
             driving = self._driving(way, driver, laws)
-            driven = unknown_jets_of(values, inverse, driving)
+            driven = with_rates(values, driving, by_doubles(inverse))
             along[way] = with_slopes(driven, motion_of_a_miss(first, driven, inverse, driving)), driving
         claims = self._claims(off, with_slopes(jets, slopes), known, growth, along)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
@@ -337,9 +337,9 @@ class _Held:
         matrix = jacobian_of(list(values), known.numbers, known.equations)
         for _ in range(MOST_STEPS):
             before, inverse = matrix, inverse_of(matrix)
-            step = newton_step(values, inverse, known)
+            step = np.array(by_doubles(inverse)(known.residual(list(values))))
             blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
-            values = values - step
+            values = values + step
             matrix = jacobian_of(list(values), known.numbers, known.equations)
             # Where a last step changes the Jacobian so much, doubles cannot tell the pose.
             blind |= ~(np.abs(inverse @ (matrix - before)).sum(axis=-1).max(axis=-1) < LIMIT)

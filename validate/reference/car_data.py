@@ -1,4 +1,4 @@
-"""What no point of the suspension says of the car: its directions, sides, lengths, shares and springs."""
+"""What no point of the suspension says of the car: directions, sides, data, and the names of what it has."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ AXLE, WHEELBASE, HEIGHT = "axle", "wheelbase", "centre_of_gravity_height"
 BRAKE_SHARE, DRIVE_SHARE = "brake_share", "drive_share"
 SPRING_RATE, FREE_LENGTH = "spring_rate", "spring_free_length"
 RADIUS = "wheel_radius"
+WHEEL, STEERING, DAMPER = LINES = ("wheel_axis", "steering_axis", "damper")
+KNUCKLE, PAIR = "knuckle", "pair"
+TRAVEL, RACK, ROLL, TIME = "by_travel", "by_rack", "by_roll", "by_time"
 
 LENGTHS = (WHEELBASE, HEIGHT, FREE_LENGTH, RADIUS)
 AXLES = {"front": Fraction(-1), "rear": Fraction(1)}

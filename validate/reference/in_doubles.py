@@ -8,7 +8,7 @@ equations makes of them: each solves an equation with the one matrix C'.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache, partial
+from functools import lru_cache
 from math import comb
 
 import numpy as np
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from validate.reference.design import Design, Known
 from validate.reference.equations import Equations, equations_in
 from validate.reference.jet import Dual, Jet, value_of
-from validate.reference.kinematics import with_rates
+from validate.reference.kinematics import Solved
 from validate.reference.vectors import Scalar, Vector
 
 Array = NDArray[np.float64]
@@ -74,21 +74,14 @@ def inverse_of(matrix: Array) -> Array:
         return np.asarray(np.linalg.pinv(matrix), dtype=float)
 
 
-def newton_step(values: Array, inverse: Array, known: Known) -> Array:
-    """What Newton's method takes off unknowns, (size, N)."""
-    rows = known.residual(list(values))
-    stacked = np.array([np.broadcast_to(row, values.shape[1:]) for row in rows])
-    return np.asarray(np.einsum("nij,jn->in", inverse, stacked))
-
-
-def unknown_jets_of(values: Sequence[Array], inverse: Array, known: Known) -> list[Jet]:
-    """The unknowns with their rates, as in `kinematics.unknown_jets`."""
+def by_doubles(inverse: Array) -> Solved:
+    """Solves with inverses of the Jacobian, (N, size, size), for rows of one number or of N."""
 
     def solved(rows: Sequence[Scalar]) -> list[Array]:
-        stacked = np.array([np.broadcast_to(row, values[0].shape) for row in rows])
+        stacked = np.array([np.broadcast_to(row, len(inverse)) for row in rows])
         return list(-np.einsum("nij,jn->in", inverse, stacked))
 
-    return with_rates(values, known, solved)
+    return solved
 
 
 def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
@@ -103,10 +96,14 @@ def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: K
         jets: the unknowns with their rates.
         inverse: of C', (N, size, size).
     """
-    turned = [
-        jacobian_of(jets, known.numbers, known.equations, partial(_derivative, order=order))
-        for order in range(1, known.derivatives + 1)
-    ]
+
+    def of_order(order: int) -> Array:
+        # An entry of the Jacobian may be a plain number.
+        return jacobian_of(
+            jets, known.numbers, known.equations, lambda x: x.part(order) if isinstance(x, Jet) else 0.0
+        )
+
+    turned = [of_order(order) for order in range(1, known.derivatives + 1)]
     found = [first.transpose(2, 0, 1)]
     for d in range(1, known.derivatives + 1):
         rest = sum(comb(d, k) * (turned[k - 1] @ found[d - k]) for k in range(1, d + 1))
@@ -119,11 +116,6 @@ def with_slopes(jets: Sequence[Jet], slopes: Array) -> list[Jet]:
     return [
         Jet(*(Dual(part, slopes[d, i]) for d, part in enumerate(jet.parts))) for i, jet in enumerate(jets)
     ]
-
-
-def _derivative(entry: Scalar, order: int) -> Scalar:
-    """Of an entry of the Jacobian, which may be a plain number."""
-    return entry.part(order) if isinstance(entry, Jet) else 0.0
 
 
 def values_of(vector: Vector, count: int) -> Array:

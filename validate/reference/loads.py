@@ -26,11 +26,10 @@ from typing import Any
 
 from flint import arb, ctx
 
-from validate.reference.car_data import RADIUS
+from validate.reference.car_data import DAMPER, KNUCKLE, RADIUS, TRAVEL, WHEEL
 from validate.reference.design import Design, Known, ball_vector
 from validate.reference.drives import compiled
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
-from validate.reference.effects.car import DAMPER, KNUCKLE, TRAVEL, WHEEL
 from validate.reference.equations import Equations, equations_in
 from validate.reference.exact import as_ball
 from validate.reference.jet import Dual, slope_of

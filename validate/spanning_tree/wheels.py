@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.reference.car_data import corners
+from validate.reference.car_data import PAIR, corners
 from validate.reference.chassis import ChassisMotion
 from validate.reference.effects.at_pose import car_at
-from validate.reference.effects.car import PAIR, DrawnCar
+from validate.reference.effects.car import DrawnCar
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.vectors import Vector
 from validate.spanning_tree.cut import SpanningTree

@@ -31,8 +31,8 @@ from validate.comparison.compare import Outcome, compare
 from validate.output.document import schema_text
 from validate.output.report import outcome_parts
 from validate.output.table import text_of
+from validate.reference.car_data import WHEEL
 from validate.reference.effects import registry as reference_registry
-from validate.reference.effects.car import WHEEL
 from validate.reference.effects.car import Effect as ReferenceEffect
 from validate.reference.jet import angle
 from validate.reference.vectors import dot

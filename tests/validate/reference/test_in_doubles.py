@@ -10,15 +10,15 @@ from reference_cars import ReferenceCar
 
 from validate.reference.design import Known, values_only
 from validate.reference.in_doubles import (
+    by_doubles,
     inverse_of,
     jacobian_of,
     known_in_doubles,
     local_places,
     motion_of_a_miss,
-    newton_step,
-    unknown_jets_of,
 )
 from validate.reference.jet import Jet
+from validate.reference.kinematics import with_rates
 
 
 def unknowns(car: ReferenceCar, places: dict[str, np.ndarray], still: Known) -> np.ndarray:
@@ -56,9 +56,9 @@ def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions
         for _ in range(4):
             inverse = inverse_of(jacobian_of(list(solved), still.numbers, still.equations))
             less = np.einsum("nij,j->in", inverse, missed)
-            solved = solved - newton_step(solved, inverse, still) + less
+            solved = solved + np.array(by_doubles(inverse)(still.residual(list(solved)))) + less
         inverse = inverse_of(jacobian_of(list(solved), still.numbers, still.equations))
-        return unknown_jets_of(list(solved), inverse, known), inverse
+        return with_rates(list(solved), known, by_doubles(inverse)), inverse
 
     size = design.mechanism.size
     jets, inverse = moving(np.zeros(size))

@@ -9,23 +9,11 @@ from functools import cache
 
 from flint import arb
 
+from validate.reference.car_data import KNUCKLE, LINES, PAIR, RACK, ROLL, TIME, TRAVEL
 from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
 from validate.reference.drives import travel_per_radian
-from validate.reference.effects.car import (
-    KNUCKLE,
-    LINES,
-    PAIR,
-    RACK,
-    ROLL,
-    TIME,
-    TRAVEL,
-    Car,
-    DrawnCar,
-    Effect,
-    Line,
-    lines_of,
-)
+from validate.reference.effects.car import Car, DrawnCar, Effect, Line, lines_of
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball

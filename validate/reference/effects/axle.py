@@ -11,8 +11,8 @@ from math import nan
 
 import numpy as np
 
-from validate.reference.car_data import WHEELBASE
-from validate.reference.effects.car import PAIR, TRAVEL, Car, Effect
+import validate.reference.car_data as data
+from validate.reference.effects.car import Car, Effect
 from validate.reference.effects.wheel import MOVING, ON_GROUND, steer_angle, velocity_of_contact
 from validate.reference.jet import Jet, angle, slope_of, value_of
 from validate.reference.vectors import Scalar, Vector, dot, each, minus, root
@@ -65,7 +65,7 @@ def _cotangent(car: Car) -> Scalar:
 
 def _turning_radius(left: Car, right: Car) -> Scalar:
     """L |cot d left + cot d right| / 2."""
-    twice = left.drawn.data[WHEELBASE] * (_cotangent(left) + _cotangent(right))
+    twice = left.drawn.data[data.WHEELBASE] * (_cotangent(left) + _cotangent(right))
     # Wheels that are steered by more than a right angle have negative cotangents to the left.
     size = root(twice * twice) / 2
     return _by_side(left, right, size, size)
@@ -80,7 +80,7 @@ def _ackermann(left: Car, right: Car) -> Scalar:
 
     Of magnitudes; their difference is that of the angles, d left - d right, whichever wheel is the inner one.
     """
-    wheelbase, radius = left.drawn.data[WHEELBASE], _turning_radius(left, right)
+    wheelbase, radius = left.drawn.data[data.WHEELBASE], _turning_radius(left, right)
     half = _drawn_track(left, right) / 2
 
     def steered(at: Scalar) -> Scalar:
@@ -91,7 +91,7 @@ def _ackermann(left: Car, right: Car) -> Scalar:
 
 def _ackermann_error(left: Car, right: Car) -> Scalar:
     """d outer - arccot(cot d inner + t / L), magnitudes: what the outer wheel is steered too much."""
-    apart = _drawn_track(left, right) / left.drawn.data[WHEELBASE]
+    apart = _drawn_track(left, right) / left.drawn.data[data.WHEELBASE]
 
     def needed(inner: Scalar) -> Scalar:
         return angle(inner * 0 + 1, inner + apart)
@@ -104,12 +104,25 @@ def _ackermann_error(left: Car, right: Car) -> Scalar:
     )
 
 
-_STEERED = (PAIR, *ON_GROUND, WHEELBASE)
+_MOVED = (data.PAIR, *MOVING)
+_STEERED = (data.PAIR, *ON_GROUND, data.WHEELBASE)
 
 NUMBERS = (
-    Effect("track", "mm", (PAIR, *ON_GROUND), _track),
-    Effect("axle_roll_centre_height", "mm", (PAIR, *MOVING), lambda *cars: _roll_centre(*cars)[1], TRAVEL),
-    Effect("axle_roll_centre_offset", "mm", (PAIR, *MOVING), lambda *cars: _roll_centre(*cars)[0], TRAVEL),
+    Effect("track", "mm", (data.PAIR, *ON_GROUND), _track),
+    Effect(
+        "axle_roll_centre_height",
+        "mm",
+        (data.PAIR, *MOVING),
+        lambda *cars: _roll_centre(*cars)[1],
+        data.TRAVEL,
+    ),
+    Effect(
+        "axle_roll_centre_offset",
+        "mm",
+        (data.PAIR, *MOVING),
+        lambda *cars: _roll_centre(*cars)[0],
+        data.TRAVEL,
+    ),
     Effect("turning_radius", "mm", _STEERED, _turning_radius),
     Effect("ackermann", "%", _STEERED, _ackermann),
     Effect("ackermann_error", "rad", _STEERED, _ackermann_error),

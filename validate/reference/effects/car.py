@@ -6,12 +6,8 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from validate.reference.car_data import LENGTHS, RADIUS, car_data, corners
+from validate.reference.car_data import LENGTHS, LINES, RADIUS, WHEEL, car_data, corners
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, times
-
-WHEEL, STEERING, DAMPER = LINES = ("wheel_axis", "steering_axis", "damper")
-KNUCKLE, PAIR = "knuckle", "pair"
-TRAVEL, RACK, ROLL, TIME = "by_travel", "by_rack", "by_roll", "by_time"
 
 
 @dataclass(frozen=True)

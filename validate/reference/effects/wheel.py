@@ -12,19 +12,7 @@ from dataclasses import replace
 from functools import partial
 
 import validate.reference.car_data as data
-from validate.reference.effects.car import (
-    DAMPER,
-    KNUCKLE,
-    RACK,
-    ROLL,
-    STEERING,
-    TIME,
-    TRAVEL,
-    WHEEL,
-    Car,
-    Effect,
-    contact_of,
-)
+from validate.reference.effects.car import Car, Effect, contact_of
 from validate.reference.jet import angle, slope_of, value_of
 from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, plus, root, times
@@ -32,14 +20,14 @@ from validate.reference.vectors import Scalar, Vector, cross, dot, each, length,
 # Of positions.
 
 LEANS: dict[str, tuple[str, Callable[[Scalar, Scalar, Scalar], Scalar]]] = {
-    "camber": (WHEEL, lambda out, _, up: angle(-up, out)),  # eq. (17) of the paper
-    "kingpin": (STEERING, lambda out, _, up: angle(-out, up)),  # eq. (16)
-    "toe": (WHEEL, lambda out, ahead, _: angle(ahead, out)),  # ISO 8855, 7.1.6
-    "caster": (STEERING, lambda _, ahead, up: angle(-ahead, up)),
+    "camber": (data.WHEEL, lambda out, _, up: angle(-up, out)),  # eq. (17) of the paper
+    "kingpin": (data.STEERING, lambda out, _, up: angle(-out, up)),  # eq. (16)
+    "toe": (data.WHEEL, lambda out, ahead, _: angle(ahead, out)),  # ISO 8855, 7.1.6
+    "caster": (data.STEERING, lambda _, ahead, up: angle(-ahead, up)),
     # An arcsine of a component of a unit vector, from it and the other two of a vector of any length: all are
     # along the car's axes, which are rounded, and l^2 - s^2 would be of other axes than s is.
-    "camber_by_arcsine": (WHEEL, lambda out, ahead, up: angle(-up, root(out * out + ahead * ahead))),
-    "toe_by_arcsine": (WHEEL, lambda out, ahead, up: angle(ahead, root(out * out + up * up))),
+    "camber_by_arcsine": (data.WHEEL, lambda out, ahead, up: angle(-up, root(out * out + ahead * ahead))),
+    "toe_by_arcsine": (data.WHEEL, lambda out, ahead, up: angle(ahead, root(out * out + up * up))),
 }
 """Angles of a line by its components outboard, forward and up; by arcsine as Adams/Car and OptimumK do."""
 
@@ -53,7 +41,7 @@ def _lean(name: str, car: Car, along: Vector | None = None) -> Scalar:
 
 def _toe_change_by_arcsine(car: Car) -> Scalar:
     """asin(n . forward) - asin(drawn n . forward) (OptimumK's steer angle, the other way)."""
-    return _lean("toe_by_arcsine", car) - _lean("toe_by_arcsine", car, car.drawn.lines[WHEEL].along)
+    return _lean("toe_by_arcsine", car) - _lean("toe_by_arcsine", car, car.drawn.lines[data.WHEEL].along)
 
 
 def steer_angle(car: Car) -> Scalar:
@@ -64,12 +52,12 @@ def steer_angle(car: Car) -> Scalar:
 
 def _travel(car: Car) -> Scalar:
     """(W - drawn W) . up, before the turns of the chassis."""
-    return dot(minus(car.on_chassis[WHEEL].end, car.drawn.lines[WHEEL].end), car.up)
+    return dot(minus(car.on_chassis[data.WHEEL].end, car.drawn.lines[data.WHEEL].end), car.up)
 
 
 def _contact_travel(car: Car) -> Scalar:
     """(c - drawn c) . up, before the turns of the chassis, c of the disc that hangs along its own up."""
-    return dot(minus(contact_of(car.drawn, car.on_chassis[WHEEL]), car.drawn.contact), car.up)
+    return dot(minus(contact_of(car.drawn, car.on_chassis[data.WHEEL]), car.drawn.contact), car.up)
 
 
 def _contact_moved(car: Car, along: Vector) -> Scalar:
@@ -77,7 +65,7 @@ def _contact_moved(car: Car, along: Vector) -> Scalar:
 
 
 def _damper_length(car: Car) -> Scalar:
-    return length(car.lines[DAMPER].along)
+    return length(car.lines[data.DAMPER].along)
 
 
 def _behind(car: Car, off: Vector, a: Vector) -> Scalar:
@@ -115,7 +103,8 @@ def _offset(name: str, car: Car, start: Vector, k: Vector, known: Callable[[Vect
 
 
 def _from_steering(name: str, car: Car) -> Scalar:
-    return _offset(name, car, car.lines[STEERING].start, car.lines[STEERING].along, lambda vector: vector)
+    axis = car.lines[data.STEERING]
+    return _offset(name, car, axis.start, axis.along, lambda vector: vector)
 
 
 # Of motion.
@@ -154,7 +143,8 @@ def _arm_roll_centre_height(car: Car) -> Scalar:
     """The same with the turn omega + f k about the steering axis besides, f such that no point of the axis of
     this motion moves along it: (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
     """
-    lower, k, omega = _values(car.lines[STEERING].start), _values(car.lines[STEERING].along), _turning(car)
+    axis, omega = car.lines[data.STEERING], _turning(car)
+    lower, k = _values(axis.start), _values(axis.along)
     u = plus(_slopes(car.wheel.end), cross(omega, minus(lower, _values(car.wheel.end))))
     turn = minus(omega, times(k, dot(omega, u) / dot(k, u)))
     return _roll_centre(car, plus(u, cross(turn, minus(_values(car.contact), lower))))
@@ -168,6 +158,11 @@ def _damper_per_wheel(car: Car) -> Scalar:
 def _wheel_per_damper(car: Car) -> Scalar:
     """-travel' / l'."""
     return -slope_of(_travel(car)) / slope_of(_damper_length(car))
+
+
+def _wheel_rate(car: Car) -> Scalar:
+    """K times the square of the first of these."""
+    return car.drawn.data[data.SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car)
 
 
 def _spring_force(car: Car) -> Scalar:
@@ -231,81 +226,74 @@ def _anti(car: Car, share: str, v: Vector) -> Scalar:
     return 100 * given[share] * given[data.AXLE] * -dot(v, car.forward) / dot(v, car.up) * lever
 
 
-ON_GROUND = (WHEEL, data.RADIUS)
-MOVING = (*ON_GROUND, KNUCKLE, TRAVEL)
-_SPRUNG = (DAMPER, WHEEL, TRAVEL, data.SPRING_RATE, data.FREE_LENGTH)
+def _anti_brake(car: Car) -> Scalar:
+    return _anti(car, data.BRAKE_SHARE, velocity_of_contact(car))
+
+
+def _anti_drive(car: Car) -> Scalar:
+    return _anti(car, data.DRIVE_SHARE, _slopes(car.wheel.end))
+
+
+_WHEEL = (data.WHEEL,)
+ON_GROUND = (*_WHEEL, data.RADIUS)
+MOVING = (*ON_GROUND, data.KNUCKLE, data.TRAVEL)
+_SPRUNG = (data.DAMPER, data.WHEEL, data.TRAVEL, data.SPRING_RATE, data.FREE_LENGTH)
 _OF_THE_CAR = (*MOVING, data.AXLE, data.WHEELBASE, data.HEIGHT)
 
 OF_POSITIONS = (
     *(Effect(name, "rad", (role,), partial(_lean, name)) for name, (role, _) in LEANS.items()),
-    Effect("toe_change_by_arcsine", "rad", (WHEEL,), _toe_change_by_arcsine),
-    Effect("steer_angle", "rad", (WHEEL,), steer_angle),
-    Effect("travel", "mm", (WHEEL,), _travel),
+    Effect("toe_change_by_arcsine", "rad", _WHEEL, _toe_change_by_arcsine),
+    Effect("steer_angle", "rad", _WHEEL, steer_angle),
+    Effect("travel", "mm", _WHEEL, _travel),
     Effect("contact_travel", "mm", ON_GROUND, _contact_travel),
     Effect("half_track_change", "mm", ON_GROUND, lambda car: _contact_moved(car, car.outboard)),
     Effect("recession", "mm", ON_GROUND, lambda car: -_contact_moved(car, car.forward)),
     *(
         Effect(
-            name,
-            "mm",
-            (WHEEL, STEERING, *([data.RADIUS] if at_contact else [])),
-            partial(_from_steering, name),
+            name, "mm", (data.STEERING, *(ON_GROUND if grounded else _WHEEL)), partial(_from_steering, name)
         )
-        for name, (at_contact, _) in OFFSETS.items()
+        for name, (grounded, _) in OFFSETS.items()
     ),
-    Effect("damper_length", "mm", (DAMPER,), _damper_length),
+    Effect("damper_length", "mm", (data.DAMPER,), _damper_length),
 )
 
 
-def _of_travel(name: str, unit: str, needs: tuple[str, ...], evaluate: Callable[[Car], Scalar]) -> Effect:
-    return Effect(name, unit, needs, evaluate, TRAVEL)
+def _of_travel(
+    name: str, unit: str, evaluate: Callable[[Car], Scalar], needs: tuple[str, ...] = MOVING
+) -> Effect:
+    return Effect(name, unit, needs, evaluate, data.TRAVEL)
 
 
 def _of_screw(name: str, unit: str, evaluate: Callable[[Car], Scalar]) -> Effect:
-    return Effect(f"screw_{name}", unit, (*ON_GROUND, KNUCKLE, RACK), evaluate, RACK)
+    return Effect(f"screw_{name}", unit, (*ON_GROUND, data.KNUCKLE, data.RACK), evaluate, data.RACK)
 
 
 OF_MOTION = (
     *(_of_screw(name, "rad", partial(_screw_lean, name)) for name in ("kingpin", "caster")),
     *(_of_screw(name, "mm", partial(_from_screw, name)) for name in OFFSETS),
     _of_screw("pitch", "mm/rad", _screw_pitch),
-    _of_travel("damper_per_wheel", "mm/mm", (DAMPER, WHEEL, TRAVEL), _damper_per_wheel),
-    _of_travel("wheel_per_damper", "mm/mm", (DAMPER, WHEEL, TRAVEL), _wheel_per_damper),
-    _of_travel("spring_force", "N", _SPRUNG, _spring_force),
-    _of_travel("wheel_force", "N", _SPRUNG, lambda car: _spring_force(car) * _damper_per_wheel(car)),
-    _of_travel(
-        "wheel_rate",
-        "N/mm",
-        _SPRUNG,
-        lambda car: car.drawn.data[data.SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car),
-    ),
-    _of_travel("arm_roll_centre_height", "mm", (*MOVING, STEERING), _arm_roll_centre_height),
-    _of_travel("roll_centre_height", "mm", MOVING, lambda car: _roll_centre(car, velocity_of_contact(car))),
-    _of_travel("front_view_swing_arm", "mm", MOVING, lambda car: -_beside(car, car.outboard)),
-    _of_travel("front_view_centre_height", "mm", MOVING, lambda car: _above(car, car.outboard)),
-    _of_travel("side_view_swing_arm", "mm", MOVING, lambda car: _beside(car, times(car.forward, -1))),
-    _of_travel("side_view_centre_height", "mm", MOVING, lambda car: _above(car, times(car.forward, -1))),
-    _of_travel(
-        "anti_brake",
-        "%",
-        (*_OF_THE_CAR, data.BRAKE_SHARE),
-        lambda car: _anti(car, data.BRAKE_SHARE, velocity_of_contact(car)),
-    ),
-    _of_travel(
-        "anti_drive",
-        "%",
-        (*_OF_THE_CAR, data.DRIVE_SHARE),
-        lambda car: _anti(car, data.DRIVE_SHARE, _slopes(car.wheel.end)),
-    ),
+    _of_travel("damper_per_wheel", "mm/mm", _damper_per_wheel, _SPRUNG[:3]),
+    _of_travel("wheel_per_damper", "mm/mm", _wheel_per_damper, _SPRUNG[:3]),
+    _of_travel("spring_force", "N", _spring_force, _SPRUNG),
+    _of_travel("wheel_force", "N", lambda car: _spring_force(car) * _damper_per_wheel(car), _SPRUNG),
+    _of_travel("wheel_rate", "N/mm", _wheel_rate, _SPRUNG),
+    _of_travel("arm_roll_centre_height", "mm", _arm_roll_centre_height, (*MOVING, data.STEERING)),
+    _of_travel("roll_centre_height", "mm", lambda car: _roll_centre(car, velocity_of_contact(car))),
+    _of_travel("front_view_swing_arm", "mm", lambda car: -_beside(car, car.outboard)),
+    _of_travel("front_view_centre_height", "mm", lambda car: _above(car, car.outboard)),
+    _of_travel("side_view_swing_arm", "mm", lambda car: _beside(car, times(car.forward, -1))),
+    _of_travel("side_view_centre_height", "mm", lambda car: _above(car, times(car.forward, -1))),
+    _of_travel("anti_brake", "%", _anti_brake, (*_OF_THE_CAR, data.BRAKE_SHARE)),
+    _of_travel("anti_drive", "%", _anti_drive, (*_OF_THE_CAR, data.DRIVE_SHARE)),
 )
 
-PER = {TRAVEL: "mm", RACK: "mm", ROLL: "rad", TIME: "s"}
+PER = {data.TRAVEL: "mm", data.RACK: "mm", data.ROLL: "rad", data.TIME: "s"}
 
 
 def _gradient(effect: Effect, along: str) -> Effect:
     """N', by the one driven input that goes along, see `Effect.along`; by travel N' / travel'."""
-    travels = along == TRAVEL
-    needs = (*effect.needs, *([WHEEL] if travels else []), *([] if along == TIME else [along]))
+    travels = along == data.TRAVEL
+    needs = (*effect.needs, *([data.WHEEL] if travels else []), *([] if along == data.TIME else [along]))
 
     def evaluate(car: Car) -> Scalar:
         slope = slope_of(effect.evaluate(car))
