@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from flint import arb, arb_mat, arb_poly, ctx
+from flint import arb, arb_poly, ctx
 from mechanism_drawings import DRAWINGS, described
 from mpmath import mpf
 from reference_cars import ReferenceCar
@@ -23,7 +23,7 @@ from validate.reference import (
 from validate.reference.design import values_only
 from validate.reference.exact import bits
 from validate.reference.fold import Fold, fold_ahead, pose_before
-from validate.reference.krawczyk import Contraction, Curve, less, middle_inverse, newton
+from validate.reference.krawczyk import Contraction, less, middle_inverse, newton
 from validate.reference.polynomial import Polynomial
 from validate.reference.route import closed
 from validate.reference.way import Way, next_pose, proven_tube, series_of, start_pose
@@ -66,25 +66,6 @@ def test_a_refined_solution_is_certified_and_a_planted_error_in_any_unknown_or_r
         # Not where it multiplies an unknown that is 0.
         if not all(abs(x) < arb("1e-60") for x in wrong.rows(solution, arb(0))):
             assert not holds_one(wrong, solution)
-
-
-class Line(Curve):
-    """x = 0."""
-
-    def rows(self, x: Sequence[arb], t: arb) -> list[arb]:
-        return [x[0]]
-
-    def entries(self, x: Sequence[arb], t: arb) -> list[tuple[int, int, arb]]:
-        return [(0, 0, arb(1))]
-
-    def bend(self, change: Sequence[arb]) -> arb_mat:
-        return arb_mat(1, 1)
-
-
-def test_a_matrix_that_is_no_inverse_proves_nothing() -> None:
-    for factor, proven in ((1, True), (1.5, True), (2.5, False), (-1, False)):
-        proof = Contraction.at(Line(), [arb(0)], arb(0), arb_mat([[factor]]))
-        assert (proof.settled() is not None) == proven
 
 
 def way_of_the_rack(car: ReferenceCar, rack: Fraction) -> Way:

@@ -16,7 +16,6 @@ from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import bits
 from validate.reference.instant import prove_instant
 from validate.reference.route import CLEAR, reached
-from validate.reference.vectors import minus
 
 ORDERS = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration")
 
@@ -60,13 +59,3 @@ def test_an_effect_that_has_not_the_digits_asked_for_is_left_out(
         # A ball keeps its radius to 30 bits, rounded up.
         assert found.error_bound["effects"] == pytest.approx(size * 1e-30, rel=1e-8)
         assert found.error_bound["effects"] >= Fraction(9, 10) * mpf("1e-30")
-
-
-def test_a_car_at_rest_has_rates_of_exactly_zero_and_heave_alone_turns_nothing(car: ReferenceCar) -> None:
-    rest, lifted = car.solve(car.still), car.solve({**car.still, "heave": (12.5, 3.0, -7.0)})
-    assert {x for v in (*rest.velocity.values(), *rest.acceleration.values()) for x in v} == {0}
-    assert {x for omega in rest.angular_velocity.values() for x in omega} == {0}
-    for name in rest.position:
-        assert max(abs(x) for x in minus(lifted.velocity[name], (0, 0, 3))) < mpf("1e-57")
-        assert max(abs(x) for x in minus(lifted.acceleration[name], (0, 0, -7))) < mpf("1e-57")
-    assert all(abs(x) < mpf("1e-57") for omega in lifted.angular_velocity.values() for x in omega)

@@ -58,9 +58,7 @@ def test_a_slider_crank_is_where_its_closed_form_says_after_any_number_of_turns(
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"points": {**SLIDER_CRANK["points"], "above": (0, 0, 0)}}, "hinge of crank"),
         ({"points": {**SLIDER_CRANK["points"], "a": (0, 0, 3)}}, "all on one line"),
-        ({"points": {**SLIDER_CRANK["points"], "b": (3, 0, 0)}}, "length of rod"),
         ({"inputs": {}}, "drive 1 more"),
     ],
 )
