@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx
+from flint import arb
 
 from validate.reference.car_data import car_data, corners
 from validate.reference.chassis import ChassisMotion
@@ -145,9 +144,9 @@ class Design:
         """What a role names, or None."""
         return self.plain["roles"].get(name)
 
-    def equations(self) -> Equations:
-        """In balls at the present precision."""
-        return _equations(self, ctx.prec)
+    def equations(self, number: Callable[[Fraction], Scalar] = as_ball) -> Equations:
+        """In one kind of number, unless given in balls at the present precision."""
+        return equations_in(self.mechanism, self.chosen, number)
 
     def driven(self, inputs: Mapping[str, Sequence[object]]) -> Driven:
         """Inputs by name as fractions; one that is not named rests at zero."""
@@ -161,11 +160,6 @@ class Design:
         """What the equations take as given, as jets of balls at the present precision, local."""
         inputs = {name: balls(jet) for name, jet in driven.items()}
         return Known.of(self.mechanism, self.equations(), inputs, as_ball)
-
-
-@lru_cache(maxsize=256)
-def _equations(design: Design, precision: int) -> Equations:
-    return equations_in(design.mechanism, design.chosen, as_ball)
 
 
 def values_only(known: Known) -> Known:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 
-from flint import arb
+from flint import arb, ctx
 
 from validate.reference.krawczyk import Matrix, matrix_of
 from validate.reference.mechanism import Mechanism, at, of_kind
@@ -73,12 +73,19 @@ class Equations:
 def equations_in(
     mechanism: Mechanism, rows: Sequence[int], number: Callable[[Fraction], Scalar]
 ) -> Equations:
-    """The equations with their coefficients in one kind of number.
+    """The equations with their coefficients in one kind of number, kept for the present precision.
 
     Args:
         rows: those that are solved, as many as unknowns.
         number: a fraction in that kind.
     """
+    return _equations(mechanism, tuple(rows), number, ctx.prec)
+
+
+@lru_cache(maxsize=256)
+def _equations(
+    mechanism: Mechanism, rows: tuple[int, ...], number: Callable[[Fraction], Scalar], precision: int
+) -> Equations:
     chosen = [mechanism.rows[row][1] for row in rows]
     return Equations(
         size=mechanism.size,

@@ -8,25 +8,18 @@ equations makes of them: each solves an equation with the one matrix C'.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
 from validate.reference.design import Design, Known
-from validate.reference.equations import Equations, equations_in
+from validate.reference.equations import Equations
 from validate.reference.jet import Dual, Jet, value_of
 from validate.reference.kinematics import Solved
 from validate.reference.vectors import Scalar, Vector
 
 Array = NDArray[np.float64]
-
-
-@lru_cache(maxsize=64)
-def equations_in_doubles(design: Design) -> Equations:
-    """The equations with their coefficients rounded to doubles."""
-    return equations_in(design.mechanism, design.chosen, float)
 
 
 def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> Known:
@@ -38,7 +31,7 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
     """
     still = np.zeros((count, max((law.shape[-1] for law in laws.values()), default=3)))
     driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}
-    return Known.of(design.mechanism, equations_in_doubles(design), driven, float)
+    return Known.of(design.mechanism, design.equations(float), driven, float)
 
 
 def local_places(design: Design, places: Mapping[str, Array], known: Known) -> dict[str, Vector]:

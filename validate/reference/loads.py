@@ -24,13 +24,13 @@ from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb
 
 from validate.reference.car_data import DAMPER, KNUCKLE, RADIUS, TRAVEL, WHEEL
 from validate.reference.design import Design, Known, ball_vector
 from validate.reference.drives import compiled
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
-from validate.reference.equations import Equations, equations_in
+from validate.reference.equations import equations_in
 from validate.reference.exact import as_ball
 from validate.reference.jet import Dual, slope_of
 from validate.reference.kinematics import body_rates
@@ -66,7 +66,8 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
     forces: Forces = {quantity: {} for quantity in FORCES}
     if not (design.loads and _can_be_had(design)):
         return forces
-    mechanism, equations, chassis = _held(design), _equations(design, ctx.prec), known.chassis.still()
+    mechanism, chassis = _held(design), known.chassis.still()
+    equations = equations_in(mechanism, range(mechanism.size), as_ball)
     places = known.equations.points_of(enclosure)
     numbers = [jet.value for jet in known.numbers]
     unknown = mechanism.unknown_of(places, numbers, as_ball)
@@ -149,12 +150,6 @@ def _dampers(design: Design, mechanism: Mechanism) -> dict[str, tuple[int, Seque
         for prefix in design.corners
         if design.role(prefix + DAMPER) is not None
     }
-
-
-@lru_cache(maxsize=64)
-def _equations(design: Design, precision: int) -> Equations:
-    mechanism = _held(design)
-    return equations_in(mechanism, range(mechanism.size), as_ball)
 
 
 def _joints(design: Design) -> dict[tuple[str, ...], str]:
