@@ -12,9 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene, simulate
 from validate.assemblies import count
-from validate.assemblies.legs import NotOnLegsError, forms
+from validate.assemblies.legs import STUDY, NotOnLegsError, at_distance, forms, on_plane, on_plane_of_body
 from validate.assemblies.scenes import counts
-from validate.assemblies.study import STUDY, at_distance, on_plane, on_plane_of_body
 
 Array = NDArray[np.float64]
 
