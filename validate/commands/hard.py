@@ -57,8 +57,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.progress("cases", total=len(cases), lines=False) as working,
     ):
         hard_run.run(cases, tell)
-        if options.times:
-            console.show((*hard_report.times_parts(results), ""))
         console.show(hard_report.summary_parts(results))
         if not hard_run.as_expected(results):
             ending.status = ExitStatus.DISAGREE
@@ -69,7 +67,7 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Count assemblies; status 3 where two runs do not agree on a scene, or miss the drawing's."""
     from validate.assemblies import scenes
 
-    if others := given(options, "--list", "--times"):
+    if others := given(options, "--list"):
         raise UsageError(f"{others[0]} is about cases; leave it out with --assemblies")
     require_results({"--json": options.json}, (), options, console)
     found: list[scenes.SceneCount] = []

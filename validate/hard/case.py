@@ -1,8 +1,8 @@
 """A hard case is a row: why it is hard, a scene made from one number that leads into it, what has to come.
 
-A family is such a row for every mechanism. The struts, on and beside their axis, are tried at every value of
-the number, the double wishbone at every fourth, all others at one: what is hard about a value is the same in
-each. Values are few: far from the singular place, at it, between them, and where `right` has to begin.
+A family is such a row for every mechanism. The paper's strut is tried at every value of the number, the
+others at one: what is hard about a value is the same in each. Values are few: far from the singular place, at
+it, between them, and where `right` has to begin.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 from validate.formulations.protocol import Solution
 from validate.hard.answer import Answer, Outcome
-from validate.hard.subjects import BESIDE, PAPER, SUBJECTS, WISHBONE, Content, Subject, hyphens
+from validate.hard.subjects import PAPER, SUBJECTS, Content, Subject, hyphens
 from validate.hard.trial import MAP, NOT_ASKED, OURS, Trial, try_scene
 from validate.reference import InfeasibleError
 
@@ -183,7 +183,7 @@ def family(
     """A case for each of some mechanisms, see `Case`; those that are hard by nature are given to nobody.
 
     Args:
-        values: all that a single mechanism or a strut is tried at, the others at some of them; or of each.
+        values: all that a single mechanism or the strut is tried at, the others at one of them; or of each.
         expected: by formulation, or of each of `SOLVERS`, of any mechanism or each.
         name, why: the scene's own name, and the first paragraph of its text, if not given.
         suffix: of the name; that of the mechanism if not given.
@@ -219,11 +219,8 @@ def reason_of(function: Callable[..., Any]) -> str:
 
 
 def values_of(subject: Subject, values: Values) -> Values:
-    """Those of a family's values that a mechanism is tried at: all, every fourth and the last, or one."""
-    if subject in (PAPER, BESIDE):
-        return values
-    every_fourth = tuple(dict.fromkeys((*values[::4], values[-1])))
-    return every_fourth if subject is WISHBONE else (values[len(values) // 2],)
+    """Those of a family's values that a mechanism is tried at: all, or the one amid them."""
+    return values if subject is PAPER else (values[len(values) // 2],)
 
 
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
@@ -231,20 +228,15 @@ def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
     return tuple(float(f"1e{k}") for k in (*range(high, low, -3), low))
 
 
-def every(
-    found: Callable[[Subject], Sequence[object]], first: int = 0, step: int = 1, sparse: int = 1
-) -> Every:
-    """A number, from 1, for each thing that a mechanism has; of most mechanisms for one amid them.
+def every(found: Callable[[Subject], Sequence[object]], step: int = 1) -> Every:
+    """A number, from 1, for each thing that a mechanism has; of all but the strut for one amid them.
 
     Args:
-        first, step: of the things of a strut or a wishbone.
-        sparse: of the wishbone's things one of so many.
+        step: of the strut's things one of so many.
     """
 
     def values(subject: Subject) -> Values:
         numbers = tuple(float(n) for n in range(1, len(found(subject)) + 1))
-        if not subject.level:
-            return values_of(subject, numbers)
-        return numbers[first :: step * (sparse if subject is WISHBONE else 1)]
+        return numbers[::step] if subject is PAPER else values_of(subject, numbers)
 
     return values

@@ -16,13 +16,12 @@ from validate.hard.cases import (
     links,
     numbers,
     points,
-    reach,
     regressions,
     turned,
 )
 
 MODULES = (
-    *(ends, reach, turned, body_rates, points, far),
+    *(ends, turned, body_rates, points, far),
     *(laws, branches, links, numbers, regressions),
 )
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)

@@ -17,7 +17,7 @@ from pointcoord.drawing_stands import End, reach_of
 from validate.formulations.reference_solution import reference_instant
 from validate.hard.cars import drawn_at
 from validate.hard.subjects import Subject
-from validate.reference import Design, InfeasibleError, pose_exists
+from validate.reference import Design, InfeasibleError
 from validate.reference.exact import as_fraction
 from validate.reference.route import CLEAR, reached
 
@@ -106,11 +106,3 @@ def _seen(subject: Subject, driven: str, values: Values) -> tuple[End, End]:
     held = dict(zip(subject.kinds, values, strict=True))
     there = subject.car if held == subject.drawn else drawn_at(subject.car, held)
     return reach_of(Scene.from_mapping(subject.absolute(held, there)), driven)
-
-
-def reachable(subject: Subject, values: Mapping[str, Fraction | float]) -> bool:
-    """Whether a pose exists at these values of the inputs, which is proven.
-
-    A pose that is singular to 400 digits counts as existing: it is the end itself.
-    """
-    return pose_exists(_drawn_at(subject, subject.drawn), {n: (value, 0, 0) for n, value in values.items()})

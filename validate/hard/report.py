@@ -89,16 +89,6 @@ def short(reason: str) -> str:
     return reason if len(reason) <= SHORT else reason[: SHORT - 3] + "..."
 
 
-def times_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
-    """How long each case took, the longest first."""
-    rows = (
-        (r.case.name, str(n := len(r.trials)), f"{r.seconds:.2f}", f"{r.seconds / max(n, 1):.3f}")
-        for r in sorted(results, key=lambda result: -result.seconds)
-    )
-    total = sum(result.seconds for result in results)
-    return Table(("case", "scenes", "seconds", "s a scene"), tuple(rows)), f"{total:.1f} s in all."
-
-
 def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     """Counts over all cases, and the verdict."""
     rows = [(name, str(sum(found.values())), *_outcomes(found)) for name, found in counts(results).items()]

@@ -153,7 +153,4 @@ NAMED: Mapping[str, Subject] = {**OF_CARS, **{subject.name: subject for subject 
 ROLLING = NAMED["rolling_axle"]
 SUBJECTS = (PAPER, WISHBONE, *OTHERS)
 ALL = (*SUBJECTS, *(subject for subject in _EVERY if subject.of_parts))
-# One for each kind of input: angle and length, height, turn. What is hard about a law of time is the same for
-# every mechanism.
-BY_INPUT = (PAPER, WISHBONE, NAMED["five_link"], NAMED["slider_crank"])
 HEAVING = tuple(subject for subject in SUBJECTS if subject.heaves)

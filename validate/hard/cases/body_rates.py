@@ -14,7 +14,7 @@ from validate.hard.cars import PAPER_CAR, SQUARE, scene_content
 from validate.hard.case import FAILS, RIGHT, SOLVERS, family, values_of
 from validate.hard.subjects import NAMED, PAPER, SUBJECTS, Content, Subject, hyphens
 
-VALUES = (1e-1, 1e-4, 1e-7, 1e-12, 0.0)
+VALUES = (1e-1, 1e-7, 0.0)
 RACK_RATE = 150.0  # mm/s, the paper's steering scene
 PLANE_ANGLE = 1.760964175417552  # rad, where omega comes to lie in the knuckle's plane while the arm turns on
 
@@ -64,7 +64,7 @@ CASES = (
         for case in _rates(
             partial(hardly_moves, name),
             f"rate of the {label}, {unit}/s; then at rest",
-            lambda one: values_of(one, (1e-25, 1e-100, 1e-175, 1e-300, 0.0)),
+            lambda one: values_of(one, (1e-25, 1e-175, 0.0)),
             subjects=[one for one in SUBJECTS if name in one.kinds],
             name=f"{hyphens(label)}-hardly-moves",
             why=f"Only the {label} moves, slower and slower: rates keep their digits down to zero.",

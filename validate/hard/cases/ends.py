@@ -98,19 +98,16 @@ ENDS: dict[str, tuple[str, str, bool, Lock, str]] = {
     ),
 }
 ARMS, RACKS = ("arm-highest", "arm-lowest"), ("rack-least", "rack-greatest")
-FULL, SPARSE, TURNED = (1e-1, 1e-4, 1e-7, 1e-11, 1e-12), (1e-1, 1e-4, 1e-8, 1e-12), (1e-4, 1e-12)
+FULL, SPARSE = (1e-4, 1e-11, 1e-12), (1e-1, 1e-4, 1e-8, 1e-12)
 # Every refusal is a whole motion towards a fold, so few values must do.
-FOUR, TWO = (1.0, 1e-4, 1e-8, 1e-12), (1.0, 1e-12)
+TWO = (1.0, 1e-12)
 # Ends, car, what the name adds; values near the end, of a motion beyond it, and of a first instant there.
 TABLE: tuple[tuple[Sequence[str], str, str, Values, Values, Values], ...] = (
-    (ARMS, "paper", "", FULL, TWO, FOUR),
-    (ARMS, "other", "-turned", TURNED, (), ()),
+    (ARMS, "paper", "", FULL, TWO, TWO),
     (ARMS, "short-arm", "-wishbone", SPARSE, TWO, ()),
-    (RACKS, "paper", "", FULL, TWO, FOUR),
-    (RACKS, "other", "-turned", TURNED, (), ()),
+    (RACKS, "paper", "", FULL, TWO, TWO),
     (RACKS, "wishbone", "-wishbone", SPARSE, TWO, ()),
-    (("arm-highest", "rack-greatest"), "turned", "-turned", (), TWO[1:], ()),
-    (("slide-runs-out",), "wide", "", FULL, TWO, FOUR),
+    (("slide-runs-out",), "wide", "", FULL, TWO, TWO),
     (("upper-arm-locks",), "wishbone", "", (1e-1, 1e-5, 1e-9), TWO, TWO),
     (("tie-rod-locks-the-arm",), "wishbone", "", (), TWO, TWO),
 )

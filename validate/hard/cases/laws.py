@@ -16,7 +16,7 @@ from typing import Any
 from validate.cars.scene_content import Law
 from validate.hard.answer import Answer
 from validate.hard.case import RIGHT, SOLVERS, decades, family, right_from
-from validate.hard.subjects import BY_INPUT, HEAVING, PAPER, Content, Subject, moved_by
+from validate.hard.subjects import HEAVING, PAPER, Content, Subject, moved_by
 from validate.hard.trial import Trial
 
 OURS = dict.fromkeys(SOLVERS, RIGHT)
@@ -167,50 +167,49 @@ def cancelling_polynomial(subject: Subject, value: float) -> Content:
     return subject.absolute(inputs, start=start, stop=start + 1.0)
 
 
-_moving = partial(family, group="Laws of the inputs")
-_laws = partial(_moving, subjects=BY_INPUT)
-RISING, FALLING, WITHIN = decades(0, 12)[::-1], decades(-12, 0), decades(-12, -1)
-BY_75 = (1.0, 1e-75, 1e-150, 1e-225, 1e-300)
+_laws = partial(family, group="Laws of the inputs")
+# First, amid and last.
+RISING, FALLING, WITHIN = decades(0, 12)[::-2], decades(-12, 0)[::2], decades(-12, -1)[::2]
 RATE, TOLERANCE = "rate of the arm, rad/s", "tolerance of the scene, mm"
 SLOW = "The same way in ever longer time: rates lie far below the lengths."
 FAST = "The same way in ever shorter time: rates and their squares lie far above the lengths."
 
 CASES = (
-    *_moving(at_a_rate, RATE, FALLING, name="slow-inputs", why=SLOW),
-    *_moving(at_a_rate, RATE, RISING, name="fast-inputs", why=FAST),
-    *_moving(start_from_rest, "time since the start, s", WITHIN),
-    *_moving(come_to_rest, "time to the end, s", WITHIN),
-    *_moving(long_sine, "duration, s", lambda one: (1.0, 1e6) if one is PAPER else (1.0,)),
+    *_laws(at_a_rate, RATE, FALLING, name="slow-inputs", why=SLOW),
+    *_laws(at_a_rate, RATE, RISING, name="fast-inputs", why=FAST),
+    *_laws(start_from_rest, "time since the start, s", WITHIN),
+    *_laws(come_to_rest, "time to the end, s", WITHIN),
+    *_laws(long_sine, "duration, s", lambda one: (1.0, 1e6) if one is PAPER else (1.0,)),
     *_laws(phase_of_many_turns, "turns in the phase of a sine", RISING),
     *_laws(seen_at_rest_only, "size of the motion: 0.2 rad and 30 mm times this", FALLING),
     *_laws(kink_of_a_table, "time before and after the kink, s", WITHIN),
     *_laws(close_times_of_a_table, "distance of the times, s", WITHIN),
     *_laws(jump_of_a_table, "time of the jump, s", WITHIN, JUMP, judge=told_as_rough),
     *_laws(far_in_time, "start of a second of a sine, s", RISING),
-    *_moving(only_heave, "amplitude of the heave, 100 mm", (*FALLING, 0.0), subjects=HEAVING),
-    *_laws(partial(short_scene, 0.0), "duration, s", (*BY_75, 5e-324)),
+    *_laws(only_heave, "amplitude of the heave, 100 mm", (1.0, 1e-9, 0.0), subjects=HEAVING),
+    *_laws(partial(short_scene, 0.0), "duration, s", (1.0, 1e-225, 5e-324)),
     *_laws(
         partial(short_scene, 1.0),
         "duration after t = 1 s, s",
-        (*decades(-15, -1), 2.0**-52),
+        (1e-1, 1e-10, 2.0**-52),
         name="short-scene-late",
         why="A scene of a few roundings of its time.",
     ),
     *_laws(
-        *(to_a_tolerance, TOLERANCE, BY_75[1:]),
+        *(to_a_tolerance, TOLERANCE, (1e-75, 1e-225, 1e-300)),
         name="fine-tolerance",
         why="A tolerance below what rounding allows.",
     ),
     *_laws(
-        *(to_a_tolerance, TOLERANCE, [1.0 / x for x in BY_75], OURS | {"pointcoord-as-asked": RIGHT}),
+        *(to_a_tolerance, TOLERANCE, (1.0, 1e150, 1e300), OURS | {"pointcoord-as-asked": RIGHT}),
         name="loose-tolerance",
         why="A tolerance above the size of the car.",
     ),
-    *_moving(cancelling_sine, "1 rad or 1 mm over the amplitude", (1.0, 1e-3, 1e-6, 1e-9)),
+    *_laws(cancelling_sine, "1 rad or 1 mm over the amplitude", (1.0, 1e-6, 1e-9)),
     *_laws(
         cancelling_polynomial,
         "1 s over the start of a motion of 1 s",
-        [2.0**-k for k in (2, 6, 10, 15, 20)],
+        [2.0**-k for k in (6, 10, 20)],
         {"pointcoord": LATE, "pointcoord-newton": LATE, "absolute": RIGHT, "relative": RIGHT},
         name=f"cancelling-polynomial-{POWER}",
     ),

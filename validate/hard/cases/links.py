@@ -1,4 +1,4 @@
-"""Links that are missing, given twice, contradictory or too long: one change of a mechanism's tables each.
+"""Links that are missing, given twice or contradictory: one change of a mechanism's tables each.
 
 What is left has no pose, or none that the inputs determine, and has to be refused before anything is said of
 it; pointcoord names what is wrong. A rod that is there twice holds nothing more than one: a model may leave
@@ -11,7 +11,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from functools import cache, partial
 from typing import Any
 
@@ -35,12 +34,11 @@ from validate.hard.case import (
     reason_of,
     right_from,
 )
-from validate.hard.last_values import last_value
-from validate.hard.subjects import ALL, BESIDE, Content, Subject, hyphens
+from validate.hard.subjects import ALL, Content, Subject, hyphens
 
 GROUP = "Links and numbers that make no mechanism"
 SOLVERS = ("pointcoord", "absolute")
-AGAIN, PIVOT, LENGTH = "again", "second_pivot", "rod_length"
+AGAIN, PIVOT = "again", "second_pivot"
 Tables = dict[str, Any]
 Piece = tuple[str, ...]
 """A rod or a slide, or a point of a body: the keys of its tables."""
@@ -224,23 +222,6 @@ def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, 
     return tables, {PIVOT: as_tuple(pivot)}
 
 
-@cache
-def _with_length(subject: Subject) -> Subject:
-    """The mechanism with an input in place of its last rod: how long that is."""
-    tables = tables_of(subject)
-    rod = list(tables["rods"])[-1]
-    tables["inputs"][LENGTH] = {"distance": tables["rods"].pop(rod)}
-    car = replace(closed(subject), tables=tables, closure="drawn")
-    return Subject(f"{subject.name}-{rod}", car, (*subject.driven, LENGTH), effects=("velocity",))
-
-
-def link_too_long(subject: Subject, share: float) -> Content:
-    """A rod is made longer than its ends can be apart, by less and less."""
-    other = _with_length(subject)
-    longest = last_value(other, LENGTH, True).value
-    return other.absolute({**other.drawn, LENGTH: float(longest * (1 + Fraction(share)))})
-
-
 _links = partial(family, group=GROUP)
 
 
@@ -250,7 +231,6 @@ def _changes(
     values: Values | Every,
     subjects: Sequence[Subject],
     expected: Expected = REFUSED,
-    name: str = "",
 ) -> tuple[Case, ...]:
     """Changes of mechanisms, of which pointcoord has to name what is at fault."""
     return _links(
@@ -259,7 +239,7 @@ def _changes(
         values,
         dict.fromkeys(SOLVERS, expected),
         subjects,
-        name=name or hyphens(change.__name__),
+        name=hyphens(change.__name__),
         why=reason_of(change),
         judge=lambda subject, value, _, answer: named(answer, change(subject, value)[1]),
         facts=lambda subject, value: change(subject, value)[2],
@@ -269,33 +249,20 @@ def _changes(
 
 PIECE = "number of the piece"
 PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
-EVERY = (*ALL, BESIDE)
 WITH_RODS = [subject for subject in ALL if subject.plain["rods"]]
 PIECES = every(lambda subject: list(pieces(subject.plain)))
 PAIRS = every(lambda subject: held_apart(subject.plain))
 
 CASES = (
     *_changes(link_missing, PIECE, PIECES, ALL),
-    *_changes(link_missing, PIECE, PIECES, [BESIDE], name="constraint-missing"),
+    *_changes(link_twice, "number of the pair of points that are held apart", PAIRS, ALL, IF_ANY),
     *_changes(
-        *(link_twice, "number of the pair of points that are held apart", PAIRS),
-        *([one for one in EVERY if held_apart(one.plain)], IF_ANY),
-    ),
-    *_changes(
-        *(link_twice_for_another, PIECE, every(exchangeable)), [one for one in EVERY if exchangeable(one)]
+        *(link_twice_for_another, PIECE, every(exchangeable)), [one for one in ALL if exchangeable(one)]
     ),
     *_changes(input_twice, "difference of their values, rad or mm", (*decades(), 0.0), WITH_RODS),
     # Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is
     # nearer to another than this is that one again, as in `link_twice`.
     *_changes(contradictory_links, PIVOT_AT, decades(low=-11), WITH_RODS),
-    *_links(
-        link_too_long,
-        "what it is too long by, in parts of the longest that closes",
-        decades(),
-        dict.fromkeys(SOLVERS, REFUSED),
-        # The slide of a slider-crank goes along with a rod however long.
-        [one for one in WITH_RODS if one.name != "slider_crank"],
-    ),
     # Two links that are nearly one differ by the distance of their pivots, and the condition number grows as
     # its inverse from some 30 on: at 1e-6 half of the digits are left.
     *_links(

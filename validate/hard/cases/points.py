@@ -92,15 +92,6 @@ def axis(p: Points, value: float, *, weights: Mapping[str, float], off: float, w
     return _with_axis(p, mean + value * off * _ways(p)[way])
 
 
-def axis_across(p: Points, value: float) -> Points:
-    """The axis stands at right angles to the plane of ball joint, tie rod end and strut_lower."""
-    beside = p[BALL] + OFF * _ways(p)["inboard"]
-    along = unit(p[TOP] - beside)
-    lower = beside + ((p[BALL] - beside) @ along) * along
-    climb = (p[OUTER] - lower) @ along
-    return _with_axis({**p, OUTER: p[OUTER] - (1.0 - value) * climb * along}, lower)
-
-
 def slide_run_out(p: Points, value: float) -> Points:
     """The line from top to ball joint is at a right angle to the axis, but for this."""
     down = unit(p[BALL] - p[TOP])
@@ -108,7 +99,7 @@ def slide_run_out(p: Points, value: float) -> Points:
     return {**p, LOWER: p[TOP] + 300.0 * along, ROD_END: p[TOP] + 100.0 * along}
 
 
-DRAWN = (put, aside, thin_knuckle, upper_arm_flat, tie_rod_short, axis, axis_across, slide_run_out)
+DRAWN = (put, aside, thin_knuckle, upper_arm_flat, tie_rod_short, axis, slide_run_out)
 DRAWS: Mapping[str, Callable[..., Points]] = {draw.__name__: draw for draw in DRAWN}
 
 

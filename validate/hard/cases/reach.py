@@ -3,9 +3,6 @@
 Nothing is assembled beyond the end, so a formulation is `right` here when it refuses the motion and says what
 it must: the last value to 1e-9 of the input's range, which input and value were asked for, the motion up to
 there with right instants, and (pointcoord) the links that lie in line.
-
-When both inputs differ from the drawing, a model takes them there together, on a way of its own. A little
-back from what it reaches there must be a pose, and a little further on there must be none.
 """
 
 from __future__ import annotations
@@ -25,8 +22,8 @@ from validate.formulations.protocol import FormulationError
 from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.hard.answer import Answer
 from validate.hard.case import Case, Values, family
-from validate.hard.last_values import LastValue, last_value, reachable
-from validate.hard.subjects import PAPER, Content, Subject
+from validate.hard.last_values import LastValue, last_value
+from validate.hard.subjects import Content, Subject
 from validate.hard.trial import Trial
 from validate.reference import NoReferenceError
 
@@ -87,19 +84,12 @@ class End:
         return self.subject.absolute({**self.start, self.driven: way}, stop=stop, samples=samples)
 
     def judge(self, _: Subject, overshoot: float, trial: Trial, answer: Answer) -> Answer:
-        """An answer beyond the end, a refusal held to it."""
-        return _judged(trial, answer, lambda refusal, scene: refusal_held(refusal, scene, self))
-
-
-def _judged(trial: Trial, answer: Answer, judge: Callable[[FormulationError, Scene], Answer]) -> Answer:
-    """A refusal judged of what no solver can reach; others find nothing to answer there."""
-    if trial.scene is None:
-        return answer
-    came = trial.came[answer.formulation]
-    if isinstance(came, FormulationError):
-        return judge(came, trial.scene)
-    lost = "the overshoot was lost in rounding: there is a pose"
-    return replace(answer, outcome="unjudged", reason=lost) if answer.outcome == "right" else answer
+        """An answer beyond the end, a refusal held to it; others find nothing to answer there."""
+        came = trial.came.get(answer.formulation)
+        if trial.scene is not None and isinstance(came, FormulationError):
+            return refusal_held(came, trial.scene, self)
+        lost = "the overshoot was lost in rounding: there is a pose"
+        return replace(answer, outcome="unjudged", reason=lost) if answer.outcome == "right" else answer
 
 
 def _held(refusal: FormulationError, faults: list[str], **sizes: float) -> Answer:
@@ -109,16 +99,12 @@ def _held(refusal: FormulationError, faults: list[str], **sizes: float) -> Answe
     return Answer(refusal.formulation, "wrong" if faults else "right", said, condition=condition, **sizes)
 
 
-def _does_not_say(refusal: FormulationError) -> Answer:
-    reason = refusal.reason
-    return _held(refusal, [f"does not say how far it came: {type(reason).__name__}: {reason}"])
-
-
 def refusal_held(refusal: FormulationError, scene: Scene, end: End) -> Answer:
     """A refusal held to the true end."""
     reached: Inputs = getattr(refusal.reason, "reached", {})
     if end.driven not in reached:
-        return _does_not_say(refusal)
+        reason = refusal.reason
+        return _held(refusal, [f"does not say how far it came: {type(reason).__name__}: {reason}"])
     last = end.last
     error, bound = float(abs(Fraction(reached[end.driven]) - last.value)), SHARE * last.reach
     faults = (
@@ -198,47 +184,3 @@ def driven_beyond(end: End, name: str, values: Values) -> tuple[Case, ...]:
         unit=end.subject.units[end.driven],
         beyond=True,
     )
-
-
-# Both inputs of the paper's car at once: the way from the drawing to a first instant is blocked.
-def goal(overshoot: float) -> dict[str, float]:
-    """An arm angle well inside its range, and a rack travel beyond what it can be at any such angle."""
-    return {"arm_angle": 1.3, "rack": last_value(PAPER, "rack", True).beyond(0.5 + overshoot)}
-
-
-def both(_: Subject, overshoot: float) -> Content:
-    """Arm and rack go from the drawing to the first instant together, and lock on the way."""
-    return PAPER.absolute(goal(overshoot))
-
-
-def moved_on(here: Inputs, end: Inputs, share: float) -> dict[str, float]:
-    """The inputs a share of the whole way further on."""
-    return {name: value + share * (end[name] - PAPER.drawn[name]) for name, value in here.items()}
-
-
-def blocked_held(refusal: FormulationError, end: Inputs) -> Answer:
-    """Whether a refusal names a place where its way from the drawing to the end is blocked."""
-    here = getattr(refusal.reason, "reached", {})
-    if set(here) < set(end):
-        return _does_not_say(refusal)
-    faults = []
-    if not reachable(PAPER, moved_on(here, end, -SHARE)):
-        faults.append("there is no pose just before what is reached")
-    if reachable(PAPER, moved_on(here, end, SHARE)):
-        faults.append("there is a pose just beyond what is reached")
-    return _held(refusal, faults)
-
-
-def blocked(_: Subject, overshoot: float, trial: Trial, answer: Answer) -> Answer:
-    """An answer at a first instant beyond what both inputs can reach together."""
-    return _judged(trial, answer, lambda refusal, __: blocked_held(refusal, goal(overshoot)))
-
-
-CASES = family(
-    *(both, "rack travel beyond one and a half of its range, in parts of it", (1.0, 1e-12)),
-    subjects=[PAPER],
-    name="start-beyond-both",
-    group=GROUP,
-    judge=blocked,
-    beyond=True,
-)

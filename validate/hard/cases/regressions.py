@@ -6,7 +6,7 @@ from functools import partial
 
 from validate.cars.car import RIGHT, UP, Car
 from validate.hard.cars import PAPER_CAR, SQUARE, drawn_angle, scene_content
-from validate.hard.case import RIGHT_OR_REFUSED, decades, family, right_from
+from validate.hard.case import RIGHT_OR_REFUSED, family, right_from
 from validate.hard.cases.ends import FULL
 from validate.hard.last_values import last_value
 from validate.hard.subjects import NAMED, PAPER, Content, Subject
@@ -56,7 +56,7 @@ CASES = (
     *_found(
         turn_at_a_coarse_tolerance,
         "distance of the turn from the end, in parts of half the range",
-        decades(-12, -1),
+        (1e-1, 1e-7, 1e-12),
         # The branch is kept at any tolerance: the sign of the Jacobian's determinant is followed.
         dict.fromkeys(("pointcoord", "pointcoord-as-asked", "pointcoord-newton"), right_from(1e-12))
         | BY_ANGLE,

@@ -29,7 +29,7 @@ from validate.hard.case import FAILS, HARD, IF_ANY, REFUSED, RIGHT, SOLVERS, Exp
 from validate.hard.subjects import PAPER, ROLLING, SUBJECTS, Content, Subject
 
 Turn = Callable[[float], Array]
-VALUES = (1e-1, 1e-4, 1e-8, 1e-12, 0.0)
+VALUES = (1e-1, 1e-8, 0.0)
 SPIN = 0.4  # rad/s
 # The condition number stays below the inverse of the rounding unit down to 1e-14, with some digits left at
 # 1e-8: positions and velocities, which have no other erratum, must be right there. At 0 two rows are lost.
@@ -84,8 +84,8 @@ def moving(turn: Turn, effects: tuple[str, ...], _: Subject, value: float) -> Co
     return content_of(turned(PAPER_CAR, turn(value)), inputs, stop=0.5, effects=effects)
 
 
-X, Y, Z = (partial(quarter_turn_less, axis) for axis in range(3))
-QUARTER = "90 degrees about {} less this, rad; then exactly 90"
+X = partial(quarter_turn_less, 0)
+QUARTER = "90 degrees about x less this, rad; then exactly 90"
 # Of Bricard's ring, turned, the reference finds no proof.
 _turned = partial(family, expected=lambda one: IF_ANY if one.name in HARD else RIGHT, group="Turned cars")
 
@@ -93,32 +93,25 @@ CASES = [
     *_turned(
         partial(all_moving, seeded),
         "number of a random rotation",
-        (1.0, 4.0, 7.0, 10.0, 12.0),
+        (1.0, 7.0, 12.0),
         subjects=(*SUBJECTS, ROLLING),
         name="turned-at-random",
         why="No axis of the car lies along an axis of the frame, so nothing cancels by chance.",
-    )
-]
-for letter, turn, subjects in (("x", X, SUBJECTS), ("y", Y, SUBJECTS[:2]), ("z", Z, SUBJECTS[:2])):
-    CASES += _turned(
-        *(partial(all_moving, turn), QUARTER.format(letter), VALUES),
-        subjects=subjects,
-        name=f"quarter-turn-about-{letter}",
+    ),
+    *_turned(
+        *(partial(all_moving, X), QUARTER, VALUES),
+        name="quarter-turn-about-x",
         why="The car comes to lie along other axes of the frame, and coordinates change places.",
-    )
+    ),
+]
 LEVEL = "sine of the strut's angle with the horizontal plane"
 LEVEL_WHY = "The assembled strut comes to lie at right angles to z, where each pair of printed rows is one."
 # Scene, parameter, values, what has to come of the printed formulas, and of which others, name, why.
 for scene, parameter, values, printed, solvers, name, why in (
     (
-        *(partial(moving, X, ("velocity",)), QUARTER.format("x"), VALUES, RIGHT, ()),
+        *(partial(moving, X, ("velocity",)), QUARTER, VALUES, RIGHT, ()),
         "quarter-turn-about-x-printed",
         "The whole car is turned: nothing about its mechanism changes, and the paper's strut still rises.",
-    ),
-    (
-        *(partial(held, lambda: CARS["upright"], X), QUARTER.format("x"), VALUES, PRINTED),
-        *(("pointcoord", "absolute", "relative"), "upright-strut-turned-about-x"),
-        "A strut that stands exactly upright lies exactly flat after a quarter turn.",
     ),
     (
         *(partial(held, straight_car, flat_turn), LEVEL, VALUES, PRINTED),
@@ -126,7 +119,7 @@ for scene, parameter, values, printed, solvers, name, why in (
     ),
     # The motion turns the strut by some hundredths of a radian, so it passes the horizontal on its way.
     (
-        *(partial(moving, flat_turn, ASKED), LEVEL, (1e-2, 1e-7, 1e-12, 0.0), FAILS),
+        *(partial(moving, flat_turn, ASKED), LEVEL, (1e-2, 1e-7, 0.0), FAILS),
         *(SOLVERS, "strut-passes-flat", LEVEL_WHY),
     ),
     (

@@ -12,14 +12,7 @@ from pointcoord import AssemblyError, Scene
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cases.ends import tie_rod_within
-from validate.hard.cases.reach import (
-    End,
-    blocked_held,
-    fault_of_kept,
-    goal,
-    moved_on,
-    refusal_held,
-)
+from validate.hard.cases.reach import End, fault_of_kept, refusal_held
 from validate.hard.subjects import PAPER
 
 PAPER_RACK = End(PAPER, "rack", True, lock=tie_rod_within(3))
@@ -85,20 +78,3 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
     assert "tie_rod_outer of the kept instant 1" in fault_of_kept(moved, scene, end, "rack")
     cut = with_kept(replace(kept, times=kept.times[:-1]))
     assert "instants are kept" in fault_of_kept(cut, scene, end, "rack")
-
-
-def test_a_way_is_blocked_where_the_reference_loses_its_pose() -> None:
-    end = goal(0.1)
-    refusal: Any = refused(Scene.from_mapping(PAPER.absolute(end)), "absolute").reason
-    here: dict[str, float] = refusal.reached
-    told: Any = Exception("no way on")
-    for reached, says in (
-        (here, ""),
-        (moved_on(here, end, 1e-7), "no pose just before"),
-        (moved_on(here, end, -1e-7), "a pose just beyond"),
-        ({}, "does not say how far"),
-    ):
-        told.reached = reached
-        answer = blocked_held(FormulationError("absolute", told), end)
-        assert answer.outcome == ("wrong" if says else "right")
-        assert says in answer.reason
