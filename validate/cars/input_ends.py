@@ -35,12 +35,10 @@ class End:
     Attributes:
         value: rad or mm; poses exist up to here.
         reach: distance from this end to the opposite one, rad or mm.
-        lock: the row of pointcoord's equations that holds it the most.
     """
 
     value: float
     reach: float
-    lock: str
 
 
 def drawn_inputs(car: Car, inputs: Collection[str] = ("arm_angle", "rack")) -> Inputs:
@@ -104,7 +102,7 @@ def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | 
         if not 2.0 < grown < 8.0:
             return None
         value = nearer + (nearer - farther) / (grown - 1.0)
-    return End(value, reach, this.limits[0])
+    return End(value, reach)
 
 
 def _speed(car: Car, laws: Mapping[str, Law]) -> float:

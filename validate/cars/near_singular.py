@@ -32,7 +32,6 @@ class NearPose:
         home: the inputs at which the car is drawn; the way from there to `inputs` is open.
         inputs: of all that is driven, the chassis too, rad and mm.
         driven: the input that is near its last reachable value.
-        lock: what locks there: the row of pointcoord's equations that holds it the most.
         reach: range of that input, rad or mm.
         distance: from the last reachable value, in parts of the range.
     """
@@ -43,7 +42,6 @@ class NearPose:
     home: Inputs
     inputs: Inputs
     driven: str
-    lock: str
     reach: float
     distance: float
 
@@ -112,7 +110,6 @@ def approach(
         home | dict.fromkeys(chassis, 0.0),
         held | {driven: near} | chassis,
         driven,
-        last.lock,
         last.reach,
         distance,
     )

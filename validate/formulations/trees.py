@@ -14,11 +14,11 @@ from pointcoord import Scene, SceneError
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Solution
-from validate.peers.errors import PeerError
 from validate.peers.linkage import Linkage, linkage_of
 from validate.peers.motion import Poses
 from validate.peers.motion import numbers as numbers_of
 from validate.peers.program import Program
+from validate.spanning_tree.errors import PeerError
 
 # Rad and car sizes: far above rounding, and its square far below. A correction that small leaves none.
 TOLERANCE = 1e-10

@@ -1,33 +1,10 @@
-"""Errors of the programs that hold a tree of joints, each with its data; read without the programs."""
+"""Why a program does not answer for a tree of joints; read without the programs."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
-
-class PeerError(Exception):
-    """A program does not answer for a mechanism.
-
-    Attributes:
-        instant: number of the instant that it is about, None if it is the drawing.
-        partial: the poses that were solved before; None if there are none.
-    """
-
-    partial: Any = None
-
-    def __init__(self, problem: str, instant: int | None = None) -> None:
-        self.problem = problem
-        self.instant = instant
-        super().__init__(problem)
-
-
-class HardpointsError(PeerError):
-    """Hardpoints that make no mechanism; `name` is the point, body or input at fault."""
-
-    def __init__(self, name: str, problem: str, allowed: str) -> None:
-        self.name, self.allowed = name, allowed
-        super().__init__(f"{name} {problem}; allowed: {allowed}")
+from validate.spanning_tree.errors import PeerError
 
 
 class InputError(PeerError):

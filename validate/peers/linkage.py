@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.peers.errors import HardpointsError, InputError
-from validate.spanning_tree.cut import CHASSIS, CutError, Place, SpanningTree, across, cut
+from validate.peers.errors import InputError
+from validate.spanning_tree.cut import CHASSIS, Place, SpanningTree, across, cut
 from validate.spanning_tree.wheels import Wheels, knuckles
 
 Array = NDArray[np.float64]
@@ -139,10 +139,7 @@ def linkage_of(plain: Mapping[str, Any]) -> Linkage:
     Raises:
         HardpointsError: it makes no mechanism.
     """
-    try:
-        tree = cut(plain)
-    except CutError as error:
-        raise HardpointsError(error.name, error.problem, error.allowed) from error
+    tree = cut(plain)
     return Linkage(
         plain=plain,
         tree=tree,

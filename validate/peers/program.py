@@ -28,10 +28,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgecon, dgesv
 
-from validate.peers.errors import HardpointsError, PoseError
+from validate.peers.errors import PoseError
 from validate.peers.linkage import UNIT_ROUNDOFF, Linkage
 from validate.peers.motion import Poses, Rates
 from validate.spanning_tree.determined import blocks, independent_rows
+from validate.spanning_tree.errors import HardpointsError
 
 Array = NDArray[np.float64]
 

@@ -39,6 +39,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.spanning_tree.errors import HardpointsError
+
 Array = NDArray[np.float64]
 
 CHASSIS = "chassis"
@@ -48,18 +50,6 @@ TINIEST = 1e-250  # mm: the square of a smaller car is no normal number
 ON_LINE = 16.0 * float(np.finfo(float).eps)
 Kind = Literal["hinge", "ball", "slide"]
 COORDINATES: Mapping[Kind, int] = {"hinge": 1, "slide": 1, "ball": 3}
-
-
-class CutError(Exception):
-    """A mechanism that cannot be cut into a tree.
-
-    Attributes:
-        name: of the point, rod or input at fault. problem, allowed: in words.
-    """
-
-    def __init__(self, name: str, problem: str, allowed: str) -> None:
-        self.name, self.problem, self.allowed = name, problem, allowed
-        super().__init__(f"{name} {problem}; allowed: {allowed}")
 
 
 @dataclass(frozen=True)
@@ -209,11 +199,13 @@ def unit_vector(vector: Array, start: str, end: str) -> Array:
     """Unit vector from one point to another.
 
     Raises:
-        CutError: they are at one place.
+        HardpointsError: they are at one place.
     """
     size = float(np.linalg.norm(vector))
     if size == 0.0:
-        raise CutError(start, f"is where {end} is, so that their line has no direction", "points apart")
+        raise HardpointsError(
+            start, f"is where {end} is, so that their line has no direction", "points apart"
+        )
     return np.asarray(vector / size)
 
 
@@ -238,7 +230,7 @@ def cut(plain: Mapping[str, Any]) -> SpanningTree:
     """The tree of a flat mechanism.
 
     Raises:
-        CutError: points that must be apart are at one place or on one line, or the car has no size.
+        HardpointsError: points that must be apart are at one place or on one line, or the car has no size.
     """
     return _Cutter(plain).tree()
 
@@ -360,7 +352,7 @@ class _Cutter:
         for one, other in combinations(self.bodies, 2):
             shared = tuple(p for p in self.bodies[one] if p in self.bodies[other])
             if len(shared) > 2:
-                raise CutError(f"{one} and {other}", f"share {len(shared)} points", "one or two")
+                raise HardpointsError(f"{one} and {other}", f"share {len(shared)} points", "one or two")
             if len(shared) == 2:
                 p, q = shared
                 axis = unit_vector(self.drawn[q] - self.drawn[p], p, q)
@@ -388,7 +380,9 @@ class _Cutter:
             if np.any(np.cross(axis, self.drawn[p] - self.drawn[start])):
                 return
         p = self.bodies[body][-1]
-        raise CutError(p, f"lies on the hinge of {body}, as all of its points do", "a place beside that line")
+        raise HardpointsError(
+            p, f"lies on the hinge of {body}, as all of its points do", "a place beside that line"
+        )
 
     def _taken(self, edges: list[_Edge]) -> list[_Edge]:
         """The joints of the tree (Kruskal): driven ones first, then by the number of their coordinates."""
@@ -482,7 +476,7 @@ class _Cutter:
     def _distance(self, one: str, other: str, without: str) -> float:
         length = float(np.linalg.norm(self.drawn[one] - self.drawn[other]))
         if length == 0.0:
-            raise CutError(other, f"is where {one} is, so that {without}", "points apart")
+            raise HardpointsError(other, f"is where {one} is, so that {without}", "points apart")
         return length
 
     def _slide(self, name: str, place: Place, axis: Array) -> Place:
@@ -567,7 +561,7 @@ class _Cutter:
         joint = self._between("hinge", body, on)
         if joint is None:
             words = f"turns {body} on {on}, which is no hinge of the tree"
-            raise CutError(name, words, "a hinge in no closed loop")
+            raise HardpointsError(name, words, "a hinge in no closed loop")
         p, q = (p for p in self.bodies[body] if p in self.bodies[on])
         along = float(np.sign(joint.axis @ (self.drawn[q] - self.drawn[p])))
         sign = along if joint.body == body else -along
@@ -647,12 +641,14 @@ class _Cutter:
         up = self.directions["up"]
         holder = next((b for b in self.holders[inner] if b in self.holders[centre]), None)
         if holder is None or not self.radius > 0.0:
-            raise CutError(
+            raise HardpointsError(
                 name, f"needs a wheel with {inner} and {centre}", "points of one body, and a wheel_radius"
             )
         axle = unit_vector(self.drawn[centre] - self.drawn[inner], inner, centre)
         if not abs(float(up @ axle)) < 1.0:
-            raise CutError(name, "has a wheel that lies flat, with no lowest point", "an upright wheel")
+            raise HardpointsError(
+                name, "has a wheel that lies flat, with no lowest point", "an upright wheel"
+            )
         hub = self.at[centre]
         down = float(up @ axle) * axle - up
         down = down / float(np.linalg.norm(down))
@@ -690,17 +686,17 @@ def _measure(points: Mapping[str, Array]) -> tuple[Array, float]:
     """A place near the car from which differences are exact, (3,), mm, and a power of two, its size, mm.
 
     Raises:
-        CutError: the car has no size, or one that no number has the square of.
+        HardpointsError: the car has no size, or one that no number has the square of.
     """
     stack = np.array(list(points.values()))
     if not np.isfinite(stack).all():
-        raise CutError("hardpoints", "are not all numbers", "finite numbers")
+        raise HardpointsError("hardpoints", "are not all numbers", "finite numbers")
     largest = float(np.abs(stack).max())
     if not largest < 2.0**1000:
-        raise CutError("hardpoints", f"lie {largest:.3g} mm away", "less than 1e300 mm")
+        raise HardpointsError("hardpoints", f"lie {largest:.3g} mm away", "less than 1e300 mm")
     size = float(np.ptp(stack, axis=0).max())
     if not size > TINIEST:
-        raise CutError("hardpoints", f"lie within {size:.3g} mm", f"more than {TINIEST:g} mm")
+        raise HardpointsError("hardpoints", f"lie within {size:.3g} mm", f"more than {TINIEST:g} mm")
     unit = float(np.ldexp(1.0, np.frexp(size)[1] - 1))
     grid = 8.0 * unit
     return np.asarray(np.trunc(stack.mean(axis=0) / grid) * grid + 0.0), unit

@@ -124,20 +124,14 @@ def test_a_report_has_every_section_and_the_data_that_it_names(
         assert any(row[2].startswith(number) for row in lines), finding
 
 
-def test_the_paper_s_figures_and_errata_are_on_the_page(built_in: Path) -> None:
+def test_the_paper_s_rows_and_errata_are_on_the_page(built_in: Path) -> None:
     shown = read_file(built_in)
-    by_number = {words.partition(":")[0]: plot["data"] for words, plot in shown.plots}
-    for number, table in zip((6, 8), (TABLE_2, TABLE_3), strict=True):
-        curve, crosses = by_number[f"Figure {number}"]
-        drawn = list(zip(crosses["x"], crosses["y"], strict=True))
-        assert drawn == [(row.time, row.wheel_centre[2]) for row in table]
-        at = np.interp(crosses["x"], curve["x"], curve["y"])
+    rows = [plot["data"] for words, plot in shown.plots if words == "wheel centre, z, over time"]
+    for table, (printed, computed) in zip((TABLE_2, TABLE_3), rows, strict=True):
+        wanted = [(row.time, row.wheel_centre[2]) for row in table]
+        assert list(zip(printed["x"], printed["y"], strict=True)) == wanted
         # The tables differ from what Table 1 gives by up to some 13 mm.
-        assert 0.5 < np.abs(at - crosses["y"]).max() < 20.0
-    for number in (5, 7):
-        kingpin, camber = by_number[f"Figure {number}"]
-        assert (kingpin["name"], camber["name"]) == ("kingpin", "camber")
-        assert np.abs(np.diff(kingpin["y"])).max() < 5.0  # degrees, and smooth
+        assert 0.5 < np.abs(np.subtract(computed["y"], printed["y"])).max() < 20.0
     place = next(i for i, row in enumerate(shown.cells) if row[0] == "no.")
     errata = {row[0]: row[-1] for row in shown.cells[place + 1 : place + 10]}
     assert list(errata) == [str(i) for i in range(1, 10)]

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from pointcoord import Scene
+from validate.closed_drawing import closed_drawing
 from validate.comparison.compare import Comparison, Outcome, compare
 from validate.comparison.findings import findings
-from validate.paper.errata import erratum_of
+from validate.paper.errata import ERRATA, erratum_of
 from validate.paper.tables import TABLE_2, TABLE_3, compare_with_paper, root_mean_square
 
 ROWS = compare_with_paper()
@@ -41,6 +42,21 @@ def test_table_3_prints_noise_where_the_knuckle_turns_smoothly() -> None:
     """With theta held the knuckle turns about the line 5-4, from 1.46 rad/s on, and never jumps."""
     printed = [np.linalg.norm(row.omega) for row in TABLE_3]
     assert max(printed) / min(printed) > 40.0
+
+
+def test_the_errata_measure_what_is_said_of_them() -> None:
+    table_1, law, _, _, _, _, noise, *_ = (one.measures for one in ERRATA)
+    moved = closed_drawing(Scene.load("bounce")).closing
+    assert moved is not None
+    assert table_1.endswith(f"closing them moves {moved.point} by {moved.largest:.1f} mm")
+    times, printed = np.array([(row.time, row.input) for row in TABLE_3]).T
+    as_printed = 150.0 * times + 2.5 * times**2
+    off = [np.abs(one - printed).max() for one in (as_printed, [row.input for row in ROWS[len(TABLE_2) :]])]
+    assert law == f"up to {off[0]:.2f} mm from the column; the law with 0.025 up to {off[1]:.3f} mm"
+    omegas = [(row.printed.omega, row.omega) for row in ROWS if row.printed.table == 3]
+    theirs, own = np.linalg.norm(omegas, axis=2).T
+    computed = f"computed from {own.min():.2f} to {own.max():.2f} rad/s"
+    assert noise == f"printed |omega| between {theirs.min():.2f} and {theirs.max():.2f} rad/s; {computed}"
 
 
 def test_each_wrong_printed_quantity_stands_beside_its_erratum() -> None:

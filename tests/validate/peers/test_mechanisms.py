@@ -11,12 +11,13 @@ from mechanism_files import mechanism_file, plain, plain_scene
 from numpy.typing import NDArray
 from sample_cars import GENERAL_STRUT, PAPER_STRUT, SampleCar
 
-from validate.peers.errors import HardpointsError, InputError, PeerError, PoseError
+from validate.peers.errors import InputError, PoseError
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.linkage import linkage_of
 from validate.peers.motion import Poses
+from validate.spanning_tree.errors import HardpointsError, PeerError
 
 Array = NDArray[np.float64]
 

@@ -18,8 +18,8 @@ from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import asked_of, require_the_drawn_car
 from validate.formulations.registry import OUTSIDE, WORDS, program_of
 from validate.formulations.trees import linkage_in
-from validate.peers.errors import PeerError
 from validate.peers.motion import numbers
+from validate.spanning_tree.errors import PeerError
 
 Array = NDArray[np.float64]
 
