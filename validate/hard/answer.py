@@ -1,9 +1,4 @@
-"""A solution compared with the reference, in one answer: right, noted or wrong, by how much and in what.
-
-A formulation may say itself that some of its numbers have no meaning. Such a note covers the numbers that
-are not finite in the quantity that it names, and nothing else: they are left out, and the rest is judged
-once more.
-"""
+"""A solution compared with the reference, in one answer: right or wrong, by how much and in what."""
 
 from __future__ import annotations
 
@@ -14,14 +9,13 @@ import numpy as np
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate.comparison.compare import Comparison, compare_solutions
+from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import Solution
 from validate.formulations.reference_solution import told_by
 
-# right: every number lies within its bound of the reference. refused: a reason in place of numbers. noted:
-# some numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so.
-# unjudged: the reference could not be proven, which is a failure of the catalogue unless the case allows it.
-Outcome = Literal["right", "refused", "noted", "wrong", "unjudged"]
+# right: every number lies within its bound of the reference. refused: a reason in place of numbers. wrong:
+# some do not. unjudged: the reference could not be proven, a failure unless the case allows it.
+Outcome = Literal["right", "refused", "wrong", "unjudged"]
 
 
 @dataclass(frozen=True)
@@ -48,44 +42,21 @@ class Answer:
 
 
 def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer:
-    """Compare all numbers of a solution with the reference, each by the bound that the solution gives."""
-    rows = _compared(scene, answer, reference)
+    """Compare all numbers of a solution with the reference, each by the bound that the solution gives.
+
+    However large that is: the reference tells what a partner with a wide tolerance could not.
+    """
+    rows = compare_solutions(scene, answer, reference, "hard", told_by(reference, scene)).rows
     worst = max(rows, key=lambda row: np.inf if np.isnan(row.share) else row.share)
     reason = f"{QUANTITIES[worst.quantity].words} of {worst.name}"
     outcome: Outcome = "right"
-    if _any_wrong(rows):
-        outcome = "wrong" if _any_wrong(_compared(scene, _mended(answer, reference), reference)) else "noted"
-        off = "is not a number"
+    if any(row.verdict in ("disagrees", "not given") for row in rows):
+        outcome, off = "wrong", "is not a number"
         if np.isfinite(worst.difference):
             off = f"is off by {worst.difference:.2g} {worst.unit}, {worst.share:.2g} of what is allowed,"
         reason += f" {off} at t = {worst.instant:.6g} s"
-    if outcome == "noted":
-        reason += f"; noted: {'; '.join(answer.notes)}"
     error = max(np.max(np.abs(answer.position[n] - place)) for n, place in reference.position.items())
     bound = max(np.max(claim) for claim in answer.accuracy.claims["position"].values())
     sizes = (error, bound, worst.share, np.max(answer.accuracy.condition))
     finite = (float(size) if np.isfinite(size) else None for size in sizes)
     return Answer(answer.formulation, outcome, reason, *finite)
-
-
-def _compared(scene: Scene, answer: Solution, reference: Solution) -> tuple[Comparison, ...]:
-    return compare_solutions(scene, answer, reference, "hard", told_by(reference, scene)).rows
-
-
-def _any_wrong(rows: tuple[Comparison, ...]) -> bool:
-    """Whether a number is further off than the solution claims, or not given at all.
-
-    However much it claims: the reference tells what a partner with a wide tolerance could not.
-    """
-    return any(row.verdict in ("disagrees", "not given") for row in rows)
-
-
-def _mended(answer: Solution, reference: Solution) -> Solution:
-    """The answer with the reference in place of what is not finite and has a note."""
-    numbers = {}
-    for quantity, arrays in answer.numbers.items():
-        noted = any(note.startswith(f"{QUANTITIES[quantity].words} of") for note in answer.notes)
-        if noted and quantity in reference.numbers:
-            true = reference.numbers[quantity]
-            numbers[quantity] = {n: np.where(np.isfinite(x), x, true[n]) for n, x in arrays.items()}
-    return answer.with_numbers(numbers)

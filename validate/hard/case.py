@@ -56,7 +56,6 @@ RIGHT_OR_REFUSED = Expected(("right", "refused"))
 REFUSED = Expected(("refused",))
 # Of mechanisms that a model may refuse, and of which there may be no reference: then nothing is judged.
 IF_ANY = Expected(("right", "refused", "unjudged"))
-FAILS = Expected(("refused", "noted", "wrong"))
 ByFormulation = Mapping[str, Expected]
 
 

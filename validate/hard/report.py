@@ -102,7 +102,7 @@ def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     if refused := Counter(answer.reason.partition(":")[0] for answer in of_map):
         kinds = ", ".join(f"{count} {kind}" for kind, count in refused.most_common())
         lines.append(f"Refused by the map, whose effort is bounded here: {kinds}.")
-    verdict = "All as expected: but for the formulas as printed, no number is wrong without a warning"
+    verdict = "All as expected: no number is wrong without a warning"
     if other := [result for result in results if result.unexpected or result.wrong]:
         verdict = (
             f"NOT as expected: {counted_as(sum(len(r.unexpected) for r in other), 'answer')}, "

@@ -34,7 +34,7 @@ class Examined:
 
     @property
     def wrong(self) -> tuple[tuple[float, Answer], ...]:
-        """Wrong numbers without a warning, but for the printed formulas, each with its value."""
+        """Wrong numbers without a warning, each with its value."""
         return tuple((trial.value, one) for trial in self.trials for one in trial.wrong)
 
 

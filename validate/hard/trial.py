@@ -51,8 +51,8 @@ class Trial:
 
     @property
     def wrong(self) -> tuple[Answer, ...]:
-        """Wrong numbers that their formulation gave as right; the printed formulas are there to be wrong."""
-        return tuple(a for a in self.answers if a.outcome == "wrong" and a.formulation != "printed")
+        """Wrong numbers, which their formulation gave as right."""
+        return tuple(a for a in self.answers if a.outcome == "wrong")
 
 
 def try_scene(value: float, content: Mapping[str, Any], formulations: Sequence[str]) -> Trial:

@@ -37,21 +37,6 @@ def solution_of(came: object) -> Solution:
     return came
 
 
-def omega_error(trial: Trial, name: str) -> float:
-    """Of the knuckle's angular velocity, in parts of it."""
-    both = map(solution_of, (trial.reference, trial.came[name]))
-    true, found = (one.angular_velocity["knuckle"] for one in both)
-    return float(np.abs(found - true).max() / np.abs(true).max())
-
-
-def test_the_printed_omega_loses_its_digits_and_ours_keeps_them() -> None:
-    near, nearer, there = examine(at("omega-in-the-knuckle-plane", 1e-3, 1e-9, 0.0)).trials
-    assert omega_error(nearer, "printed") > max(1e-8, 1e4 * omega_error(near, "printed"))
-    assert not omega_error(there, "printed") < 1e-3
-    for trial in (nearer, there):
-        assert all(omega_error(trial, ours) < 1e-12 for ours in OURS)
-
-
 def test_a_car_at_rest_has_rates_of_exactly_zero() -> None:
     (trial,) = examine(at("arm-hardly-moves", 0.0)).trials
     assert set(trial.came) == {*OURS, "pointcoord-map"}
