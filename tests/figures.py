@@ -96,17 +96,6 @@ def _speed(printed: str, folder: Path) -> str:
     return "\n".join(lines)
 
 
-def _tables(title: str) -> Callable[[str, Path], str]:
-    """The tables of a study of cost whose titles match."""
-
-    def shown(printed: str, folder: Path) -> str:
-        blocks = (folder / "cost" / "report.md").read_text(encoding="utf-8").split("\n\n")
-        places = [k for k, block in enumerate(blocks) if re.match(rf"\*\*.*{title}", block)]
-        return "\n\n".join(block for k in places for block in blocks[k : k + 2])
-
-    return shown
-
-
 FIGURES = {
     "agreement": Figure("README.md", "pointcoord validate --json {folder}/agreement.json", _agreement),
     "hard": Figure(
@@ -127,8 +116,8 @@ FIGURES = {
     ),
     "cost": Figure(
         "validate/cost/README.md",
-        "pointcoord cost --rows {folder}/rows.parquet --report {folder}/cost",
-        _tables("accuracy of position"),
+        "pointcoord cost --rows {folder}/rows.parquet",
+        _from(r"Time of a pose to"),
     ),
     "speed": Figure(
         "validate/cost/README.md",

@@ -107,8 +107,8 @@ def _told(report: Report, page: Page | None, options: argparse.Namespace, consol
         from validate.html.run import Run
 
         make_folder(page.folder)
-        for name, written in report.files():
-            write_content(os.path.join(page.folder, name), written)
+        if (picture := report.headline()) is not None:
+            write_content(os.path.join(page.folder, "headline.svg"), picture)
         page.write(Run(Head.of("cost", options.command), cost=report), console)
     elif not options.from_rows and not console.quiet and not console.mute:
         _draw_beside(options.rows, report, console)

@@ -1,4 +1,4 @@
-"""The report of a study from its table: sentences and tables, a page, data, and a folder with the picture.
+"""The report of a study from its table: sentences, tables, data and the picture.
 
 The same rows give the same bytes: nothing in it depends on when or where it is made.
 """
@@ -12,7 +12,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 from validate.cost.table import WHERE, Row, frame, read_rows
-from validate.output.table import Part, Table, markdown
+from validate.output.table import Part, Table
 
 # Imported where they are needed, as `findings` is: pandas takes half a second, and most pages show no costs.
 if TYPE_CHECKING:
@@ -22,8 +22,7 @@ TITLE = "What accuracy costs in time"
 NOTHING = "nothing was measured, so that there is nothing to say"
 HOW = (
     "errors are against a many-digit reference, whose radius counts; times are medians of interleaved "
-    "repeats by one thread, from instants to arrays, the set-up apart; *: one solve serves any instant; in "
-    "brackets: the setting"
+    "repeats by one thread, from instants to arrays, the set-up apart; *: one solve serves any instant"
 )
 WIDTH = 110  # columns of a terminal
 
@@ -67,9 +66,10 @@ class Report:
 
         return sentences(self.table)
 
-    def tables(self, *quantities: str) -> list[Table]:
-        """The same with its numbers; of errors those of some quantities, or of all."""
-        return [*_reached(self.table, quantities), *_without_numbers(self.table)]
+    @property
+    def tables(self) -> list[Table]:
+        """The same with its numbers."""
+        return [*_reached(self.table), *_without_numbers(self.table)]
 
     @property
     def measured(self) -> int:
@@ -91,23 +91,12 @@ class Report:
         ]
 
     def parts(self) -> tuple[Part, ...]:
-        """For a terminal: sentences, tables, of errors those of positions, and by what it was measured."""
+        """For a terminal: sentences, tables, and by what it was measured."""
         said = self.sentences or ([] if self.measured else [NOTHING])
-        shown = [part for table in self.tables("position") for part in ("", _wrapped(table.caption), table)]
+        shown = [part for table in self.tables for part in ("", _wrapped(table.caption), table)]
         by = "".join(f" by {row.program}, {row.machine}" for row in self.rows[:1])
         last = f"{self.store}: {self.measured} rows measured{by}"
         return ("\n".join(map(_wrapped, (TITLE, *said))), *shown, "", _wrapped(HOW), _wrapped(last))
-
-    def markdown(self, picture: str = "") -> str:
-        """For a page: sentences, a picture by the name of its file, and all tables."""
-        blocks = [
-            f"# {TITLE}",
-            "\n".join(f"- {markdown(sentence)}" for sentence in self.sentences or [NOTHING]),
-            *([f"![error against time]({picture})"] if picture else []),
-            *(f"**{markdown(table.caption)}**\n\n{table.markdown}" for table in self.tables()),
-            "\n".join(f"- {name}: {markdown(value)}" for name, value in self.head()),
-        ]
-        return "\n\n".join(blocks) + "\n"
 
     def csv(self) -> str:
         """The long table."""
@@ -138,47 +127,34 @@ class Report:
         figure = headline(self.table)
         return None if figure is None else drawn(figure, "svg")
 
-    def files(self) -> Iterator[tuple[str, bytes]]:
-        """Names and contents of the files of a folder: the picture, and all tables as a page.
 
-        Raises:
-            ImportError: matplotlib is not there.
-        """
-        if (picture := self.headline()) is not None:
-            yield "headline.svg", picture
-        yield "report.md", self.markdown("headline.svg" if picture else "").encode()
-
-
-def _reached(table: pd.DataFrame, quantities: tuple[str, ...]) -> Iterator[Table]:
-    """Time of a pose by the cheapest setting that reaches an accuracy, the quickest first."""
-    from validate.cost.findings import ACCURACIES, cheapest, duration, timed, unit_of, words_of
+def _reached(table: pd.DataFrame) -> Iterator[Table]:
+    """Time of a pose by the cheapest setting that reaches the finest accuracy, the quickest way first."""
+    from validate.cost.findings import ACCURACIES, cheapest, duration, timed
     from validate.cost.way import power
 
-    best, found = cheapest(table), timed(table)
-    settings = (f" ({power(value)})" if value == value else "" for value in best.value)
-    best = best.assign(cell=[duration(time) + more for time, more in zip(best.time, settings, strict=True)])
-    for (scene, quantity), here in found.groupby(["scene", "quantity"], sort=False):
-        if quantities and quantity not in quantities:
-            continue
-        near = best[(best.scene == scene) & (best.quantity == quantity)]
-        times, cells = (
-            near.pivot(index="way", columns="accuracy", values=of).reindex(columns=ACCURACIES)
-            for of in ("time", "cell")
-        )
-        ways = here.groupby("way", sort=False).agg({"error": "min", "set_up": "min", "dense": "any"})
-        ways = ways.join(times).sort_values([*reversed(ACCURACIES)], kind="stable")
-        cells = cells.reindex(ways.index).astype(object).fillna("not reached")
-        rows = (
-            (f"{way.Index}{'*' * way.dense}", *reached, f"{way.error:.1e}", duration(way.set_up))
-            for way, reached in zip(ways.itertuples(), cells.to_numpy().tolist(), strict=True)
-        )
-        unit = unit_of(quantity)
-        yield Table(
-            ("way", *(f"{power(a)} {unit}" for a in ACCURACIES), f"floor, {unit}", "set-up"),
-            tuple(rows),
-            caption=f"{scene}: time of a pose to an accuracy of {words_of(quantity)}, by the cheapest "
-            f"setting; {here.poses.max()} poses a run, reference to {here.radius.max():.0e} {unit}",
-        )
+    tried, best = timed(table), cheapest(table)
+    tried = tried[tried.quantity == "position"]
+    best = best[(best.quantity == "position") & (best.accuracy == ACCURACIES[-1])]
+    if tried.empty:
+        return
+    scenes, dense = list(dict.fromkeys(tried.scene)), tried.groupby("way").dense.any()
+    times = best.pivot(index="way", columns="scene", values="time").reindex(tried.way.unique())[scenes]
+    times = times.loc[times.median(axis=1).sort_values(na_position="last", kind="stable").index]
+    there = set(zip(tried.way, tried.scene, strict=True))
+
+    def cell(way: str, scene: str, time: float) -> str:
+        return duration(time) if time == time else "not reached" if (way, scene) in there else "-"
+
+    rows = (
+        (f"{way}*" if dense[way] else way, *(cell(way, *one) for one in zip(scenes, of, strict=True)))
+        for way, *of in times.itertuples()
+    )
+    caption = (
+        f"Time of a pose to {power(ACCURACIES[-1])} mm of position, by the cheapest setting; "
+        f"{tried.poses.min()} to {tried.poses.max()} poses a run"
+    )
+    yield Table(("way", *scenes), tuple(rows), caption=caption)
 
 
 def _without_numbers(table: pd.DataFrame) -> Iterator[Table]:

@@ -1,6 +1,6 @@
 """What the table says: no wrong number is quick, and overlapping times are a tie.
 
-The report shows it in tables, pages and pictures.
+The report shows it in a table and a picture.
 """
 
 import xml.etree.ElementTree as ET
@@ -16,7 +16,7 @@ from validate.cost.picture import headline
 from validate.cost.report import Report
 from validate.cost.table import Row, frame
 from validate.cost.ways.registry import WAYS
-from validate.output.table import markdown, text_of
+from validate.output.table import text_of
 
 
 def verdicts(rows: Sequence[Row], quantity: str = "position") -> dict[float, str]:
@@ -71,23 +71,22 @@ ROWS = tuple(study())
 REPORT = Report("rows.parquet", "pointcoord cost --from-rows", ROWS)
 
 
-def test_a_table_has_the_quickest_way_first_and_the_dialled_number() -> None:
-    (table, *_) = [one for one in REPORT.tables() if one.caption.startswith("bounce")]
-    first, second = table.rows[:2]
-    assert first[:4] == ("series*", "4.49 us (1e-3)", "6.34 us (1e-6)", "8.95 us (1e-9)")
-    assert second[0] == "mujoco"
-    reached = {row[0]: row for row in table.rows}
-    assert reached["printed"][1:4] == ("not reached",) * 3
-    assert reached["scipy-root"][3:5] == ("not reached", "2.0e-08")
+def test_the_table_has_the_quickest_way_first_and_what_is_not_reached() -> None:
+    table, without = REPORT.tables
+    assert table.head == ("way", "bounce", "double-wishbone")
+    assert table.rows[0] == ("series*", "8.95 us", "14.3 us")
+    reached = {way: of for way, *of in table.rows}
+    assert reached["printed"] == ["not reached", "-"]
+    assert reached["scipy-root"] == ["not reached"] * 2
+    assert [row[0] for row in without.rows][-1] == "double-wishbone printed"
     assert "one solve serves any instant" in text_of(REPORT.parts())
 
 
-def test_a_folder_has_the_picture_and_all_tables() -> None:
-    found = dict(REPORT.files())
-    assert found.keys() == {"headline.svg", "report.md"}
-    assert ET.fromstring(found["headline.svg"]).tag.endswith("svg")
-    assert b"](headline.svg)" in found["report.md"]
-    assert all(markdown(table.caption).encode() in found["report.md"] for table in REPORT.tables())
+def test_the_picture_is_drawn_and_nothing_is_not() -> None:
+    svg = REPORT.headline()
+    assert svg is not None
+    assert ET.fromstring(svg).tag.endswith("svg")
+    assert Report("", "", ()).headline() is None
 
 
 def test_an_error_of_exactly_nothing_has_a_place_and_is_told() -> None:

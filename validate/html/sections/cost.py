@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from validate.cost.looks import Look
 
-# Scenes whose curves are drawn, and full tables and their lines, at most: a page stays small.
-SCENES, TABLES, LINES = 8, 60, 120
+# Scenes whose curves are drawn, and lines of a table, at most: a page stays small.
+SCENES, LINES = 8, 120
 LINE = 1.5  # pixels, of a curve
 
 
@@ -52,7 +52,7 @@ def _blocks(run: Run) -> Iterator[Block]:
         if row.verdict == "failed":
             yield Paragraph(f"{row.scene}, {row.way} {row.setting}: failed: {row.reason}")
     if run.head.kind == "cost":
-        yield from (replace(one, rows=one.rows[:LINES], folded=True) for one in cost.tables()[:TABLES])
+        yield from (replace(one, rows=one.rows[:LINES], folded=True) for one in cost.tables)
 
 
 def _panel(here: pd.DataFrame, quantity: str, ways: Mapping[str, Look]) -> Panel:
