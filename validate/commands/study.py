@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from validate.studies.study import Findings, Study
 
 LOCAL = "local"
-METHODS = ("pointcoord", "pointcoord-map", "pointcoord-newton")
 SOON = 2.0  # seconds before the first line of how far a study is, which waits for others
 
 
@@ -43,7 +42,7 @@ class Named:
 
 
 STUDIES: Mapping[str, Named] = {
-    "random": Named("random_cars", "random_cars", ("count", "first"), ("--first", METHODS)),
+    "random": Named("random_cars", "random_cars", ("count",)),
     "bounds": Named("bounds", "bounds", ("poses", "motions", "seed")),
     "claims": Named("claims", "claims", ("count", "first", "formulation"), ("--formulation", NAMES)),
     "hard": Named("hard_cases", "hard", ("cases",)),
@@ -116,7 +115,7 @@ def _worked_out(study: Study, folder: Path, options: argparse.Namespace, console
     return ending.status
 
 
-WORDS = {"methods": ", ".join(METHODS), "formulations": ", ".join(NAMES)}
+WORDS = {"formulations": ", ".join(NAMES)}
 COMMANDS = {
     "study": Command(
         run,

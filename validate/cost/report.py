@@ -152,7 +152,7 @@ def _reached(table: pd.DataFrame) -> Iterator[Table]:
     )
     caption = (
         f"Time of a pose to {power(ACCURACIES[-1])} mm of position, by the cheapest setting; "
-        f"{tried.poses.min()} to {tried.poses.max()} poses a run"
+        f"{' to '.join(dict.fromkeys(map(str, (tried.poses.min(), tried.poses.max()))))} poses a run"
     )
     yield Table(("way", *scenes), tuple(rows), caption=caption)
 

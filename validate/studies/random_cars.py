@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Mapping, Sequence
-from functools import partial
+from collections.abc import Sequence
 
 import pandas as pd
 
@@ -40,35 +39,26 @@ COLUMNS = dict.fromkeys(("suspension", "kind", "outcome", "reason", "scene", "sh
 HEADS = ("agreed", "not tested", "not given", "both refuse", "only", "disagreed")
 
 
-def random_cars(count: int = 20_000, first: str = OURS, seed: int = SEED) -> Study:
+def random_cars(count: int = 20_000) -> Study:
     """Random scenes of the numbers from 0 up through two models.
 
     A row is a scene: suspension, kind of scene, outcome, and where there is more to say reason and scene, as
     JSON; where both models agree shares, as JSON: the largest part of its tolerance that each quantity used.
-
-    Args:
-        first: by which of pointcoord's methods. seed: of the recipe of the scenes, which has one.
     """
-    settings: dict[str, str | int] = {"seed": seed, "first": first}
     tasks = [Task(PART, number) for number in range(count)]
-    examine, summary = partial(scene_row, first=first), partial(found, settings=settings)
-    return Study("random", "scene", settings, COLUMNS, tasks, examine, summary, chunk=4)
+    return Study("random", "scene", {"seed": SEED}, COLUMNS, tasks, scene_row, found, chunk=4)
 
 
-def scene_row(task: Task, first: str) -> list[Row]:
+def scene_row(task: Task) -> list[Row]:
     """Solve the scene of a number by both models."""
     car = random_scene(task.number)
-    return [{"suspension": car.variant.words, "kind": car.kind, **examined(car, first)}]
+    return [{"suspension": car.variant.words, "kind": car.kind, **examined(car)}]
 
 
-def examined(car: RandomScene, ours: str = OURS) -> Row:
-    """Solve one scene by both models and say what came of it: the outcome and what there is to say of it.
-
-    Args:
-        ours: by which of pointcoord's methods.
-    """
+def examined(car: RandomScene) -> Row:
+    """Solve one scene by both models and say what came of it: the outcome and what there is to say of it."""
     answers: list[Solution | FormulationError] = []
-    for name in (ours, OTHER):
+    for name in (OURS, OTHER):
         try:
             answers.append(_solved(name, car))
         except FormulationError as error:
@@ -149,7 +139,7 @@ def _shares(outcome: Outcome) -> str:
     return json.dumps(largest)
 
 
-def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
+def found(rows: Sequence[Row]) -> Findings:
     """Every outcome counted, and the largest share of each tolerance."""
     table = pd.DataFrame(rows, columns=["number", "seconds", *COLUMNS])
     kept = table[table["scene"].notna()]
@@ -162,7 +152,7 @@ def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
     written = kept[names].astype(object).where(kept[names].notna(), None).to_dict("records")
     scenes = ({"scene": json.loads(scene)} for scene in kept["scene"])
     data = {
-        **settings,
+        "seed": SEED,
         "scenes": len(table),
         "outcomes": counts.to_dict("records"),
         "largest_shares": [

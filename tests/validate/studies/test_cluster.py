@@ -170,10 +170,8 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
     ("words", "told"),
     [
         (["random", "--workers", "2", "--scheduler", "tcp://h:1"], "leave one of them out"),
-        (["random", "--scheduler", "nonsense"], "does not answer as a Dask scheduler"),
         (["random", "--count", "0"], "no scene is asked for"),
         (["random", "--records", " "], "names no folder"),
-        (["random", "--first", "absolute"], "invalid choice: 'absolute'"),
         (["bounds", "--seed", "-1"], "--seed: -1 is no whole number; allowed: 0 or more"),
         (["hard", "at-rests"], "near names: at-rest"),
     ],
