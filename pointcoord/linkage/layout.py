@@ -74,9 +74,15 @@ class Layout:
         return vectors[name]
 
     def vector(self, name: str) -> Triple:
-        """The same three as indices."""
+        """The same three as indices; of no name those of a vector that is zero."""
+        if not name:
+            return self.zero, self.zero, self.zero
         first = self.span(name).start
         return first, first + 1, first + 2
+
+    def edge(self, head: str, tail: str = "") -> tuple[Triple, Triple]:
+        """The two vectors whose difference an edge is."""
+        return self.vector(head), self.vector(tail)
 
     def scalar(self, name: str) -> int:
         """Index of a slide's place, of a driven coordinate or of a constant of the drawing."""
@@ -84,6 +90,10 @@ class Layout:
         if name not in scalars:
             raise UnknownName("slide, driven coordinate or constant", name, scalars)
         return scalars[name]
+
+    def number(self, name: str = "") -> tuple[int, int]:
+        """The same, or the constant 1, as the difference of two coordinates."""
+        return (self.scalar(name) if name else self.one), self.zero
 
     def place(self, name: str) -> slice | int:
         """Where a vector or a scalar is."""

@@ -100,10 +100,10 @@ def crossed(
     layout: Layout, c: Triple, one: tuple[Triple, Triple], other: tuple[Triple, Triple]
 ) -> tuple[Row, ...]:
     """The rows c - (y_a - y_b) x (y_d - y_e) = 0, for vectors given by their indices."""
-    zero, (a, b), (d, e) = layout.zero, one, other
+    (a, b), (d, e) = one, other
     return tuple(
         (
-            Product(1.0, (c[i], zero), (layout.one, zero)),
+            Product(1.0, (c[i], layout.zero), layout.number()),
             Product(-1.0, (a[j], b[j]), (d[k], e[k])),
             Product(1.0, (a[k], b[k]), (d[j], e[j])),
         )
@@ -111,6 +111,7 @@ def crossed(
     )
 
 
-def dot(a: Triple, b: Triple, c: Triple, d: Triple) -> Row:
+def dot(one: tuple[Triple, Triple], other: tuple[Triple, Triple]) -> Row:
     """(y_a - y_b) . (y_c - y_d) as products, for vectors given by their indices."""
+    (a, b), (c, d) = one, other
     return tuple(Product(1.0, (a[i], b[i]), (c[i], d[i])) for i in range(3))

@@ -11,7 +11,7 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, dot
 from pointcoord.linkage.constraints.ground import CHASSIS_ITSELF, Ground
 from pointcoord.linkage.drawing import Drawing, Placed
-from pointcoord.linkage.layout import Layout, Triple
+from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.double_double import (
     PAIRS,
     exact_square,
@@ -71,26 +71,14 @@ class ContactHeight(Constraint):
         return tuple(turn.about for turn in self.ground.turns)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        zero, one = layout.zero, (layout.one, layout.zero)
-        zeros: Triple = (zero, zero, zero)
-        i, c, e = (layout.vector(name) for name in (self.inner, self.centre, self.ground.up))
-        a, q = (layout.scalar(name) for name in self.slides)
-        square, share, drawn = (layout.scalar(name) for name in self.constants)
-        rise = layout.scalar(self.rise)
+        one, up = layout.number(), layout.edge(self.ground.up)
+        names = (*self.slides, *self.constants, self.rise)
+        a, q, square, share, drawn, rise = map(layout.number, names)
+        height = (*dot(layout.edge(self.centre), up), *self.ground.lifts(layout), Product(-1.0, share, q))
         return (
-            (*dot(i, c, e, zeros), Product(1.0, (a, zero), one)),
-            (
-                Product(1.0, (a, zero), (a, zero)),
-                Product(1.0, (q, zero), (q, zero)),
-                Product(-1.0, (square, zero), one),
-            ),
-            (
-                *dot(c, zeros, e, zeros),
-                *self.ground.lifts(layout),
-                Product(-1.0, (share, zero), (q, zero)),
-                Product(-1.0, (drawn, zero), one),
-                Product(-1.0, (rise, zero), one),
-            ),
+            (*dot(layout.edge(self.inner, self.centre), up), Product(1.0, a, one)),
+            (Product(1.0, a, a), Product(1.0, q, q), Product(-1.0, square, one)),
+            (*height, Product(-1.0, drawn, one), Product(-1.0, rise, one)),
         )
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:

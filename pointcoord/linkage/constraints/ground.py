@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from pointcoord.linkage.constraints.constraint import Constraint, crossed, dot, per_axis
 from pointcoord.linkage.drawing import Drawing, Placed
-from pointcoord.linkage.layout import Layout, Triple
+from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import Product, Row
 from pointcoord.numerics.vectors import cross
 
@@ -54,21 +54,18 @@ class TurnedBack(Constraint):
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the direction and the axis, and in the driven pair and what they make."""
-        zero, one = layout.zero, (layout.one, layout.zero)
-        zeros: Triple = (zero, zero, zero)
-        e, k = layout.vector(self.before), layout.vector(self.axis)
-        t, w, u = (layout.vector(name) for name in self.vectors)
-        cosine, sine = layout.scalar(self.cosine), layout.scalar(self.sine)
+        e, k = layout.edge(self.before), layout.edge(self.axis)
+        (t, zero), (w, _), (u, _) = map(layout.edge, self.vectors)
+        versine = layout.one, layout.scalar(self.cosine)
         turned = tuple(
             (
-                Product(1.0, (u[i], e[i]), one),
-                Product(-1.0, (sine, zero), (t[i], zero)),
-                Product(1.0, (layout.one, cosine), (w[i], zero)),
+                Product(1.0, (u[i], e[0][i]), layout.number()),
+                Product(-1.0, layout.number(self.sine), (t[i], zero[i])),
+                Product(1.0, versine, (w[i], zero[i])),
             )
             for i in range(3)
         )
-        across, aside = crossed(layout, t, (e, zeros), (k, zeros)), crossed(layout, w, (k, zeros), (t, zeros))
-        return (*across, *aside, *turned)
+        return (*crossed(layout, t, e, k), *crossed(layout, w, k, (t, zero)), *turned)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         """As drawn, before any turn."""
@@ -79,8 +76,7 @@ class TurnedBack(Constraint):
 
     def lifts(self, layout: Layout) -> Row:
         """P . (e - u), what the turn lifts by where its line is."""
-        zeros: Triple = (layout.zero,) * 3
-        return dot(layout.vector(self.about), zeros, layout.vector(self.before), layout.vector(self.name))
+        return dot(layout.edge(self.about), layout.edge(self.before, self.name))
 
 
 @dataclass(frozen=True)
@@ -105,11 +101,11 @@ class Displaced(Constraint):
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         zero, d = layout.zero, layout.vector(self.name)
-        ways = [(layout.scalar(value), layout.vector(direction)) for value, direction in self.along]
+        ways = [(layout.number(value), layout.vector(direction)) for value, direction in self.along]
         return tuple(
             (
-                Product(1.0, (d[i], zero), (layout.one, zero)),
-                *(Product(-1.0, (h, zero), (e[i], zero)) for h, e in ways),
+                Product(1.0, (d[i], zero), layout.number()),
+                *(Product(-1.0, h, (e[i], zero)) for h, e in ways),
             )
             for i in range(3)
         )
@@ -120,8 +116,7 @@ class Displaced(Constraint):
 
     def lifts(self, layout: Layout) -> Row:
         """Up . d."""
-        zeros: Triple = (layout.zero,) * 3
-        return dot(layout.vector("up"), zeros, layout.vector(self.name), zeros)
+        return dot(layout.edge("up"), layout.edge(self.name))
 
 
 @dataclass(frozen=True)

@@ -63,8 +63,8 @@ class Normal(Constraint):
         return (self.normal,)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        n, o, p, q = (layout.vector(name) for name in (self.normal, self.base, self.first, self.second))
-        return crossed(layout, n, (p, o), (q, o))
+        edges = (layout.edge(name, self.base) for name in (self.first, self.second))
+        return crossed(layout, layout.vector(self.normal), *edges)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         base, first, second = (drawing.vectors[name] for name in (self.base, self.first, self.second))
@@ -100,8 +100,7 @@ class AxisInBody(Constraint):
         return weight_names(self.axis, self.normal)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        vector = layout.vector(self.axis), (layout.zero,) * 3
-        return weighted_rows(layout, vector, self.normal, self.constants)
+        return weighted_rows(layout, layout.edge(self.axis), self.normal, self.constants)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         """The drawn direction and its constants, with what they lack by rounding.
@@ -139,8 +138,7 @@ class PointInBody(Constraint):
         return ((self.normal.base, self.point),)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        vector = layout.vector(self.point), layout.vector(self.normal.base)
-        return weighted_rows(layout, vector, self.normal, self.constants)
+        return weighted_rows(layout, layout.edge(self.point, self.normal.base), self.normal, self.constants)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         return by_component(self.constants, carrier_weights(drawing, self.point, self.normal))
@@ -161,15 +159,13 @@ def weighted_rows(
     layout: Layout, vector: tuple[Triple, Triple], body: Normal, constants: tuple[str, ...]
 ) -> tuple[Row, ...]:
     """v - a e1 - b e2 - c n = 0 for the difference v of two vectors; bilinear in the constants and edges."""
-    o, p, q, n = (layout.vector(name) for name in (body.base, body.first, body.second, body.normal))
-    (end, start), (a, b, c) = vector, (layout.scalar(name) for name in constants)
-    zero, one = layout.zero, layout.one
+    edges = layout.edge(body.first, body.base), layout.edge(body.second, body.base), layout.edge(body.normal)
+    parts = [(layout.number(name), head, tail) for name, (head, tail) in zip(constants, edges, strict=True)]
+    end, start = vector
     return tuple(
         (
-            Product(1.0, (end[i], start[i]), (one, zero)),
-            Product(-1.0, (a, zero), (p[i], o[i])),
-            Product(-1.0, (b, zero), (q[i], o[i])),
-            Product(-1.0, (c, zero), (n[i], zero)),
+            Product(1.0, (end[i], start[i]), layout.number()),
+            *(Product(-1.0, weight, (head[i], tail[i])) for weight, head, tail in parts),
         )
         for i in range(3)
     )

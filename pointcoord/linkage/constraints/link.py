@@ -42,10 +42,8 @@ class Link(Constraint):
         return (f"squared length of {self.name}",)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        start, end = layout.vector(self.start), layout.vector(self.end)
-        square = layout.scalar(*self.constants)
-        length = Product(-1.0, (square, layout.zero), (layout.one, layout.zero))
-        return ((*dot(start, end, start, end), length),)
+        edge = layout.edge(self.start, self.end)
+        return ((*dot(edge, edge), Product(-1.0, layout.number(*self.constants), layout.number())),)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         """The square of the drawn length; five units of rounding at most, which are measured.

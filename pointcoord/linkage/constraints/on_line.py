@@ -13,7 +13,7 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.in_body import AxisInBody
 from pointcoord.linkage.drawing import Drawing, Placed, no_length
-from pointcoord.linkage.layout import Layout, Triple
+from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.double_double import PAIRS, Pair, exact_square, pair_dot, pair_root, two_product
 from pointcoord.numerics.quadratic import Product, Row
 
@@ -80,14 +80,10 @@ class OnLine(Constraint):
         return self.at == "free" and not self.between
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        zero, one = layout.zero, layout.one
-        zeros: Triple = (zero, zero, zero)
-        p, o, d = (layout.vector(name) for name in (self.point, self.origin, self.head))
-        e, place = o if self.between else zeros, layout.scalar(self.place)
-        return tuple(
-            (Product(1.0, (p[i], o[i]), (one, zero)), Product(-1.0, (place, zero), (d[i], e[i])))
-            for i in range(3)
-        )
+        p, o = layout.edge(self.point, self.origin)
+        d, e = layout.edge(self.head, self.origin if self.between else "")
+        one, place = layout.number(), layout.number(self.place)
+        return tuple((Product(1.0, (p[i], o[i]), one), Product(-1.0, place, (d[i], e[i]))) for i in range(3))
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         """The place of the point, if it is not driven.

@@ -10,7 +10,7 @@ import numpy as np
 from pointcoord.linkage.constraints.constraint import Constraint, dot
 from pointcoord.linkage.directions import unit_pair
 from pointcoord.linkage.drawing import Drawing, Placed
-from pointcoord.linkage.layout import Layout, Triple
+from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.double_double import (
     PAIRS,
     Pair,
@@ -60,12 +60,9 @@ class ScalarProduct(Constraint):
         return (self.drawn,) if self.drawn else ()
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        zeros: Triple = (layout.zero, layout.zero, layout.zero)
-        a, b, c, d = (layout.vector(name) if name else zeros for name in (*self.one, *self.other))
-        scalars = [(layout.scalar(name), layout.zero) for name in (self.drawn, self.driven) if name]
-        one = (layout.one, layout.zero)
+        scalars, one = [layout.number(name) for name in (self.drawn, self.driven) if name], layout.number()
         less = (Product(-1.0, x, x if self.one == self.other else one) for x in scalars)
-        return ((*dot(a, b, c, d), *less),)
+        return ((*dot(layout.edge(*self.one), layout.edge(*self.other)), *less),)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         if not self.drawn:

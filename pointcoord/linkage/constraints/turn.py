@@ -92,22 +92,17 @@ class Turn(Constraint):
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the point and the vectors, and in the parts and the driven pair."""
-        zero, one = layout.zero, (layout.one, layout.zero)
-        zeros: Triple = (zero, zero, zero)
-        p, o = layout.vector(self.point), layout.vector(self.tail)
-        vectors = self._vectors(layout)
-        alpha, beta = (layout.scalar(name) for name in self.slides)
-        cosine, sine = layout.scalar(self.cosine), layout.scalar(self.sine)
+        none = layout.vector("")
+        vectors = [(vector, none) for vector in self._vectors(layout)]
+        alpha, beta, cosine, sine = map(layout.number, (*self.slides, self.cosine, self.sine))
         found: list[Row] = [
-            (*dot(o, p, vector, zeros), Product(1.0, (part, zero), one))
+            (*dot(layout.edge(self.tail, self.point), vector), Product(1.0, part, layout.number()))
             for vector, part in zip(vectors, (alpha, beta), strict=True)
         ]
-        found.append((Product(1.0, (cosine, zero), (alpha, zero)), Product(-1.0, (sine, zero), (beta, zero))))
+        found.append((Product(1.0, cosine, alpha), Product(-1.0, sine, beta)))
         if self.carrier is not None:
             for vector, first in zip(vectors, (0, 3), strict=True):
-                found += weighted_rows(
-                    layout, (vector, zeros), self.carrier, self.constants[first : first + 3]
-                )
+                found += weighted_rows(layout, vector, self.carrier, self.constants[first : first + 3])
         return tuple(found)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
