@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,31 +14,17 @@ from pointcoord.wording import shown
 TABLE = "table"
 
 
-def beside(inputs: Any, folder: Path) -> Any:
-    """A scene's inputs with the paths of their tables counted from a folder."""
-    return _with_files(inputs, lambda path: str(folder / path))
-
-
-def read_in(inputs: Any) -> Any:
-    """A scene's inputs with tables in place of their paths.
+def read_in(part: Any, folder: Path = Path()) -> Any:
+    """A scene's inputs, or a law or terms of one, with tables in place of their paths, counted from a folder.
 
     Raises:
         SceneError: a file cannot be read, or is not two columns of numbers.
     """
-    return _with_files(inputs, _table_of)
-
-
-def _with_files(part: Any, change: Callable[[str], Any]) -> Any:
-    """Inputs, laws or terms with something else for the path of each table."""
-    if _of_a_file(part):
-        return {TABLE: change(part[TABLE])}
+    if isinstance(part, Mapping) and part.keys() == {TABLE} and isinstance(part[TABLE], str):
+        return {TABLE: _table_of(str(folder / part[TABLE]))}
     if isinstance(part, Mapping):
-        return {name: _with_files(each, change) for name, each in part.items()}
-    return [_with_files(each, change) for each in part] if isinstance(part, list | tuple) else part
-
-
-def _of_a_file(law: Any) -> bool:
-    return isinstance(law, Mapping) and law.keys() == {TABLE} and isinstance(law[TABLE], str)
+        return {name: read_in(each, folder) for name, each in part.items()}
+    return [read_in(each, folder) for each in part] if isinstance(part, list | tuple) else part
 
 
 def _table_of(path: str) -> dict[str, list[float]]:

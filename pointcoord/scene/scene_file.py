@@ -37,7 +37,7 @@ from pointcoord.mechanism.freedoms import free_directions
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
-from pointcoord.scene.csv_table import beside, read_in
+from pointcoord.scene.csv_table import read_in
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of, swept, with_drawn
 from pointcoord.scene.own_units import in_directions, in_mm
@@ -374,17 +374,17 @@ class MechanismPart(Part):
     def drawn_inputs(self, driven: Collection[str]) -> dict[str, float]:
         """The values at which inputs are drawn, if these are driven; rad or mm.
 
-        Empty if these are more or fewer than there are freedoms, which is told when the scene is checked.
-
-        Raises:
-            MechanismError: the hardpoints make no mechanism that these drive.
+        Empty if the hardpoints make no mechanism that these drive, which is told when the scene is checked.
         """
         directions = {"up": self.up, "right": self.right}
         known = [name for name in self.structure.inputs if name in driven]
-        topology = self.file.topology(self.closure, known, self.points, directions, self._lengths)
-        if topology.layout.unknowns != len(topology.labels):
+        try:
+            topology = self.file.topology(self.closure, known, self.points, directions, self._lengths)
+            if topology.layout.unknowns != len(topology.labels):
+                return {}
+            mechanism = build_mechanism(topology, dict(self.points), directions)
+        except MechanismError:
             return {}
-        mechanism = build_mechanism(topology, dict(self.points), directions)
         coordinates = mechanism.drawn[mechanism.map.unknowns :]
         return {name: float(value) + 0.0 for name, value in mechanism.input_values(coordinates).items()}
 
@@ -495,11 +495,14 @@ class Scene(Part):
             return in_mm(content, ())
         content["inputs"] = read_in(_by_dotted_name(content["inputs"], _is_no_part))
         if "units" in content:
-            content = in_mm(content, _lengths(content.get("mechanism")))
+            part = _part_of(content.get("mechanism"))
+            known = {} if part is None else part.structure.inputs
+            content = in_mm(content, [name for name, one in known.items() if one.unit == "mm"])
         inputs = content["inputs"]
         if isinstance(inputs, Mapping):
             if any(with_drawn(law, 0.0) != law for law in inputs.values()):
-                values = _drawn_values(content.get("mechanism"), inputs)
+                part = _part_of(content.get("mechanism"))
+                values = {} if part is None else part.drawn_inputs(inputs)
                 inputs = {name: with_drawn(law, values.get(name, 0.0)) for name, law in inputs.items()}
             kinds = set().union(*map(kinds_of, inputs.values()))
             if SWEEP in kinds:
@@ -672,28 +675,12 @@ class Scene(Part):
         return cls.from_mapping(parsed(read_stream(stream, source), source), source)
 
 
-def _drawn_values(mechanism: object, driven: Collection[str]) -> Mapping[str, float]:
-    """The values at which inputs are drawn; none of what is no mechanism, which is told when it is read."""
+def _part_of(mechanism: object) -> MechanismPart | None:
+    """A scene's mechanism; None for what is none, which is told when it is read."""
     try:
-        return MechanismPart.checked(mechanism, "scene").drawn_inputs(driven)
-    except (SceneError, MechanismError):
-        return {}
-
-
-def _lengths(mechanism: object) -> tuple[str, ...]:
-    """The inputs that are lengths; none of what is no mechanism, which is told when it is read."""
-    if not isinstance(mechanism, Mapping):
-        return ()
-    try:
-        content = MechanismPart.completed(dict(mechanism))
-        keys = dict.fromkeys(TABLES) | {"type": None, "title": ""} | content
-        file = _file_of({name: keys[name] for name in ("type", "title", *TABLES)})
-    except (SceneError, TableFault):
-        return ()
-    closure = content.get("closure", "drawn")
-    structure = file.structures.get(closure) if file is not None and isinstance(closure, str) else None
-    inputs = {} if structure is None else structure.inputs
-    return tuple(name for name, one in inputs.items() if one.unit == "mm")
+        return MechanismPart.checked(mechanism, "scene")
+    except SceneError:
+        return None
 
 
 def _is_no_part(table: Mapping[str, Any]) -> bool:
@@ -704,8 +691,8 @@ def _is_no_part(table: Mapping[str, Any]) -> bool:
 
 
 def _found_beside(content: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """A scene's content with the paths of its mechanism files and of its tables counted from a folder."""
-    content = {**content, "inputs": beside(content["inputs"], folder)} if "inputs" in content else content
+    """A scene's content with the paths of its mechanism files counted from a folder, and its tables read."""
+    content = {**content, "inputs": read_in(content["inputs"], folder)} if "inputs" in content else content
     mechanism = content.get("mechanism")
     if not isinstance(mechanism, dict):
         return content
