@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
-from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.effects.effect import Effect, Point, Poses, Quantity, lacks, no_radius, no_role, not_one_input
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
@@ -203,40 +203,29 @@ class CarNumbers(Effect):
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """What it is made of is missing, or a number has no meaning in the drawing."""
-        or_leave_out = f"or leave {self.name!r} out"
         wheels = self._wheels(topology)
         if not wheels and self.of_axle:
-            return (
-                f"{self.name!r} needs two parts on opposite sides of the car with the roles "
-                f"{' and '.join(self.lines)}, and the mechanism {topology.name!r} does not have them; "
-                f"take one of an axle, {or_leave_out}"
-            )
+            needs = f"two parts on opposite sides of the car with the roles {' and '.join(self.lines)}"
+            missing = f", and the mechanism {topology.name!r} does not have them"
+            return lacks(self.name, needs + missing, "take one of an axle")
         if not wheels:
             return no_role(self.name, next(r for r in self.lines if not wheels_of(topology, [r])), topology)
         if axes.wheel_radius is None and any(number.needs_radius for number in self.numbers):
-            return (
-                f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
-                f"give it in mm under [mechanism], such as wheel_radius = 300.0, {or_leave_out}"
-            )
+            return no_radius(self.name)
         data = dict.fromkeys(name for number in self.numbers for name in number.data)
-        if missing := [name for name in data if name not in axes.car]:
-            lines = ", ".join(f"{name} = {SUCH_AS[name]}" for name in missing)
-            return (
-                f"{self.name!r} needs of the car what the scene does not say: {', '.join(missing)}; give it "
-                f"under [mechanism.car], such as {lines}, {or_leave_out}"
-            )
+        if absent := [name for name in data if name not in axes.car]:
+            needs = f"of the car what the scene does not say: {', '.join(absent)}"
+            lines = ", ".join(f"{name} = {SUCH_AS[name]}" for name in absent)
+            return lacks(self.name, needs, f"give it under [mechanism.car], such as {lines}")
         for wheel in wheels:
             for number in self.numbers:
                 problem = number.refusal(wheel, drawn)
                 if problem:
-                    return f"{problem}, {or_leave_out}"
+                    return f"{problem}, or leave {self.name!r} out"
             driven = wheel.driven(self.way) if self.way else ("",)
             if len(driven) != 1:
-                of = f" of the {wheel.part} wheel" if wheel.part else ""
-                return (
-                    f"{self.name!r} needs exactly one driven input{of} that {KINDS[self.way]}, and there is "
-                    f"{', '.join(driven) or 'none'}; drive one, {or_leave_out}"
-                )
+                of = f"of the {wheel.part} wheel " if wheel.part else ""
+                return not_one_input(self.name, f"{of}that {KINDS[self.way]}", driven)
         return ""
 
 

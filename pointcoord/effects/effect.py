@@ -182,9 +182,24 @@ class Effect(ABC):
         return ""
 
 
+def lacks(effect: str, needs: str, advice: str) -> str:
+    """Why a drawing does not have an effect, by what that needs, and what to do."""
+    return f"{effect!r} needs {needs}; {advice}, or leave {effect!r} out"
+
+
 def no_role(effect: str, role: str, topology: Topology) -> str:
     """Why a mechanism without a role has not an effect that asks for it."""
-    return (
-        f"{effect!r} needs the role {role}, which the mechanism {topology.name!r} does not have; name it "
-        f"under [roles] of the mechanism, or leave {effect!r} out"
-    )
+    needs = f"the role {role}, which the mechanism {topology.name!r} does not have"
+    return lacks(effect, needs, "name it under [roles] of the mechanism")
+
+
+def no_radius(effect: str) -> str:
+    """Why a mechanism without a wheel's radius has not an effect that asks for its contact point."""
+    needs = "the wheel's contact point, and the mechanism has no wheel_radius"
+    return lacks(effect, needs, "give it in mm under [mechanism], such as wheel_radius = 300.0")
+
+
+def not_one_input(effect: str, which: str, driven: Sequence[str]) -> str:
+    """Why an effect is not there that needs one driven input of a kind."""
+    needs = f"exactly one driven input {which}, and there is {', '.join(driven) or 'none'}"
+    return lacks(effect, needs, "drive one")

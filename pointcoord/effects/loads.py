@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from pointcoord.effects.arithmetic import dot, ratio, root, times
 from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of
 from pointcoord.effects.corner import Corner, Wheel, wheels_of
-from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.effects.effect import Effect, Point, Poses, Quantity, lacks, no_radius, no_role, not_one_input
 from pointcoord.effects.knuckle import contact_place, turning_of, velocity_at
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.slopes import GAP, ByGap, ByLength, Way
@@ -133,34 +133,26 @@ class Loads(Effect):
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         if not axes.loads:
-            return (
-                f"{self.name!r} needs a load, and the scene has none; give it under [mechanism.loads], such "
-                f"as force = [0.0, 0.0, 3000.0], or leave {self.name!r} out"
-            )
+            advice = "give it under [mechanism.loads], such as force = [0.0, 0.0, 3000.0]"
+            return lacks(self.name, "a load, and the scene has none", advice)
         for part in axes.loads:
             wheel = Wheel(topology, part)
             for role in ROLES:
                 if not wheel.role(role):
                     return no_role(self.name, wheel.prefix + role, topology)
         if axes.wheel_radius is None:
-            return (
-                f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
-                f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {self.name!r} out"
-            )
+            return no_radius(self.name)
         if topology.left_out:
             rows = ", ".join(topology.left_labels)
-            return (
-                f"{self.name!r} needs a mechanism that is held in one way only, and of {topology.name!r} "
-                f"these rows follow from the others: {rows}; leave {self.name!r} out"
+            needs = (
+                f"a mechanism that is held in one way only, and of {topology.name!r} these rows follow from"
             )
+            return lacks(self.name, f"{needs} the others: {rows}", "join it with fewer")
         for wheel in _held(topology):
             driven = wheel.driven(BY_TRAVEL)
             if len(driven) != 1:
-                return (
-                    f"{self.name!r} needs exactly one driven input that {KINDS[BY_TRAVEL]} for the "
-                    f"{wheel.prefix}{HOLDING} to hold instead, and there is {', '.join(driven) or 'none'}; "
-                    f"drive the mechanism by one, or leave {self.name!r} out"
-                )
+                which = f"that {KINDS[BY_TRAVEL]} for the {wheel.prefix}{HOLDING} to hold instead"
+                return not_one_input(self.name, which, driven)
         return ""
 
 

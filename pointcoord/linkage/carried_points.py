@@ -8,6 +8,8 @@ of its own.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +18,7 @@ from pointcoord.numerics.power_series import cross_series
 from pointcoord.numerics.vectors import cross
 
 Array = NDArray[np.float64]
+Product = Callable[[Array, Array], Array]
 
 
 def carried_gain(weights: Array, drawing: Drawing, carriers: tuple[str, str, str]) -> float:
@@ -32,25 +35,21 @@ def carried_gain(weights: Array, drawing: Drawing, carriers: tuple[str, str, str
     return float(np.max(np.abs(1.0 - a - b) + np.abs(a) + np.abs(b) + 2.0 * np.abs(c) * others))
 
 
-def carried_place(weights: Array, base: Array, first: Array, second: Array) -> Array:
+def carried_place(
+    weights: Array, base: Array, first: Array, second: Array, *, product: Product = cross
+) -> Array:
     """A carried point, shape (..., 3).
 
     Args:
         weights: (a, b, c), shape (..., 3).
         base, first, second: places of the carriers, shape (..., 3).
+        product: of two vectors.
     """
     e1, e2 = first - base, second - base
     a, b, c = (weights[..., i, None] for i in range(3))
-    return np.asarray(base + a * e1 + b * e2 + c * cross(e1, e2))
+    return np.asarray(base + a * e1 + b * e2 + c * product(e1, e2))
 
 
 def carried_series(weights: Array, base: Array, first: Array, second: Array) -> Array:
-    """Series of a carried point, shape (..., order + 1, 3).
-
-    Args:
-        weights: (a, b, c), shape (..., 3).
-        base, first, second: series of the carriers, shape (..., order + 1, 3).
-    """
-    e1, e2 = first - base, second - base
-    a, b, c = (weights[..., i, None, None] for i in range(3))
-    return np.asarray(base + a * e1 + b * e2 + c * cross_series(e1, e2))
+    """Series of a carried point from those of its carriers, each of shape (..., order + 1, 3)."""
+    return carried_place(weights[..., None, :], base, first, second, product=cross_series)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -47,8 +47,6 @@ def drawn_mechanism(
     topology: Topology, points: Mapping[str, ArrayLike], directions: Mapping[str, ArrayLike]
 ) -> Mechanism:
     """The same without a check that its equations have one solution."""
-    _check_names(points, topology.points, "point")
-    _check_names(directions, AXES, "direction")
     located = _checked(points, topology.points, "point")
     car = car_directions(**_checked(directions, AXES, "direction"))
     stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
@@ -122,13 +120,10 @@ def _carrier_weights(topology: Topology, drawing: Drawing) -> dict[str, Array]:
     }
 
 
-def _check_names(given: Iterable[str], names: Sequence[str], kind: str) -> None:
+def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:
     for name in given:
         if name not in names:
             raise UnknownName(kind, name, names)
-
-
-def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:
     result: dict[str, Array] = {}
     for name in names:
         if name not in given:

@@ -24,17 +24,18 @@ def check(structure: Structure) -> None:
     _roles(structure)
     for point, other in structure.stand_ins.items():
         for name in (point, other):
-            _point(structure, name, ("stand_ins", point))
+            _known(structure, "point", name, ("stand_ins", point))
 
 
-def _point(structure: Structure, name: str, place: Collection[str]) -> None:
-    if name not in structure.points:
-        raise no_such("point of a body, rod or slide", name, structure.points, place)
-
-
-def _body(structure: Structure, name: str, place: Collection[str]) -> None:
-    if name not in structure.bodies:
-        raise no_such("body", name, structure.bodies, place)
+def _known(structure: Structure, kind: str, name: str, place: Collection[str]) -> None:
+    """Pass if a name is one of a point, a body or a slide."""
+    words, known = {
+        "point": ("point of a body, rod or slide", structure.points),
+        "body": ("body", structure.bodies),
+        "slide": ("slide", structure.slides),
+    }[kind]
+    if name not in known:
+        raise no_such(words, name, known, place)
 
 
 def _bodies(structure: Structure) -> None:
@@ -92,7 +93,7 @@ def _rods(structure: Structure) -> None:
 def _slides(structure: Structure) -> None:
     for name, slide in structure.slides.items():
         place = ("slides", name)
-        _body(structure, slide.body, (*place, "body"))
+        _known(structure, "body", slide.body, (*place, "body"))
         if slide.through not in structure.bodies[slide.body]:
             raise no_such(
                 f"point of {slide.body}", slide.through, structure.bodies[slide.body], (*place, "through")
@@ -122,17 +123,11 @@ def _one_body(structure: Structure, points: tuple[str, ...], place: tuple[str, .
     if len(points) < 2:
         raise TableFault((*place, "turns"), "a single point has no turn to be kept from", "two points")
     bodies = set(structure.bodies_of(points[0])).intersection(structure.bodies_of(points[1]))
-    if not bodies:
+    if len(bodies) != 1:
         raise TableFault(
             (*place, "points"),
-            f"{points[0]} and {points[1]} are of no one body, so there is no turn to be kept from",
-            "with turns = false, the first two of one body",
-        )
-    if len(bodies) > 1:
-        raise TableFault(
-            (*place, "points"),
-            f"{points[0]} and {points[1]} are of {' and of '.join(sorted(bodies))}, so that it is not said "
-            "which of them is kept from turning",
+            f"{points[0]} and {points[1]} are of {' and of '.join(sorted(bodies)) or 'no one body'}, so that "
+            "it is not said which of them is kept from turning",
             "with turns = false, the first two of one body alone",
         )
 
@@ -140,13 +135,9 @@ def _one_body(structure: Structure, points: tuple[str, ...], place: tuple[str, .
 def _inputs(structure: Structure) -> None:
     for name, one in structure.inputs.items():
         place = ("inputs", name)
-        for body in one.named("body"):
-            _body(structure, body, place)
-        for slide in one.named("slide"):
-            if slide not in structure.slides:
-                raise no_such("slide", slide, structure.slides, (*place, one.kind))
-        for point in one.named("point"):
-            _point(structure, point, place)
+        for kind in ("body", "slide", "point"):
+            for each in one.named(kind):
+                _known(structure, kind, each, place if kind != "slide" else (*place, one.kind))
         try:
             one.check(structure.bodies)
         except TableFault as fault:
@@ -155,17 +146,13 @@ def _inputs(structure: Structure) -> None:
 
 def _roles(structure: Structure) -> None:
     for role, who in structure.roles.items():
-        place, last = ("roles", role), role.rpartition(".")[2]
-        if isinstance(who, tuple):
-            for name in who:
-                _point(structure, name, place)
-        elif last == "knuckle":
-            _body(structure, who, place)
-            if who == CHASSIS:
-                raise TableFault(place, "is the chassis, which carries no wheel", "a moving body")
-        else:
-            _point(structure, who, place)
-        _of_body(structure, role, (who,) if isinstance(who, str) else who)
+        place, names = ("roles", role), (who,) if isinstance(who, str) else who
+        carries = role in structure.knuckles
+        for name in names:
+            _known(structure, "body" if carries else "point", name, place)
+        if carries and who == CHASSIS:
+            raise TableFault(place, "is the chassis, which carries no wheel", "a moving body")
+        _of_body(structure, role, names)
 
 
 def _of_body(structure: Structure, role: str, points: tuple[str, ...]) -> None:
