@@ -20,9 +20,8 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.ground import Displaced, Ground, TurnedBack
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
-from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.scalar_product import KeptTurn
+from pointcoord.linkage.constraints.scalar_product import KeptTurn, link
 from pointcoord.linkage.directions import DIRECTIONS, axis_along, car_directions
 from pointcoord.linkage.drives import Drive, Travel, TurnedBy
 from pointcoord.linkage.topology import Sliding, Topology
@@ -368,11 +367,11 @@ class Compiler:
                 # A body that has one of the two as a further point holds their distance, first or last.
                 further = any(side <= others and not side <= {*corners} for corners, others in bodies)
                 if not further and not any(side <= others for others in before):
-                    yield Link(start, end)
+                    yield link(start, end)
             before.append(points)
         for ends in self.structure.rods.values():
             if ends not in self._on_axes.values():
-                yield Link(*ends)
+                yield link(*ends)
 
     def _points_in_bodies(self, solved: Collection[str]) -> Iterator[Constraint]:
         """What else the bodies need: further points, and the normals of those with an axis of their own."""

@@ -1,4 +1,4 @@
-"""The scalar product of two vectors: kept as drawn, or driven, or what keeps two bodies from turning."""
+"""The scalar product of two vectors, kept as drawn or driven: links, heights, distances, kept turns."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import numpy as np
 
 from pointcoord.linkage.constraints.constraint import Constraint, dot
 from pointcoord.linkage.directions import unit_pair
-from pointcoord.linkage.drawing import Drawing, Placed
+from pointcoord.linkage.drawing import Drawing, Placed, no_length
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.double_double import (
     PAIRS,
     Pair,
+    exact_square,
     pair_cross,
     pair_dot,
     pair_product,
@@ -21,6 +22,7 @@ from pointcoord.numerics.double_double import (
     pair_sum,
 )
 from pointcoord.numerics.quadratic import Product, Row
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Edge = tuple[str, str]
 ONE: Pair = np.array(1.0), np.array(0.0)
@@ -32,7 +34,8 @@ class ScalarProduct(Constraint):
 
     An edge runs from its second point to its first; with an empty second name it is a direction of the car
     or the place of a point. So x is the height of a point over another, with d cos(theta) the paper's arm
-    angle, eq. (12), or over where it is drawn, with k. Of an edge with itself it is a distance.
+    angle, eq. (12), or over where it is drawn, with k. Of an edge with itself it is a distance, and k the
+    square of one that is kept.
 
     Attributes:
         what: its name in messages.
@@ -51,8 +54,17 @@ class ScalarProduct(Constraint):
         return self.what
 
     @property
-    def segments(self) -> tuple[tuple[str, str], ...]:
+    def segments(self) -> tuple[Edge, ...]:
         return (self.one,) if self.one == self.other else ()
+
+    @property
+    def squared_lengths(self) -> tuple[Edge, ...]:
+        return self.segments if self.drawn else ()
+
+    @property
+    def may_lock(self) -> bool:
+        """Where it lies in line with another."""
+        return bool(self.squared_lengths)
 
     @property
     def constants(self) -> tuple[str, ...]:
@@ -60,16 +72,38 @@ class ScalarProduct(Constraint):
         return (self.drawn,) if self.drawn else ()
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        scalars, one = [layout.number(name) for name in (self.drawn, self.driven) if name], layout.number()
-        less = (Product(-1.0, x, x if self.one == self.other else one) for x in scalars)
+        less, one = list[Product](), layout.number()
+        if self.drawn:
+            less.append(Product(-1.0, layout.number(self.drawn), one))
+        if self.driven:
+            x = layout.number(self.driven)
+            less.append(Product(-1.0, x, x if self.segments else one))
         return ((*dot(layout.edge(*self.one), layout.edge(*self.other)), *less),)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
+        """K; of the square of a drawn length five units of rounding at most, which are measured.
+
+        Raises:
+            MechanismError: both points of a kept distance are in one place.
+        """
         if not self.drawn:
             return {}
-        u, v = drawing.edge(*self.one), drawing.edge(*self.other)
-        size = np.sum(np.abs(u[0] * v[0]), axis=-1)
-        return {self.drawn: Placed(*pair_dot(u, v), PAIRS * size)}
+        if not self.segments:
+            u, v = drawing.edge(*self.one), drawing.edge(*self.other)
+            size = np.sum(np.abs(u[0] * v[0]), axis=-1)
+            return {self.drawn: Placed(*pair_dot(u, v), PAIRS * size)}
+        start, end = (drawing.vectors[name] for name in self.one)
+        square = np.sum((start - end) ** 2, axis=-1)
+        if not (square > 0.0).all():
+            raise no_length(*self.one)
+        exact, rest = exact_square(start, end)
+        return {self.drawn: Placed(square, (exact - square) + rest, 256 * UNIT_ROUNDOFF**2 * square)}
+
+
+def link(start: str, end: str) -> ScalarProduct:
+    """Fixed distance: |p_start - p_end|^2 - d^2 = 0, d as drawn (paper eqs. 1-7)."""
+    name, edge = f"link {start} - {end}", (start, end)
+    return ScalarProduct(name, edge, edge, f"squared length of {name}")
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, carrier_weights
-from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import FARTHEST, OnLine
+from pointcoord.linkage.constraints.scalar_product import link
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.simulation import scene_mechanism
 from validate.reference.vectors import Vector, cross, dot, minus, times
@@ -130,10 +130,10 @@ def test_weights_of_carriers_however_nearly_in_line_are_within_their_doubt(thin:
 
 
 def test_links_know_the_squares_of_their_lengths_to_their_doubt() -> None:
-    rng, link = np.random.default_rng(3), Link("a", "b")
+    rng, kept = np.random.default_rng(3), link("a", "b")
     # Of very different sizes, so that the differences are rounded too.
     cars = {name: rng.uniform(-1.0, 1.0, (40, 3)) * 10.0 ** rng.uniform(-4.0, 0.0, (40, 3)) for name in "ab"}
-    ((_, (values, lacks, doubt)),) = link.placed(Drawing(cars, np.ones(40))).items()
+    ((_, (values, lacks, doubt)),) = kept.placed(Drawing(cars, np.ones(40))).items()
     for i in range(40):
         parts = zip(cars["a"][i].tolist(), cars["b"][i].tolist(), strict=True)
         square = sum((Fraction(p) - Fraction(q)) ** 2 for p, q in parts)
