@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.constraints.ground import Displaced, Ground, TurnedBack
+from pointcoord.linkage.constraints.contact_height import Displaced, Ground, TurnedBack
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import KeptTurn, link
@@ -197,13 +197,11 @@ def compiled(
         lengths: that driven inputs need beside the points, by name, mm.
         puts_in_place: whether closing a drawing moves points on purpose.
     """
-    return Compiler(structure, tuple(driven), choices, lengths or {}).topology(puts_in_place)
+    return _Compiler(structure, tuple(driven), choices, lengths or {}).topology(puts_in_place)
 
 
 @dataclass(frozen=True, eq=False)
-class Compiler:
-    """A structure on its way to a topology, as its inputs see it."""
-
+class _Compiler:
     structure: Structure
     driven: tuple[str, ...]
     choices: Choices
@@ -347,12 +345,13 @@ class Compiler:
             )
         return self.lengths[name]
 
+    def shared(self, body: str, other: str) -> tuple[str, ...]:
+        return self.structure.shared(body, other)
+
     def driven_line(self, slide: str) -> OnLine:
-        """The line of a slide's first point."""
         return self._on_line(slide, self.structure.slides[slide].points[0])
 
     def normal(self, body: str) -> Normal:
-        """The triangle that stands for a body, with its normal."""
         return Normal(f"normal of the {body}", *self.choices.triangles[body])
 
     def _bodies(self, solved: Collection[str]) -> Iterator[Constraint]:

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from pointcoord.linkage import drives
 from pointcoord.linkage.constraints import turn
 from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.constraints.contact_height import ContactHeight
-from pointcoord.linkage.constraints.ground import CHASSIS_ITSELF
+from pointcoord.linkage.constraints.contact_height import CHASSIS_ITSELF, ContactHeight, Ground
+from pointcoord.linkage.constraints.in_body import Normal
+from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.directions import DIRECTIONS
 from pointcoord.linkage.drives import Drive
 from pointcoord.mechanism.faults import TableFault, known_keys, no_such
 from pointcoord.wording import shown
-
-if TYPE_CHECKING:
-    from pointcoord.mechanism.compiled import Compiler
 
 LENGTHS = {
     "wheel_radius": ("the height of the wheel's contact point", 300.0),
@@ -66,6 +64,26 @@ Chassis = Literal["chassis"]
 
 Bodies = Mapping[str, Sequence[str]]
 Made = tuple[list[Constraint], list[Drive]]
+
+
+class Compiler(Protocol):
+    """What an input is made with."""
+
+    def length(self, name: str, input: str) -> float:
+        """A length that the scene says beside its points and that an input needs, mm."""
+
+    @property
+    def ground(self) -> tuple[Ground, list[Drive]]:
+        """The ground as the driven chassis sees it, and what drives it."""
+
+    def shared(self, body: str, other: str) -> tuple[str, ...]:
+        """Points of two bodies, as the first lists them."""
+
+    def normal(self, body: str) -> Normal:
+        """The triangle that stands for a body, with its normal."""
+
+    def driven_line(self, slide: str) -> OnLine:
+        """The line of a slide's first point."""
 
 
 class Entry(BaseModel):
@@ -173,7 +191,7 @@ class Turn(Input):
 
     def made(self, name: str, of: Compiler) -> Made:
         triangle = of.normal(self.angle)
-        tail, head = of.structure.shared(self.angle, self.on)
+        tail, head = of.shared(self.angle, self.on)
         corners = (triangle.base, triangle.first, triangle.second)
         point = next(corner for corner in corners if corner not in (tail, head))
         cosine, sine = f"cosine of {name}", f"sine of {name}"

@@ -1,21 +1,25 @@
-"""An input over time: its law, as a scene writes it."""
+"""An input over time: its law, as a scene writes it, and tables that stand in files of their own."""
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Collection, Mapping
 from itertools import pairwise
 from math import isfinite
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
 
+from pointcoord.errors import SceneError
 from pointcoord.mechanism.faults import TableFault
 from pointcoord.scene.scene_part import AS_LIST, Number, Part, Place, own_list
 from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction
+from pointcoord.toml_text import read_file
 from pointcoord.wording import meant, shown
 
-SUM, SWEEP = "sum", "sweep"
-LAWS = ("constant", "polynomial", "sine", "table", SUM)
+SUM, SWEEP, TABLE = "sum", "sweep", "table"
+LAWS = ("constant", "polynomial", "sine", TABLE, SUM)
 """The kinds of an input over time; a sweep is written as a polynomial before it is one."""
 DRAWN = "drawn"
 SPAN = ("start", "stop")
@@ -180,3 +184,42 @@ def _numbers(value: object) -> bool:
     return isinstance(value, list | tuple) and all(
         isinstance(each, int | float) and not isinstance(each, bool) and isfinite(each) for each in value
     )
+
+
+def read_in(part: Any, folder: Path = Path()) -> Any:
+    """A scene's inputs, or a law or terms of one, with tables in place of their paths, counted from a folder.
+
+    Raises:
+        SceneError: a file cannot be read, or is not two columns of numbers.
+    """
+    if isinstance(part, Mapping) and part.keys() == {TABLE} and isinstance(part[TABLE], str):
+        return {TABLE: _table_of(str(folder / part[TABLE]))}
+    if isinstance(part, Mapping):
+        return {name: read_in(each, folder) for name, each in part.items()}
+    return [read_in(each, folder) for each in part] if isinstance(part, list | tuple) else part
+
+
+def _table_of(path: str) -> dict[str, list[float]]:
+    allowed = "two columns of numbers, time in s and the input's value, with commas between them"
+    try:
+        text = read_file(path, "the path of a file of two columns").decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise SceneError(path, "", "is no text in UTF-8", allowed) from None
+    rows: list[list[Any]] = []
+    for number, cells in enumerate(csv.reader(text.splitlines()), start=1):
+        numbers = [_number(cell) for cell in cells]
+        titles = number == 1 and all(one is None for one in numbers)
+        if not cells or titles:
+            continue
+        if len(numbers) != 2 or None in numbers:
+            raise SceneError(path, f"line {number}", f"is {shown(','.join(cells))}", allowed)
+        rows.append(numbers)
+    times, values = ([row[i] for row in rows] for i in range(2))
+    return {"times": times, "values": values}
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return float(cell)
+    except ValueError:
+        return None

@@ -37,9 +37,8 @@ from pointcoord.mechanism.freedoms import free_directions
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
-from pointcoord.scene.csv_table import read_in
 from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of, swept, with_drawn
+from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of, read_in, swept, with_drawn
 from pointcoord.scene.own_units import in_directions, in_mm
 from pointcoord.scene.scene_part import (
     AS_LIST,
