@@ -39,14 +39,12 @@ class Angle(Number):
         line: the axis that the topology names so, from its first point to its second.
         sine, cosine: the directions along which the line has the angle's sine and cosine.
         steepest: degrees beyond which a drawing looks misdrawn.
-        steepest_by_default: the same where the line starts at a point that only stands in for its own.
     """
 
     line: Literal["wheel_axis", "steering_axis"]
     sine: Direction
     cosine: Direction
     steepest: float = 180.0
-    steepest_by_default: float = 180.0
     quantity: Quantity = WHEEL
     needs_radius: bool = False
     formula: Callable[..., Any] = field(init=False)
@@ -61,10 +59,6 @@ class Angle(Number):
     def _of_corner(self, corner: Corner[S]) -> S:
         return angle(*self.parts(corner.seen))
 
-    @property
-    def lengthwise(self) -> bool:
-        return not {"forward", "rearward", "to_the_left"}.isdisjoint((self.sine, self.cosine))
-
     def ends(self, wheel: Wheel) -> tuple[str, str]:
         ends = wheel.role(self.line)
         if not ends:
@@ -76,11 +70,6 @@ class Angle(Number):
         """What it is the angle of: line . sine and line . cosine."""
         line = view.line(*self.ends(view.of))
         return view.along(line, self.sine), view.along(line, self.cosine)
-
-    def value(self, start: Array, end: Array, axes: CarAxes) -> Array:
-        """The angle of a line from start to end, (..., 3); shape (...,)."""
-        line = end - start
-        return angle(axes.component(line, self.sine), axes.component(line, self.cosine))
 
     def errors(self, corners: Sequence[Corner[Enclosed]], found: Array, unit: float) -> Array:
         """From the exact components of the line along the two directions, a whole turn apart or not."""
@@ -98,18 +87,15 @@ class Angle(Number):
             f"give the axis a point of its own, {own}"
         )
 
-    def doubt(
-        self, wheel: Wheel, drawn: Mapping[str, Array], axes: CarAxes, told: NDArray[np.bool_]
-    ) -> Doubt:
+    def doubt(self, wheel: Wheel, drawn: Mapping[str, Array], axes: CarAxes) -> Doubt:
         """That it is steeper in drawings than in any car.
 
         Args:
             drawn: the points, each (..., 3), mm.
-            told: the drawings in which its line was already found to be misdrawn.
         """
         start, end = self.ends(wheel)
-        limit = self.steepest_by_default if _missing(wheel.topology, start) else self.steepest
-        degrees = np.degrees(self.value(drawn[start], drawn[end], axes))
+        line = drawn[end] - drawn[start]
+        degrees = np.degrees(angle(axes.component(line, self.sine), axes.component(line, self.cosine)))
 
         def words(member: tuple[int, ...]) -> str:
             steepness = float(degrees[member])
@@ -118,7 +104,7 @@ class Angle(Number):
                 f"{'are they swapped' if abs(steepness) > 90.0 else 'is one of them misdrawn'}?"
             )
 
-        return Doubt(~told & (np.abs(degrees) > limit), words)
+        return Doubt(np.abs(degrees) > self.steepest, words)
 
 
 def _missing(topology: Topology, point: str) -> str:

@@ -141,7 +141,7 @@ def _inputs(structure: Structure) -> None:
         try:
             one.check(structure.bodies)
         except TableFault as fault:
-            raise TableFault((*place, *fault.place), fault.problem, fault.allowed) from None
+            raise fault.under(*place) from None
 
 
 def _roles(structure: Structure) -> None:

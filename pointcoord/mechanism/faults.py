@@ -33,6 +33,10 @@ class TableFault(ValueError):
         self.place, self.problem, self.allowed = tuple(place), problem, allowed
         super().__init__(problem)
 
+    def under(self, *place: str | int) -> TableFault:
+        """The same of tables that stand at a place of others."""
+        return TableFault((*place, *self.place), self.problem, self.allowed)
+
 
 def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str | int] = ()) -> TableFault:
     """The fault of a name that nothing has."""
@@ -64,7 +68,7 @@ def _fault(found: ErrorDetails, place: Sequence[str | int]) -> TableFault:
     where, value = (*place, *found["loc"]), found["input"]
     cause: object = found.get("ctx", {}).get("error")
     if isinstance(cause, TableFault):
-        return TableFault((*where, *cause.place), cause.problem, cause.allowed)
+        return cause.under(*where)
     if found["type"] == "missing" and isinstance(where[-1], int):
         return TableFault(where, f"a number is missing: there are {where[-1]} where three belong")
     said = str(cause) if cause else found["msg"].replace("Tuple", "List").replace(" after validation", "")

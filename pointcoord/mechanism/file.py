@@ -211,8 +211,7 @@ class MechanismFile:
             except TableFault as fault:
                 if closure == AS_DRAWN or not fault.place:
                     raise
-                place = ("closures", closure, *fault.place)
-                raise TableFault(place, fault.problem, fault.allowed) from None
+                raise fault.under("closures", closure) from None
         return cls(title, structures, {f"{part}.": table.mirrored for part, table in others.parts.items()})
 
 
@@ -221,8 +220,7 @@ def _part(part: str, table: _Part) -> MechanismFile:
     try:
         return mechanism_file(own) if isinstance(own, str) else MechanismFile.of(own, part)
     except TableFault as fault:
-        place = ("parts", part, "mechanism", *fault.place)
-        raise TableFault(place, fault.problem, fault.allowed) from None
+        raise fault.under("parts", part, "mechanism") from None
 
 
 def _closed(

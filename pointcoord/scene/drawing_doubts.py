@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.corner import Wheel, wheels_of
+from pointcoord.effects.corner import wheels_of
 from pointcoord.effects.effect import Doubt
 from pointcoord.effects.registry import ANGLES
 from pointcoord.linkage.car_axes import CarAxes
@@ -56,21 +56,9 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
         _alone_across(topology, points, axes),
     ]
     for wheel in wheels_of(topology, ()):
-        doubts += _lines_misdrawn(wheel, points, axes.on(wheel.side))
+        angles = (angle for angle in ANGLES.values() if wheel.role(angle.line))
+        doubts += [angle.doubt(wheel, points, axes.on(wheel.side)) for angle in angles]
     return tuple(doubts)
-
-
-def _lines_misdrawn(wheel: Wheel, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
-    """A spin axis that points inboard, and angles that no car has."""
-    inward: dict[str, NDArray[np.bool_]] = {}
-    if wheel.role("wheel_axis"):
-        inner, centre = wheel.role("wheel_axis")
-        inward["wheel_axis"] = axes.component(points[centre] - points[inner], "outboard") <= 0.0
-        words = f"{inner} lies outboard of {centre}, so the spin axis points inboard"
-        yield Doubt(inward["wheel_axis"], lambda one: words)
-    for angle in ANGLES.values():
-        if wheel.role(angle.line):
-            yield angle.doubt(wheel, points, axes, inward.get(angle.line, np.array(False)))
 
 
 def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
@@ -82,11 +70,10 @@ def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: Ca
 
     def words(one: tuple[int, ...]) -> str:
         forward = np.round(np.cross(axes.up, axes.right), 6) + 0.0
-        lengthwise = [angle.words for angle in ANGLES.values() if angle.lengthwise]
         return (
             f"{front} is drawn {-float(ahead[one]):.4g} mm behind {rear}: by up and right the car's front "
             f"lies towards {forward.tolist()}, as in right-handed axes; are these two swapped, is right "
-            f"turned round, or are your axes left-handed? {', '.join(lengthwise)} may have the wrong sign"
+            "turned round, or are your axes left-handed? Angles along the car may have the wrong sign"
         )
 
     yield Doubt(ahead < 0.0, words)

@@ -361,9 +361,12 @@ class MechanismPart(Part):
 
     @cached_property
     def topology(self) -> Topology:
-        return self.file.topology(
-            self.closure, self.driven, self.points, {"up": self.up, "right": self.right}, self._lengths
-        )
+        return self.file.topology(self.closure, self.driven, self.points, self.directions, self._lengths)
+
+    @property
+    def directions(self) -> dict[str, Vector]:
+        """The car's axes as the scene gives them."""
+        return {"up": self.up, "right": self.right}
 
     @property
     def _lengths(self) -> dict[str, float]:
@@ -375,13 +378,12 @@ class MechanismPart(Part):
 
         Empty if the hardpoints make no mechanism that these drive, which is told when the scene is checked.
         """
-        directions = {"up": self.up, "right": self.right}
         known = [name for name in self.structure.inputs if name in driven]
         try:
-            topology = self.file.topology(self.closure, known, self.points, directions, self._lengths)
+            topology = self.file.topology(self.closure, known, self.points, self.directions, self._lengths)
             if topology.layout.unknowns != len(topology.labels):
                 return {}
-            mechanism = build_mechanism(topology, dict(self.points), directions)
+            mechanism = build_mechanism(topology, dict(self.points), self.directions)
         except MechanismError:
             return {}
         coordinates = mechanism.drawn[mechanism.map.unknowns :]
@@ -394,7 +396,7 @@ class MechanismPart(Part):
         Raises:
             MechanismError: it has more equations than coordinates, and the drawing does not close.
         """
-        return self.file.freedoms(self.closure, self.points, {"up": self.up, "right": self.right})
+        return self.file.freedoms(self.closure, self.points, self.directions)
 
     @property
     def axis_point(self) -> str:
@@ -608,7 +610,7 @@ class Scene(Part):
         more = part.freedoms - len(told)
         if more < 0:
             raise TableFault(("inputs",), words, f"as many inputs as freedoms, so leave {-more} out")
-        free = ", ".join(free_directions(topology, part.points, {"up": part.up, "right": part.right}))
+        free = ", ".join(free_directions(topology, part.points, part.directions))
         if not missing:
             words = f"the inputs {', '.join(fighting)} drive more of the {part.name} than it lets them"
             allowed = f"one of them less, and instead one of {others}"
