@@ -33,7 +33,6 @@ V = TypeVar("V", Array, Enclosed)
 
 LARGEST = 1e300  # mm and s: sums with an origin and of some inputs stay finite
 FASTEST = 1e140  # rad and s: squares of rates, times lengths, stay finite
-KINDS = ("values", "rates", "accelerations")
 # A turn leaves no component of a vector larger than its length, which is this many times its largest one.
 SPREAD = 3.0**0.5
 
@@ -109,14 +108,9 @@ class ChassisMotion:
             series = self.functions[name].series(instants, derivatives) * factors
         if not (np.abs(series) < largest).all():
             place, order = map(int, np.argwhere(~(np.abs(series) < largest))[0])
-            what = KINDS[order] if order < len(KINDS) else f"derivatives of order {order}"
             per = "/s" * min(order, 1) + f"^{order}" * (order > 1)
-            raise InputOutOfRange(
-                name,
-                float(series[place, order]),
-                f"{what} below {largest:g} {unit}{per} in size",
-                float(instants[place]),
-            )
+            allowed = f"below {largest:g} {unit}{per} in size"
+            raise InputOutOfRange(name, float(series[place, order]), allowed, float(instants[place]))
         return np.moveaxis(series, -1, 0)
 
     def turned_by(

@@ -10,8 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from pointcoord.errors import UnknownName
-
 Triple = tuple[int, int, int]
 
 
@@ -68,10 +66,7 @@ class Layout:
 
     def span(self, name: str) -> slice:
         """The three coordinates of a point, a direction or a vector of a body."""
-        vectors = self._places[0]
-        if name not in vectors:
-            raise UnknownName("point, direction or vector", name, vectors)
-        return vectors[name]
+        return self._places[0][name]
 
     def vector(self, name: str) -> Triple:
         """The same three as indices; of no name those of a vector that is zero."""
@@ -86,10 +81,7 @@ class Layout:
 
     def scalar(self, name: str) -> int:
         """Index of a slide's place, of a driven coordinate or of a constant of the drawing."""
-        scalars = self._places[1]
-        if name not in scalars:
-            raise UnknownName("slide, driven coordinate or constant", name, scalars)
-        return scalars[name]
+        return self._places[1][name]
 
     def number(self, name: str = "") -> tuple[int, int]:
         """The same, or the constant 1, as the difference of two coordinates."""

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.errors import InputOutOfRange, UnknownName
+from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.carried_points import carried_gain, carried_place
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
@@ -138,21 +138,12 @@ class Mechanism:
         Returns:
             Coefficients, shape (..., order + 1, known coordinates), in the mechanism's units.
         Raises:
-            UnknownName: an input that drives nothing here, or one that is missing.
             InputOutOfRange: a value or a rate that is not finite, or has no meaning for its drive.
         """
         topology, layout = self.topology, self.layout
-        required = topology.required_inputs
-        if inputs.keys() != set(required):
-            for name in inputs:
-                if name not in required:
-                    raise UnknownName("driving input", name, required)
-            for name in required:
-                if name not in inputs:
-                    raise UnknownName("given input", name, inputs)
         shapes = {s.shape[:-1] for s in inputs.values()} | {self.drawn.shape[:-1]}
         batch = () if shapes == {()} else np.broadcast_shapes(*shapes)
-        orders = inputs[required[0]].shape[-1]
+        orders = inputs[topology.required_inputs[0]].shape[-1]
         known = np.zeros((*batch, orders, layout.size - layout.unknowns), self.drawn.dtype)
         known[..., 0, :] = self.drawn[..., layout.unknowns :]
         for drive, place in zip(topology.drives, topology.driven, strict=True):
