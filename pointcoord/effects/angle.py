@@ -18,7 +18,6 @@ from pointcoord.effects.arithmetic import S, angle
 from pointcoord.effects.car_number import Number
 from pointcoord.effects.corner import Corner, View, Wheel
 from pointcoord.effects.effect import Doubt, Point, Quantity
-from pointcoord.errors import UnknownName
 from pointcoord.linkage.car_axes import CarAxes, Direction
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed, angle_error
@@ -60,10 +59,7 @@ class Angle(Number):
         return angle(*self.parts(corner.seen))
 
     def ends(self, wheel: Wheel) -> tuple[str, str]:
-        ends = wheel.role(self.line)
-        if not ends:
-            raise UnknownName("role", self.line, ())
-        start, end = ends
+        start, end = wheel.role(self.line)
         return start, end
 
     def parts(self, view: View[S]) -> tuple[S, S]:

@@ -57,7 +57,6 @@ class PointStates(Effect):
 
 NAMED = ("position", "velocity", "acceleration", "jerk", "snap", "crackle", "pop")
 """By order of the time derivative, those that have names."""
-_NUMBERED = "derivative_"
 HIGHEST = 20
 """Bounds of doubles grow with each order. Five digits and more are proven of this one in the shipped scenes,
 but for Bricard's redundant rows; of the thirtieth there may be none."""
@@ -65,7 +64,7 @@ but for Bricard's redundant rows; of the thirtieth there may be none."""
 
 def _states(derivative: int) -> PointStates:
     named = derivative < len(NAMED)
-    name = NAMED[derivative] if named else f"{_NUMBERED}{derivative}"
+    name = NAMED[derivative] if named else f"derivative_{derivative}"
     words = name if named else f"{derivative}th derivative"
     unit = ("mm", "mm/s")[derivative] if derivative < 2 else f"mm/s^{derivative}"
     return PointStates(
@@ -82,13 +81,3 @@ POSITION, *RATES = map(_states, range(HIGHEST + 1))
 STATES = tuple(effect.name for effect in (POSITION, *RATES))
 """Their names, by order."""
 FIRST_NUMBERED = STATES[len(NAMED)]
-
-
-def no_such_derivative(name: str) -> str:
-    """Why there is no effect of a name that says an order, in words that follow it; empty of other names."""
-    order = name.removeprefix(_NUMBERED)
-    if order == name or not (order.isascii() and order.isdecimal()):
-        return ""
-    if len(order) > 4 or int(order) > HIGHEST:
-        return f" (the highest is {STATES[-1]}: beyond it doubles lose their digits)"
-    return f" ({STATES[int(order)]!r} is its name{'' if int(order) else ', and it always comes'})"
