@@ -34,7 +34,7 @@ from pointcoord.mechanism.file import (
     whole_tables,
 )
 from pointcoord.mechanism.freedoms import free_directions
-from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
+from pointcoord.mechanism.inputs import CHASSIS, LENGTHS, Names
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.drawing_doubts import drawing_doubts
@@ -65,6 +65,7 @@ PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
 # power, the order of its series, it stays below the largest number, 2^1024.
 FARTHEST = 1e15
+Instant = Annotated[Number, Field(ge=-FARTHEST, le=FARTHEST)]
 # Where an axle lies, seen from the car's middle.
 AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
 # Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
@@ -448,14 +449,11 @@ class MechanismPart(Part):
 class TimePart(Part):
     """The instants: `samples` of them evenly from start to stop, both included; s."""
 
-    start: Number
-    stop: Number
+    start: Instant
+    stop: Instant
     samples: Annotated[Whole, Field(ge=1, le=MOST_SAMPLES)]
 
     def agree(self) -> None:
-        for name, instant in (("start", self.start), ("stop", self.stop)):
-            if abs(instant) > FARTHEST:
-                raise ValueError(f"{name} is {instant} s; allowed: {-FARTHEST:g} to {FARTHEST:g} s")
         if self.samples == 1 and self.start != self.stop:
             raise ValueError(
                 f"one sample from {self.start} to {self.stop}; allowed: start = stop, or 2 samples"
@@ -479,7 +477,7 @@ class Scene(Part):
     mechanism: MechanismPart
     inputs: dict[str, InputPart]
     time: TimePart
-    points: Annotated[tuple[Text, ...], AS_LIST] | None = None
+    points: Annotated[Names, AS_LIST] | None = None
 
     short_forms = ("units",)
 
@@ -540,15 +538,9 @@ class Scene(Part):
         if points is None or "mechanism" not in others.data:
             return points
         there = others.data["mechanism"].structure.points
-        if not points:
-            raise ValueError(
-                f"none is named; allowed: one or more of {', '.join(there)}; without this key all of them"
-            )
-        for place, name in enumerate(points):
+        for name in points:
             if name not in there:
                 raise no_such("point of this car", name, there)
-            if name in points[:place]:
-                raise ValueError(f"{name!r} is named twice; allowed: each point once")
         return points
 
     def agree(self) -> None:
