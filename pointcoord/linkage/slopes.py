@@ -140,26 +140,24 @@ def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
     """
     layout, system = topology.layout, topology.map
     moved, rows = np.zeros(layout.size), np.zeros(len(system.rows))
-    if isinstance(way, ByGap) and way.point in topology.sliding:
-        moved[layout.vector(way.point)[way.axis]] = 1.0
-        names = topology.sliding[way.point].constraints
-        for constraint, numbers in zip(topology.constraints, topology.rows_of, strict=True):
-            if constraint.name in names:
-                rows[list(numbers)] = 1.0
-    elif isinstance(way, ByGap) and way.point in topology.chassis:
-        moved[layout.vector(way.point)[way.axis]] = -1.0
-        for constraint, numbers in zip(topology.constraints, topology.rows_of, strict=True):
-            if way.point in constraint.pivots:
-                rows[list(numbers)] = 1.0
-    elif isinstance(way, ByGap):
-        moved[layout.vector(way.point)[way.axis]] = 1.0
-        there = {*topology.moving, *topology.chassis}
-        beside = next(others for points, others in topology.joints.items() if way.point in points)
-        others = {i for name in beside if name in there for i in layout.vector(name)}
-        for numbers in topology.rows_of:
-            read = {i for row in numbers for i in system.reads[row]}
-            if not read.isdisjoint(layout.vector(way.point)) and not read.isdisjoint(others):
-                rows[list(numbers)] = 1.0
+    if not isinstance(way, ByGap):
+        return moved, rows
+    sliding, place = topology.sliding.get(way.point), layout.vector(way.point)
+    of_chassis = way.point in topology.chassis and not sliding
+    moved[place[way.axis]] = -1.0 if of_chassis else 1.0
+    there = {*topology.moving, *topology.chassis}
+    beside = next((others for points, others in topology.joints.items() if way.point in points), ())
+    others = {i for name in beside if name in there for i in layout.vector(name)}
+    for constraint, numbers in zip(topology.constraints, topology.rows_of, strict=True):
+        read = {i for row in numbers for i in system.reads[row]}
+        if sliding:
+            of_this_half = constraint.name in sliding.constraints
+        elif of_chassis:
+            of_this_half = way.point in constraint.pivots
+        else:
+            of_this_half = not (read.isdisjoint(place) or read.isdisjoint(others))
+        if of_this_half:
+            rows[list(numbers)] = 1.0
     return moved, rows
 
 

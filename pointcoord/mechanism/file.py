@@ -42,13 +42,6 @@ def _name_or_tables(mechanism: object) -> object:
     return mechanism
 
 
-def _closing(changes: dict[str, Any]) -> dict[str, Any]:
-    for table in changes:
-        if table not in CLOSING:
-            raise no_such("table of a closure", table, CLOSING, (table,))
-    return changes
-
-
 class _Part(BaseModel, defer_build=True):
     mechanism: Annotated[Any, AfterValidator(_name_or_tables)]
     side: Literal["left", "right"] = "left"
@@ -56,7 +49,10 @@ class _Part(BaseModel, defer_build=True):
 
 
 class _Others(BaseModel, defer_build=True):
-    closures: dict[Name, Annotated[dict[Name, dict[Name, Any]], AfterValidator(_closing)]] = {}
+    closures: dict[
+        Name,
+        Annotated[dict[Name, dict[Name, Any]], AfterValidator(lambda changes: known_keys(changes, CLOSING))],
+    ] = {}
     parts: dict[Name, Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields))]] = {}
 
 
@@ -189,9 +185,7 @@ class MechanismFile:
         Raises:
             TableFault: the first fault.
         """
-        for key in tables:
-            if key not in (*TABLES, "title"):
-                raise no_such("table of a mechanism", key, TABLES, (key,))
+        known_keys(tables, (*TABLES, "title"))
         given = {key: value for key, value in tables.items() if value is not None}
         try:
             others = _Others.model_validate({key: given[key] for key in OTHERS if key in given})

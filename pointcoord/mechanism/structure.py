@@ -237,16 +237,12 @@ class Structure:
 
     def joined(self, other: Structure) -> Structure:
         """With another's tables beside its own, on one chassis."""
-        chassis = dict.fromkeys((*self.bodies.get(CHASSIS, ()), *other.bodies.get(CHASSIS, ())))
-        return replace(
-            self,
-            bodies={**self.bodies, **other.bodies, CHASSIS: tuple(chassis)},
-            rods={**self.rods, **other.rods},
-            slides={**self.slides, **other.slides},
-            inputs={**self.inputs, **other.inputs},
-            roles={**self.roles, **other.roles},
-            stand_ins={**self.stand_ins, **other.stand_ins},
-        )
+        tables: dict[str, Any] = {
+            table: {**getattr(self, table), **getattr(other, table)} for table in CLOSING
+        }
+        both = (*self.bodies.get(CHASSIS, ()), *other.bodies.get(CHASSIS, ()))
+        tables["bodies"][CHASSIS] = tuple(dict.fromkeys(both))
+        return replace(self, **tables)
 
     def moving_bodies(self) -> Iterator[tuple[str, tuple[str, ...]]]:
         return ((body, points) for body, points in self.bodies.items() if body != CHASSIS)
