@@ -17,15 +17,13 @@ from numpy.typing import NDArray
 from pointcoord.effects.arithmetic import S, angle
 from pointcoord.effects.car_number import Number
 from pointcoord.effects.corner import Corner, View, Wheel
-from pointcoord.effects.effect import Doubt, Point, Quantity
+from pointcoord.effects.effect import Doubt, Quantity
 from pointcoord.linkage.car_axes import CarAxes, Direction
-from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed, angle_error
 
 Array = NDArray[np.float64]
 
 WHEEL = Quantity("wheel", "wheel angle", "rad", "car")
-AXES = {"wheel_axis": "the wheel's spin axis", "steering_axis": "the steering axis"}
 # As the page of effects has them.
 LETTERS = {"wheel_axis": "n", "steering_axis": "k"}
 
@@ -72,17 +70,6 @@ class Angle(Number):
         (corner,) = corners
         return angle_error(*self.parts(corner.seen), found)
 
-    def refusal(self, wheel: Wheel, drawn: Mapping[str, Point]) -> str:
-        """A line has no direction where the point that stands in for one of its own lies on the other."""
-        start, end = self.ends(wheel)
-        own = _missing(wheel.topology, start)
-        if not (own and drawn[start] == drawn[end]):
-            return ""
-        return (
-            f"{start} and {end} are at the same place, so that {AXES[self.line]} has no direction; "
-            f"give the axis a point of its own, {own}"
-        )
-
     def doubt(self, wheel: Wheel, drawn: Mapping[str, Array], axes: CarAxes) -> Doubt:
         """That it is steeper in drawings than in any car.
 
@@ -101,9 +88,3 @@ class Angle(Number):
             )
 
         return Doubt(np.abs(degrees) > self.steepest, words)
-
-
-def _missing(topology: Topology, point: str) -> str:
-    """The point that another one stands in for; empty if it stands for itself only."""
-    missing = (name for name, other in topology.stand_ins.items() if other == point)
-    return next((name for name in missing if name not in topology.points), "")

@@ -87,10 +87,6 @@ class Number:
         exact: Enclosed = self.formula(*corners)
         return exact.scaled(unit**self.power).errors(found)
 
-    def refusal(self, wheel: Wheel, drawn: Mapping[str, Point]) -> str:
-        """Why a drawing that has its roles does not have it, in words; empty if it does."""
-        return ""
-
 
 @dataclass(frozen=True, eq=False)
 class CarNumbers(Effect):
@@ -202,7 +198,7 @@ class CarNumbers(Effect):
         return corner.moving(poses.slopes[wheel.way(self.way)]) if self.way else corner
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
-        """What it is made of is missing, or a number has no meaning in the drawing."""
+        """What it is made of is missing."""
         wheels = self._wheels(topology)
         if not wheels and self.of_axle:
             needs = f"two parts on opposite sides of the car with the roles {' and '.join(self.lines)}"
@@ -218,10 +214,6 @@ class CarNumbers(Effect):
             lines = ", ".join(f"{name} = {SUCH_AS[name]}" for name in absent)
             return lacks(self.name, needs, f"give it under [mechanism.car], such as {lines}")
         for wheel in wheels:
-            for number in self.numbers:
-                problem = number.refusal(wheel, drawn)
-                if problem:
-                    return f"{problem}, or leave {self.name!r} out"
             driven = wheel.driven(self.way) if self.way else ("",)
             if len(driven) != 1:
                 of = f"of the {wheel.part} wheel " if wheel.part else ""

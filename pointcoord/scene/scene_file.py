@@ -303,11 +303,12 @@ class MechanismPart(Part):
 
     def _spin_axis(self) -> None:
         for prefix, *_ in self._wheels():
-            axis = self._whole.roles.get(f"{prefix}wheel_axis")
-            if axis is not None and self.points.get(axis[0]) == self.points[axis[1]]:
+            axis = self.structure.roles.get(f"{prefix}wheel_axis")
+            if axis is not None and self.points[axis[0]] == self.points[axis[1]]:
+                own = self._whole.roles[f"{prefix}wheel_axis"][0]
                 raise ValueError(
                     f"{axis[0]} and {axis[1]} are at the same place, so that the wheel's spin axis has "
-                    "no direction; allowed: two points of the axis apart from each other"
+                    f"no direction; allowed: a place of {own} that is apart from {axis[1]}"
                 )
 
     @property
