@@ -16,10 +16,22 @@ settings.register_profile("deep", max_examples=EXAMPLES["deep"], **COMMON)
 settings.load_profile(PROFILE)
 
 
-def pytest_collection_finish(session: pytest.Session) -> None:
-    """What was collected stays to the end: the garbage collector need not look at it again."""
+def kept() -> None:
+    """What is there stays to the end: the garbage collector, which races call, need not look at it again."""
     gc.collect()
     gc.freeze()
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """What was collected."""
+    kept()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """What the tests of a file have imported and remembered."""
+    if nextitem is None or nextitem.path != item.path:
+        kept()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

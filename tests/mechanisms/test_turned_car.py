@@ -1,95 +1,58 @@
-"""A car that rolls, pitches and heaves while its arm and rack move, in point coordinates.
+"""A car that rolls, pitches and heaves while its wheel bounces and is steered: directions and order of that.
 
-Every number is held to the reference, which turns the car in many digits, within its own proven bound: far
-from the origin here, and near it with every other mechanism in test_formulations.
+Every number of the car, near the origin and far from it, is held to the reference in test_formulations.
 """
 
-import tomllib
-from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from pointcoord import InputOutOfRange, Scene, simulate
-from pointcoord.effects.point_states import NAMED
-from pointcoord.mechanism.file import MECHANISMS
 from validate import compare
 
-Array = NDArray[np.float64]
-MOTIONS = {
-    "heave": {"moves": "chassis", "along": "up"},
-    "roll": {"turns": "chassis", "about": "lower_arm_front", "along": "forward"},
-    "pitch": {"turns": "chassis", "about": "wheel_centre", "along": "left"},
-}
-HIGHER = (*NAMED[3:], "derivative_9")
-LAWS = {
-    "heave": {"sine": {"amplitude": 12.0, "angular_frequency": 3.0}},
-    "roll": {"sine": {"amplitude": 0.2, "angular_frequency": 3.0, "phase": 0.3, "offset": 7.0}},
-    "pitch": {"polynomial": [0.02, -0.3, 0.25]},
-}
+TURNED = Scene.load(Path(__file__).with_name("roll-pitch-heave.toml")).model_dump(exclude_none=True)
+# Of this car, whose x leads rearward: forward and left.
+AXES = {"roll": [-1.0, 0.0, 0.0], "pitch": [0.0, -1.0, 0.0]}
 
 
-@cache
-def turning(name: str, far: bool = False, order: tuple[str, ...] = ("heave", "roll", "pitch")) -> Scene:
-    """A built-in scene whose car is moved as a whole too, and may be drawn far from the origin."""
-    content = Scene.load(name).model_dump(exclude_none=True)
-    part = content["mechanism"]
-    tables = tomllib.loads((MECHANISMS / f"{part.pop('type')}.toml").read_text())
-    tables["inputs"] |= {motion: MOTIONS[motion] for motion in order}
-    shift = (1e5, 0.0, -3e5) if far else (0.0, 0.0, 0.0)
-    part["points"] = {n: (np.array(p) + shift).tolist() for n, p in part["points"].items()}
-    part.pop("driven", None)
-    content["mechanism"] = part | tables
-    content["effects"] = [*content["effects"], *HIGHER]
-    content["inputs"] |= {motion: LAWS[motion] for motion in reversed(order)}
-    content["time"] = {"start": 0.0, "stop": 1.0, "samples": 9}
-    return Scene.from_mapping(content)
+def turned(drives: dict[str, Any] | None = None, **laws: Any) -> Scene:
+    """The car with other inputs that can be driven, or with other laws of them."""
+    part, drives = TURNED["mechanism"], drives or TURNED["mechanism"]["inputs"]
+    time = {"start": 0.0, "stop": 1.0, "samples": 5}
+    inputs = {**TURNED["inputs"], **laws}
+    return Scene.from_mapping(
+        TURNED | {"mechanism": {**part, "inputs": drives}, "inputs": inputs, "time": time}
+    )
 
 
 def test_absolute_displaces_the_car_along_every_direction_at_once() -> None:
-    content = turning("double-wishbone").model_dump(exclude_none=True)
-    for speed, along in enumerate(("down", "left", "right", "forward", "rearward"), 1):
-        content["mechanism"]["inputs"][along] = {"moves": "chassis", "along": along}
-        content["inputs"][along] = {"polynomial": [5.0, 2.0**speed]}
-    assert compare(Scene.from_mapping(content), "pointcoord", "absolute").agreed
-
-
-def law_at(scene: Scene, name: str, instant: float) -> float:
-    return float(scene.functions[name].series(np.array([instant]), 0)[0, 0])
-
-
-def turned_by_hand(places: Array, scene: Scene, names: tuple[str, ...], instant: float) -> Array:
-    """Roll is about -x and pitch about -y of these cars, each about the drawn place of its point."""
-    axes = {"roll": [-1.0, 0.0, 0.0], "pitch": [0.0, -1.0, 0.0]}
-    for name in names:
-        about = np.array(scene.mechanism.points[MOTIONS[name]["about"]])
-        angle = law_at(scene, name, instant)
-        places = about + Rotation.from_rotvec(angle * np.array(axes[name])).apply(places - about)
-    return places
+    ways = ("down", "left", "right", "forward", "rearward")
+    drives = TURNED["mechanism"]["inputs"] | {way: {"moves": "chassis", "along": way} for way in ways}
+    laws = {way: {"polynomial": [5.0, 2.0**speed]} for speed, way in enumerate(ways, 1)}
+    assert compare(turned(drives, **laws), "pointcoord", "absolute").agreed
 
 
 def test_turns_follow_each_other_in_the_order_of_the_file() -> None:
-    places = {}
-    still = Scene.load("double-wishbone").model_dump(exclude_none=True)
-    still["time"] = {"start": 0.0, "stop": 1.0, "samples": 9}
-    car = simulate(Scene.from_mapping(still))
+    still = simulate(turned(**{name: {"constant": 0.0} for name in (*AXES, "heave")}))
+    middle, places = np.array(TURNED["mechanism"]["points"]["middle"]), []
     for order in (("heave", "roll", "pitch"), ("pitch", "heave", "roll")):
-        scene = turning("double-wishbone", order=order)
-        motion = simulate(scene)
-        turns = tuple(name for name in order if name != "heave")
+        drives = {n: d for n, d in TURNED["mechanism"]["inputs"].items() if n not in order}
+        scene = turned(drives | {name: TURNED["mechanism"]["inputs"][name] for name in order})
+        motion, values = simulate(scene), {n: f.series(0.5, 0)[0] for n, f in scene.functions.items()}
         for name, place in motion.position.items():
-            meant = turned_by_hand(car.position[name][4:5], scene, turns, 0.5)
-            meant[0, 2] += law_at(scene, "heave", 0.5)
-            np.testing.assert_allclose(place[4:5], meant, rtol=0.0, atol=1e-11)
-        places[order] = motion.position["wheel_centre"]
-    first, second = places.values()
-    assert np.abs(first - second).max() > 1.0
+            meant = still.position[name][2]
+            for turn in (name for name in order if name != "heave"):
+                by = Rotation.from_rotvec(values[turn] * np.array(AXES[turn]))
+                meant = middle + by.apply(meant - middle)
+            lift = np.array([0.0, 0.0, values["heave"]])
+            np.testing.assert_allclose(place[2], meant + lift, rtol=0.0, atol=1e-11)
+        places.append(motion.position["wheel_centre"][2])
+    assert np.abs(places[0] - places[1]).max() > 0.1
 
 
 def test_a_car_that_turns_too_fast_is_refused_with_when_and_what() -> None:
-    content = turning("double-wishbone").model_dump(exclude_none=True)
-    content["inputs"]["roll"] = {"polynomial": [0.0, 1e141]}
     with pytest.raises(InputOutOfRange, match="below 1e\\+140 rad/s in size"):
-        simulate(Scene.from_mapping(content))
+        simulate(turned(roll={"polynomial": [0.0, 1e141]}))

@@ -27,7 +27,7 @@ import speed
 from difference import Comparison, compared
 from record import Record, read_record, write_record
 
-HERE = Path(__file__).parent
+FROZEN = Path(__file__).parent / "frozen"
 PARTS: dict[str, Callable[[Path], Record]] = {
     "scenes": scenes.record,
     "import": imports.record,
@@ -52,11 +52,8 @@ def options_of(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("parts", nargs="*", metavar="PART", help=names)
     parser.add_argument("--all", action="store_true", help="all parts; speed comes last")
     parser.add_argument("--freeze", action="store_true", help="keep what is answered now instead")
-    parser.add_argument(
-        "--count", type=int, help="random cars: the first so many; with --freeze, how many to keep at least"
-    )
+    parser.add_argument("--count", type=int, help="random cars: the first so many")
     parser.add_argument("--factor", type=float, help="speed: the ratio now / before that is a failure")
-    parser.add_argument("--frozen", type=Path, default=HERE / "frozen", help="the folder of what was frozen")
     options = parser.parse_args(arguments)
     unknown = [part for part in options.parts if part not in NAMES]
     if unknown:
@@ -78,19 +75,16 @@ def answered(part: str, options: argparse.Namespace, folder: Path) -> Record:
         return scenes.quick(folder)
     if part != RANDOM:
         return PARTS[part](folder)
-    if options.freeze:
-        random_cars.extend(options.frozen, options.count or random_cars.COUNT)
-        return random_cars.record(folder, random_cars.stored(options.frozen))
-    return random_cars.record(folder, random_cars.stored(options.frozen, options.count))
+    return random_cars.record(folder, random_cars.stored(FROZEN, options.count))
 
 
 def was_frozen(part: str, options: argparse.Namespace) -> Record:
     """What was frozen of a part; of a piece of it, the same piece."""
     if part == SCENES_QUICK:
-        return scenes.quick_of(read_record(options.frozen, "scenes"))
-    whole = read_record(options.frozen, part)
+        return scenes.quick_of(read_record(FROZEN, "scenes"))
+    whole = read_record(FROZEN, part)
     if part == RANDOM and options.count is not None:
-        return whole.only(set(random_cars.stored(options.frozen, options.count)))
+        return whole.only(set(random_cars.stored(FROZEN, options.count)))
     return whole
 
 
@@ -102,7 +96,7 @@ def hold(part: str, options: argparse.Namespace, folder: Path) -> Comparison:
     """
     if options.freeze:
         now = answered(part, options, folder)
-        write_record(options.frozen, part, now)
+        write_record(FROZEN, part, now)
         return compared(part, now, now)
     frozen = was_frozen(part, options)
     return compared(part, frozen, answered(part, options, folder))

@@ -6,14 +6,12 @@ The scenes are files of their own among what is frozen, so that nothing hangs on
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
-from program import ROOT, document, numbers_of, pointcoord, scene_facts
-from record import Facts, Record, read_text, write_text
+from program import document, numbers_of, pointcoord, scene_facts
+from record import Facts, Record, read_text
 
-COUNT = 2000
 SCENES = "random-scenes.json.xz"
 FIRST, SECOND = "pointcoord", "absolute"
 
@@ -22,20 +20,6 @@ def stored(frozen: Path, count: int | None = None) -> dict[str, Any]:
     """The first so many frozen scenes by name; a name has the number and what the car comes near to."""
     path = frozen / SCENES
     return dict(list(read_text(path).items())[:count]) if path.exists() else {}
-
-
-def extend(frozen: Path, count: int) -> None:
-    """Keep this many scenes; those that are there stay. Needs the maker of random scenes as it was."""
-    sys.path.insert(0, str(ROOT))
-    from validate.cars.random_scenes import random_scene
-
-    scenes = stored(frozen)
-    for number in range(len(scenes), count):
-        made = random_scene(number)
-        content = made.scene.model_dump(mode="json", exclude_none=True)
-        scenes[f"{number:05d} {made.variant.words}, {made.kind}".replace(" ", "-").replace(",", "")] = content
-    frozen.mkdir(parents=True, exist_ok=True)
-    write_text(frozen / SCENES, scenes)
 
 
 def record(folder: Path, scenes: dict[str, Any]) -> Record:
