@@ -211,7 +211,7 @@ def test_scenes_that_are_refused_or_broken_have_their_reason_beside_them(
 def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_small() -> None:
     content, count = Scene.load("double-wishbone").model_dump(exclude_none=True), 400
     content["effects"] = ["velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster"]
-    content["time"] = content["time"] | {"samples": 301}
+    content["time"] = content["time"] | {"samples": 61}
     scene = Scene.from_mapping(content)
     wide = examine("wide", scene, (("pointcoord", "absolute"), ("pointcoord-newton", "absolute")), False)
     names = [f"a folder of mine/with a long name of a scene {i:03d}.toml" for i in range(count)]
