@@ -26,7 +26,7 @@ PHASES = (Phase.explicit, Phase.generate)
 EXAMPLES = settings.default.max_examples if settings.default else 100
 
 
-@settings(max_examples=EXAMPLES if EXAMPLES > 100 else 4, phases=PHASES)
+@settings(max_examples=EXAMPLES if EXAMPLES > 100 else 3, phases=PHASES)
 @given(st.integers(0, 2**32 - 1))
 def test_a_mechanism_at_random_moves_as_the_reference_says_by_every_formulation(number: int) -> None:
     content = random_mechanism(number)

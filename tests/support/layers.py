@@ -1,14 +1,8 @@
-"""How the modules of a package lie on each other: who imports whom, in rooms and on floors.
-
-    python tests/support/layers.py [FOLDER]
-
-prints it for the packages in a folder, this project's unless one is given.
-"""
+"""How the modules of a package lie on each other: who imports whom, in rooms and on floors."""
 
 from __future__ import annotations
 
 import ast
-import sys
 from collections import Counter
 from functools import cache
 from pathlib import Path
@@ -71,22 +65,3 @@ def floors(found: dict[str, set[str]]) -> list[list[str]]:
         placed |= set(ready)
         below = {name: needs for name, needs in below.items() if name not in placed}
     return result
-
-
-def report(root: Path) -> str:
-    """Files, floors, rooms and arrows of each package."""
-    lines = []
-    for package in PACKAGES:
-        found = modules(root, package)
-        inner = [name for name in found if "." in name]
-        between = arrows(found)
-        lines.append(
-            f"{package}: {len(inner)} modules on {len(floors(found))} floors, "
-            f"{len({room_of(n) for n in inner})} rooms, {len(between)} arrows between them "
-            f"({between.total()} imports)"
-        )
-    return "\n".join(lines)
-
-
-if __name__ == "__main__":
-    print(report(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT))
