@@ -104,7 +104,7 @@ def test_a_table_is_written_in_the_memory_of_a_block(ending: str, tmp_path: Path
     scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 101})})
     found = sweep(scene, offsets={"lower_ball_joint.z": np.linspace(-1.0, 1.0, 8)})
     write_sweep(str(tmp_path / f"few{ending}"), [found])  # what is made once stays
-    copies = 40
+    copies = 16
 
     def peak(count: int) -> int:
         tracemalloc.start()
