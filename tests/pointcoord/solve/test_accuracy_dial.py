@@ -60,7 +60,7 @@ def rounding(exact: Motion) -> float:
     return 4.0 * max(float(proof.bound.max()), float(proof.carried_bound.max()))
 
 
-@settings(deadline=None, max_examples=max(12, settings.default.max_examples // 8))
+@settings(deadline=None, max_examples=max(8, settings.default.max_examples // 12))
 @given(method=st.sampled_from([*METHODS]), scene=scenes(), tolerance=tolerances)
 def test_what_is_left_out_is_within_the_tolerance_what_is_proven_and_what_is_claimed(
     method: str, scene: Scene, tolerance: float

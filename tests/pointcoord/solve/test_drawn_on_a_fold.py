@@ -76,7 +76,7 @@ def test_a_drawing_with_a_tie_rod_all_but_at_its_dead_point_keeps_its_side(
     car: SampleCar, power: int
 ) -> None:
     for sine in (5.0 * 10.0**power, -5.0 * 10.0**power):
-        assert all(sides(car, sine, 12))
+        assert all(sides(car, sine, 6))
 
 
 @pytest.mark.parametrize("car", CLOSING, ids=lambda car: car.name)

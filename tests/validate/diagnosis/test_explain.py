@@ -34,7 +34,7 @@ EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "
 
 
 @cache
-def solved(name: str, samples: int = 21) -> tuple[Scene, Solution]:
+def solved(name: str, samples: int = 12) -> tuple[Scene, Solution]:
     scene = Scene.load(name)
     time = scene.time.model_copy(update={"samples": samples})
     scene = scene.model_copy(update={"effects": EFFECTS, "time": time})

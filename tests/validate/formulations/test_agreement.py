@@ -11,7 +11,7 @@ from validate.strategies import scenes
 
 # The short profile searches briefly: `pointcoord study random` searches long.
 EXAMPLES = settings.default.max_examples if settings.default else 100
-searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 20)
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 12)
 
 
 def require_agreement(outcome: Outcome) -> None:

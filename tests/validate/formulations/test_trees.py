@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 # Without shrinking, which takes minutes where a motion is long.
 PHASES = (Phase.explicit, Phase.generate)
 searched = settings(
-    max_examples=min(settings.default.max_examples if settings.default else 100, 8), phases=PHASES
+    max_examples=min(settings.default.max_examples if settings.default else 100, 5), phases=PHASES
 )
 
 

@@ -81,7 +81,7 @@ def spoiled(examined: Examined) -> Examined:
 
 
 # The paper's and one of each other kind; all of them are compared in tests/validate/commands/test_cli.py.
-FEW = (*PAPER_SCENES, "five-link", "axle-roll", "slider-crank")
+FEW = (*PAPER_SCENES, "five-link", "slider-crank")
 
 
 @pytest.fixture(scope="module")
