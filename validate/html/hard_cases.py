@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,10 +11,18 @@ from pydantic import BaseModel, ValidationError
 
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
+from validate.hard.answer import Answer
 from validate.output.report import counted_as
 from validate.plain_text import shown, some_of
 
 NAMED = 10  # cases that a sentence names
+
+
+class Trial(BaseModel):
+    """What formulations made of one value of a case's parameter."""
+
+    value: float
+    answers: tuple[Answer, ...]
 
 
 class Unexpected(BaseModel):
@@ -32,7 +40,15 @@ class Case(BaseModel):
     name: str
     group: str
     why: str
+    parameter: str
+    unit: str
+    trials: tuple[Trial, ...]
     unexpected: tuple[Unexpected, ...]
+
+    @property
+    def answers(self) -> Iterator[tuple[float, Answer]]:
+        """Every answer, with the value of the parameter."""
+        return ((trial.value, answer) for trial in self.trials for answer in trial.answers)
 
 
 class HardCases(BaseModel):
@@ -74,7 +90,9 @@ class HardCases(BaseModel):
         count = counted_as(len(self.cases), "hard case")
         other = some_of([one.name for one in self.cases if one.unexpected], NAMED)
         came = "all as expected" if self.as_expected else f"disagrees, not as expected: {other}"
-        return f"{count} compared with the many-digit reference: {came}"
+        left = [one.name for one in self.cases if any(a.outcome == "unjudged" for _, a in one.answers)]
+        unjudged = f"; some answers not judged: {some_of(left, NAMED)}" if left else ""
+        return f"{count} compared with the many-digit reference: {came}{unjudged}"
 
 
 def read_hard_cases(file: str) -> HardCases:

@@ -26,6 +26,7 @@ from validate.comparison.examined import Examined, examine
 from validate.cost.report import Report
 from validate.cost.ways.registry import WAYS
 from validate.html.data import data_files
+from validate.html.hard_cases import HardCases
 from validate.html.page import page
 from validate.html.run import FIRST, FURTHER, Drawings, Drawn, Run
 from validate.html.sections import sections
@@ -361,6 +362,23 @@ def test_hard_cases_of_an_earlier_run_say_so_and_decide_with_the_scenes(tmp_path
         assert not [given for _, given in shown.tags if "onload" in given]
         assert json.loads((out / "results.json").read_text())["exit_status"] == status
         assert json.loads((out / "hard.json").read_text()) == json.loads(file.read_text())
+
+
+def test_hard_cases_are_drawn_as_errors_over_the_distance() -> None:
+    right = [answer("right", 1e-12 / value, value) for value in (1e-2, 1e-3, 1e-5)]
+    document = hard_document(*right, answer("wrong", 0.5, 1e-7), answer("refused", None, 1e-9, "absolute"))
+    shown = read(Run(head("report"), hard=HardCases.of(document)))
+    ((words, plot),) = shown.plots
+    assert words.startswith("near-a-fold, over ")
+    points = {one["name"]: list(zip(one["x"], one["y"], strict=True)) for one in plot["data"]}
+    assert points == {
+        "pointcoord: right": [(1e-1, 1e-12), (1e-2, 1e-10), (1e-3, 1e-9), (1e-5, 1e-7)],
+        "pointcoord: wrong": [(1e-7, 0.5)],
+        "absolute: refused": [(1e-9, 1e-13)],  # below the least error
+    }
+    assert {plot["layout"][name]["type"] for name in ("xaxis", "yaxis")} == {"log"}
+    # Plotly reads marks in its labels.
+    assert "<" not in json.dumps(plot)
 
 
 def test_accuracy_against_time_has_a_point_for_each_setting_and_a_look_for_each_way() -> None:
