@@ -80,6 +80,5 @@ def reference_numbers(scene: Scene, instants: Array) -> dict[str, dict[str, Arra
     """The reference rounded to doubles; solved once."""
     key = (scene.model_dump_json(), instants.tobytes())
     if key not in _KNOWN:
-        exact = truth_of(scene, instants).exact
-        _KNOWN[key] = {q: {name: x.high for name, x in names.items()} for q, names in exact.items()}
+        _KNOWN[key] = truth_of(scene, instants).numbers
     return {q: {name: array.copy() for name, array in names.items()} for q, names in _KNOWN[key].items()}

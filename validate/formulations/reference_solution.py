@@ -104,13 +104,13 @@ def _clearness(exact_sides: bool) -> float:
     return 0.0 if exact_sides else CLEAR
 
 
-def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
-    """The reference at the instants of a scene, rounded to doubles.
+def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None = None) -> Solution:
+    """The reference at the instants of a scene, or at other times, rounded to doubles.
 
     Numbers that are zero up to the reference's own proven error, which it claims, are zero: the middles of
     its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
     """
-    times, first = scene.instants, instants[0]
+    times, first = scene.instants if times is None else times, instants[0]
     told = [name for name in first.effects if all(name in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
