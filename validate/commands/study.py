@@ -43,7 +43,7 @@ class Named:
 
 STUDIES: Mapping[str, Named] = {
     "random": Named("random_cars", "random_cars", ("count",)),
-    "bounds": Named("bounds", "bounds", ("poses", "motions", "seed")),
+    "bounds": Named("bounds", "bounds", ("poses", "seed")),
     "claims": Named("claims", "claims", ("count", "first", "formulation"), ("--formulation", NAMES)),
     "hard": Named("hard_cases", "hard", ("cases",)),
 }

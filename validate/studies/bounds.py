@@ -1,8 +1,7 @@
 r"""Whether pointcoord's proven bounds hold, and how loose they are, up to the poses where a car locks.
 
-Two sets of random poses of every mechanism (see `near_singular`), each reproducible by its number: cars held
-close to the end of an input, and motions that run towards such an end, at random instants between. Each
-instant is proven alone and among many that are close to it; the lesser bound counts.
+Random poses of every mechanism (see `near_singular`), each reproducible by its number: cars held close to the
+end of an input. Motions towards an end, and rates, are among what `claims` holds to the reference.
 
     pointcoord study bounds --poses 10000
 
@@ -26,7 +25,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pointcoord import Motion, PointcoordError, Scene, simulate
+from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.numerics.rounding import EPS
 from validate.cars.base_cars import variants
 from validate.cars.near_singular import NearPose, near_pose
@@ -40,18 +39,13 @@ from validate.studies.study import Findings, Row, Study, Task
 Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
 
-MOTIONS = 20  # poses for each motion, unless they are counted
 DIGITS = 40  # of the reference: its error is 1e-20 of any error in double precision
-INSTANTS = 4  # per motion
-COMPANY = 63  # instants beside each
-CLOSE, NEARER = 1e-4, 1e-2  # s, and parts of the time that is left: how near they are to it
-HELD, MOVING = "held", "moving"
+PART = "held"
 
 # Lengths in mm. A refused pose has a suspension, a distance and a refusal alone.
 COLUMNS: Mapping[str, str] = {
     **dict.fromkeys(("suspension", "driven", "refusal"), "string"),  # driven: of the `NearPose`
-    "distance": "float64",  # of the instant, from the end, in parts of the input's range
-    "instant": "float64",  # s; 0 of a held pose
+    "distance": "float64",  # from the end, in parts of the input's range
     "condition": "float64",  # of the Jacobian
     "size": "float64",  # of the mechanism, a power of two
     "far": "float64",  # largest coordinate of a point in the frame of the scene
@@ -60,99 +54,55 @@ COLUMNS: Mapping[str, str] = {
 }
 
 
-def bounds(poses: int = 2000, motions: int | None = None, seed: int = 0) -> Study:
-    """Poses held close to the end of an input, and motions towards one."""
-    motions = poses // MOTIONS if motions is None else motions
-    held = [Task(HELD, number) for number in range(poses)]
-    moving = [Task(MOVING, number) for number in range(motions)]
-    examine, summary = partial(examined, seed=seed), partial(found, seed=seed)
-    return Study("bounds", "pose", {"seed": seed}, COLUMNS, [*held, *moving], examine, summary, chunk=8)
+def bounds(poses: int = 2000, seed: int = 0) -> Study:
+    """Poses held close to the end of an input."""
+    tasks, examine = [Task(PART, number) for number in range(poses)], partial(examined, seed=seed)
+    return Study(
+        "bounds", "pose", {"seed": seed}, COLUMNS, tasks, examine, partial(found, seed=seed), chunk=8
+    )
 
 
 def examined(task: Task, seed: int) -> list[Row]:
-    """Hold a pose, or the instants of a motion, against the reference."""
-    if task.part == HELD:
-        return held_pose(near_pose(task.number, seed))
-    return moving_instants(task.number, seed)
+    """Hold the pose of a number against the reference."""
+    return [held_pose(near_pose(task.number, seed))]
 
 
-def held_pose(pose: NearPose) -> list[Row]:
+def held_pose(pose: NearPose) -> Row:
     """The check of a car whose inputs are constant."""
-    return _checked(pose, {name: [value] for name, value in pose.inputs.items()}, np.zeros(1), stop=0.0)
-
-
-def moving_instants(number: int, seed: int) -> list[Row]:
-    """Checks at random instants of a motion from the drawing towards the end of an input.
-
-    All inputs run at constant rates for one second; half the instants lie anywhere, half towards the end.
-    """
-    pose = near_pose(number, seed, nearest=1e-8)
-    rng = np.random.default_rng([seed, number, 1])
-    laws = {name: [pose.home[name], value - pose.home[name]] for name, value in pose.inputs.items()}
-    late = 1.0 - 10.0 ** rng.uniform(-8.0, 0.0, INSTANTS // 2)
-    return _checked(pose, laws, np.concatenate([rng.uniform(0.0, 1.0, INSTANTS - len(late)), late]), stop=1.0)
-
-
-def _checked(pose: NearPose, laws: Mapping[str, Sequence[float]], instants: Array, stop: float) -> list[Row]:
-    samples = 1 if stop == 0.0 else 2
-    scene = Scene.from_mapping(content_of(pose.car, laws, stop=stop, samples=samples, effects=()))
-    motion = _answer(lambda: simulate(scene))
-    return [{"suspension": pose.variant.words, **_check(pose, scene, float(t), motion)} for t in instants]
-
-
-def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -> Row:
-    # The distance of a motion shrinks with the part of its way that is left.
-    rate = (*(scene.inputs[pose.driven].polynomial or ()), 0.0)[1]
-    distance = pose.distance + abs(rate) * (1.0 - instant) / pose.reach
+    where = {"suspension": pose.variant.words, "distance": pose.distance}
+    scene = Scene.from_mapping(content_of(pose.car, pose.inputs, effects=()))
     # For the values that the laws have in double precision, as the bound is for these.
-    inputs = {name: (value, 0.0, 0.0) for name, (value, *_) in inputs_at(scene, instant).items()}
+    inputs = {name: (value, 0.0, 0.0) for name, (value, *_) in inputs_at(scene, 0.0).items()}
+    motion = _answer(lambda: simulate(scene))
     reference = _answer(lambda: reference_instant(scene, inputs, digits=DIGITS))
     if isinstance(motion, str) or (isinstance(reference, str) and reference != InfeasibleError.__name__):
         ours, theirs = (one if isinstance(one, str) else "answers" for one in (motion, reference))
-        return {"distance": distance, "refusal": f"pointcoord: {ours}; reference: {theirs}"}
-    company, place = _company(motion, instant)
-    together = motion.at(company)
-    samples = together.part(place, place + 1)
-    # Neighbours share an inverse; what is proven among them must hold as well as what is proven alone.
-    proof, among = motion.proof_of(samples), motion.proof_of(together)
-    bound, carried = (
-        min(float(getattr(proof, name)[0]), float(getattr(among, name)[place]))
-        for name in ("bound", "carried_bound")
-    )
+        return {**where, "refusal": f"pointcoord: {ours}; reference: {theirs}"}
+    proof = motion.proof()
+    bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
-        return {"distance": distance, "refusal": "pointcoord: no finite bound"}
+        return {**where, "refusal": "pointcoord: no finite bound"}
 
     def error(names: set[str]) -> float:
         """The largest component of the distance of any of these points from the true one, mm."""
         # Where the reference has no such assembly, nothing bounds the error.
         if not isinstance(reference, Instant):
             return math.inf
-        pairs = ((samples.position[name][0], reference.position[name]) for name in names)
+        pairs = ((motion.position[name][0], reference.position[name]) for name in names)
         return max(off_by(ours, exact) for pair in pairs for ours, exact in zip(*pair, strict=True))
 
     names = set(scene.mechanism.topology.carried)
-    solved = error(set(samples.position) - names)
+    solved = error(set(motion.position) - names)
     return {
+        **where,
         "driven": pose.driven,
-        "distance": distance,
-        "instant": instant,
         "condition": float(proof.condition[0]),
         "size": motion.unit,
-        "far": max(float(np.abs(place).max()) for place in samples.position.values()),
+        "far": max(float(np.abs(place).max()) for place in motion.position.values()),
         "error": solved,
         "bound": bound,
         "share": max(solved / bound, error(names) / carried) if names else solved / bound,
     }
-
-
-def _company(motion: Motion, instant: float) -> tuple[Array, int]:
-    """An instant of a motion among many that are close to it, and its place among them."""
-    first, last = float(motion.times[0]), float(motion.times[-1])
-    # Closer where an end is near, in whose last part everything changes as fast as in all that is before.
-    near = min(CLOSE, NEARER * (last - instant))
-    company = np.unique(np.clip(instant + near * np.linspace(-1.0, 1.0, COMPANY), first, last))
-    company = np.unique(np.append(company, instant))
-    return company, int(np.searchsorted(company, instant))
 
 
 def _answer(ask: Callable[[], Answer]) -> Answer | str:
@@ -190,14 +140,11 @@ def found(rows: Sequence[Row], seed: int) -> Findings:
         "refusals": [{"reason": reason, "poses": count} for reason, count in reasons],
         "broken": broken.astype(object).where(broken.notna(), None).to_dict("records"),
     }
-    parts: list[Part] = [_summary(checks, Counter(row["suspension"] for row in refusals))]
-    for part, what in (
-        (HELD, "poses held close to the end of an input"),
-        (MOVING, "instants of motions that run towards the end of an input"),
-    ):
-        there = checks[checks["part"] == part]
-        parts += ["", f"{len(there)} {what}; medians, unless it says largest", _by_distance(there)]
-    parts += [
+    parts: list[Part] = [
+        _summary(checks, Counter(row["suspension"] for row in refusals)),
+        "",
+        f"{len(checks)} poses held close to the end of an input; medians, unless it says largest",
+        _by_distance(checks),
         "",
         "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
         f"refused: {len(refusals)}",
@@ -213,12 +160,11 @@ def _summary(checks: pd.DataFrame, refused: Mapping[str, int]) -> Table:
     rows = []
     for words in (variant.words for variant in variants()):
         here = checks[checks["suspension"] == words]
-        sets = [int((here["part"] == part).sum()) for part in (HELD, MOVING)]
-        counts = (*sets, refused[words], int((~(here["share"] <= 1.0)).sum()))
+        counts = (len(here), refused[words], int((~(here["share"] <= 1.0)).sum()))
         ends = here["share"].max(skipna=False), here["loose"].median()
         shown = ("-", "-") if here.empty else (f"{ends[0]:.7g}", f"{ends[1]:.3g}")
         rows.append((words, *map(str, counts), *shown))
-    head = ("suspension", "poses held", "instants of motions", "refused", "bounds below the error")
+    head = ("suspension", "poses held", "refused", "bounds below the error")
     return Table((*head, "largest error / bound", "median bound / error"), tuple(rows))
 
 

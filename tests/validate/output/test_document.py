@@ -92,7 +92,7 @@ def test_every_ending_of_a_comparison_keeps_to_the_schema(
 
 @pytest.mark.parametrize(
     "study",
-    [random_cars(1), bounds(1, motions=0), hard(["link-twice"])],
+    [random_cars(1), bounds(1), hard(["link-twice"])],
     ids=lambda study: study.name,
 )
 def test_what_studies_find_keeps_to_the_schema(study: Study) -> None:

@@ -36,7 +36,7 @@ def checks(draw: st.DrawFn) -> pd.DataFrame:
     )
     assume(pose is not None)
     assert pose is not None
-    (row,) = held_pose(pose)
+    row = held_pose(pose)
     assume("refusal" not in row)
     return measured([row])
 
@@ -71,7 +71,7 @@ def test_a_bound_below_the_error_is_found_and_ends_with_status_1(monkeypatch: py
         return own, 1e-6 * bound, *others
 
     monkeypatch.setattr(proof, "_of_poses", short)
-    (row,) = held_pose(beside(near_pose(4), 1e-4))
+    row = held_pose(beside(near_pose(4), 1e-4))
     findings = bounds().summary([{"part": "held", "number": 0, **row}])
     assert findings.status == ExitStatus.DISAGREE
     assert "bounds below the error: 1\n  number 0, " in text_of(findings.parts)

@@ -13,7 +13,7 @@ from validate.studies.claims import claims
 from validate.studies.store import Store, records
 from validate.studies.study import Row, Study, Task, made_by
 
-BOUNDS = bounds(3, 0, seed=5)
+BOUNDS = bounds(3, seed=5)
 
 
 def row(number: int, **more: object) -> Row:
@@ -32,7 +32,7 @@ def test_what_is_added_is_there_and_what_was_there_stays_as_it_is(tmp_path: Path
     there = recorded(tmp_path, [0, 2])
     first = {file: file.read_bytes() for file in there.files()}
     # More of the same study goes on.
-    recorded(tmp_path, [1, 2], study=bounds(50, 7, seed=5))
+    recorded(tmp_path, [1, 2], study=bounds(50, seed=5))
     assert {file: file.read_bytes() for file in there.files() if file in first} == first
     # One that is there twice counts once.
     rows = there.rows()
@@ -49,7 +49,7 @@ def test_numbers_come_back_to_the_last_bit_and_none_as_none(tmp_path: Path) -> N
 
 @pytest.mark.parametrize(
     ("other", "words"),
-    [(bounds(3, 0, seed=6), "seed 5, here 6"), (claims(1), "study bounds, here claims")],
+    [(bounds(3, seed=6), "seed 5, here 6"), (claims(1), "study bounds, here claims")],
 )
 def test_records_of_something_else_are_not_gone_on_with(tmp_path: Path, other: Study, words: str) -> None:
     recorded(tmp_path, [0])
