@@ -30,7 +30,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 # Of each kind of hard case one; all of them take a minute.
-SOME = "double-wishbone or arm-highest or far-from or tie-rod-long or whole-range-rack"
+SOME = "double-wishbone or arm-highest or far-from or upper-arm-long or whole-range-rack"
 
 
 def test_a_right_solver_passes_over_built_in_scenes_and_hard_cases(
