@@ -25,8 +25,6 @@ import validate.reference.route
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.mechanism import mechanism_file
-from validate.cost.way import LeftOut
-from validate.cost.ways.registry import ways_named
 from validate.reference.errors import TooManyStepsError
 
 PACKAGES = ("pointcoord", "absolute", "validate")
@@ -204,11 +202,6 @@ def test_an_error_is_one_line_that_says_what_to_try_and_comes_back_from_another_
     assert {key: repr(value) for key, value in vars(again).items()} == (
         {key: repr(value) for key, value in vars(error).items()}
     )
-
-
-def test_a_way_that_does_not_apply_says_of_what_it_is() -> None:
-    with pytest.raises(LeftOut, match="the strut that the paper prints"):
-        ways_named(["printed"])[0].prepare(pointcoord.Scene.load("double-wishbone"), 1e-9)
 
 
 def test_a_way_of_the_reference_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:

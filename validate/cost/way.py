@@ -25,10 +25,6 @@ def power(number: float) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
-class LeftOut(Exception):
-    """A way does not apply to a scene, as the paper's formulas not to a double wishbone; says why."""
-
-
 class NoNumbers(Exception):
     """A way does not answer what it was asked for: it stops, or a number is none or not there; says why."""
 
@@ -56,9 +52,8 @@ class Way:
 
     Attributes:
         name: on the command line and in tables. words: what it is, in a line.
-        prepare: makes a scene ready for the value of a setting, which is the set-up. It raises `LeftOut`
-            where the way does not apply, and whatever the way refuses a scene with. The scene's own
-            instants mean nothing here; what it asks for does.
+        prepare: makes a scene ready for the value of a setting, which is the set-up. It raises whatever the
+            way refuses a scene with. The scene's own instants mean nothing here; what it asks for does.
         values: of the setting, the coarsest first; None where there is nothing to set.
         setting: a value in words.
         dense: whether one solve serves any instant, so that more instants cost their evaluation only.
@@ -81,8 +76,8 @@ class Way:
         """The set-up, for a scene at instants.
 
         Raises:
-            LeftOut: its package is not installed, or it does not apply; and whatever it refuses a scene with.
+            ImportError: its package is not installed. Also whatever it refuses a scene with.
         """
         if self.package and find_spec(self.package) is None:
-            raise LeftOut(f"needs the package {self.package!r}, which is not installed")
+            raise ImportError(f"needs the package {self.package!r}, which is not installed")
         return partial(self.prepare(scene, value), instants)

@@ -115,25 +115,19 @@ def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> li
 
 def _result(future: Any) -> tuple[int, list[Row]]:
     """What came of a future that is finished; it is worked out again if its worker has died since."""
-    distributed = quiet_dask()
     try:
         result: tuple[int, list[Row]] = future.result()
         return result
     except (UsageError, StudyStopped):
         raise
-    except distributed.KilledWorker as error:
-        problem = (
-            f"{future.key} ended {error.allowed_failures + 1} workers one after the other, the last of "
-            f"them {error.last_worker.address}; look into its log, and at its memory"
-        )
-    # Whatever Dask says of a scheduler that is gone, or of a worker that has no such program.
+    # Whatever Dask says: of a scheduler that is gone, a task that ended its workers one after the other, or a
+    # worker that has no such program.
     except Exception as error:
         said = one_line(f"{type(error).__name__}: {error}")
-        problem = (
+        raise StudyStopped(
             f"the cluster does not work any more ({said}); each worker needs pip install "
             "'pointcoord[validate,cluster]', of this version; the same command goes on"
-        )
-    raise StudyStopped(problem)
+        ) from None
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from validate.cost.ways import scipy_solvers
 from validate.cost.ways.registry import OURS, WAYS, ways_named
 
 # What solves each instant, each as finely as it can be set.
-EXACT = [way.name for way in WAYS if way.name not in ("printed", "map", "series")]
+EXACT = [way.name for way in WAYS if way.name not in ("map", "series")]
 PEERS = ("mujoco", "exudyn")
 # One of each suspension and closure, and the pose that is hardest.
 CARS = ("bounce-and-steer", "off-axis-strut", "double-wishbone", NEAR_TOGGLE)
@@ -73,8 +73,7 @@ def test_the_error_follows_the_setting(who: str) -> None:
 def test_a_way_gives_what_a_scene_asks_for_and_no_rates_beside(who: str, effects: tuple[str, ...]) -> None:
     scene = own_scene("bounce").model_copy(update={"effects": effects})
     found = errors(who, scene, count=3)
-    if who != "printed":
-        assert all(error < 1e-7 for error in found.values())
+    assert all(error < 1e-7 for error in found.values())
     given = answer(who, scene, study_instants(scene, 3)).numbers
     # The tree and the programs tell of all rates or of none.
     assert "velocity" in found or not effects or "velocity" not in given

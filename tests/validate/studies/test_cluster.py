@@ -121,19 +121,6 @@ def test_an_error_of_a_task_names_it_and_leaves_what_was_recorded(address: str, 
     assert {task.number for task in records(folder, study).rows()} == {0, 1, 2, 3}
 
 
-def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
-    killed = cluster.quiet_dask().KilledWorker("t", SimpleNamespace(address="tcp://far:1"), 3)
-
-    class Fatal:
-        key = "random-1a-scenes-7"
-
-        def result(self) -> None:
-            raise killed
-
-    with pytest.raises(StudyStopped, match=r"-scenes-7 ended 4 workers .*, the last of them tcp://far:1;"):
-        cluster._result(Fatal())
-
-
 def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -17,7 +17,7 @@ from pointcoord import Scene
 from pointcoord.method import CHORD, MAP, NEWTON, NEWTON_COLD, SERIES, Method
 from pointcoord.results.samples import Samples
 from pointcoord.simulation import Task, checked_task, solve_by_map, solve_task
-from validate.cost.way import Answer, LeftOut, Solve, Way
+from validate.cost.way import Answer, Solve, Way
 
 Array = NDArray[np.float64]
 COUNTED = ("factorisations", "residuals", "segments", "series_orders")
@@ -27,12 +27,8 @@ def task_of(scene: Scene, method: Method, tolerance: float) -> Task:
     """A scene made ready for a method, to a tolerance of positions, mm.
 
     Raises:
-        LeftOut: the method does not solve such a suspension.
         PointcoordError: the library refuses the scene.
     """
-    part = scene.mechanism
-    if method.linkage is not None and method.linkage(part.topology) is None:
-        raise LeftOut(f"{method} solves {method.only} only")
     return checked_task(scene.model_copy(update={"tolerance": tolerance}), method)
 
 

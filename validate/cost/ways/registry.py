@@ -6,11 +6,10 @@ from collections.abc import Sequence
 
 from pointcoord import UnknownName
 from validate.cost.way import Way
-from validate.cost.ways import absolute, peers, point_coordinates, printed, scipy_solvers
+from validate.cost.ways import absolute, peers, point_coordinates, scipy_solvers
 
 WAYS: tuple[Way, ...] = (
     *point_coordinates.WAYS,
-    *printed.WAYS,
     *absolute.WAYS,
     *scipy_solvers.WAYS,
     *peers.WAYS,
