@@ -101,7 +101,8 @@ def compare_results(
     outcome = Outcome(name, rows, solutions, notes, lacking, factor, faults=faults, compared=compared)
     wrong = [(row.quantity, row.name) for row in outcome.disagreements]
     explanations = _explained(driven, scene, measured, by_row, ours, wrong, factor)
-    if wrong and (other := meant_otherwise(scene, measured, held, accuracy, factor)):
+    names = tuple(map(".".join, wrong))
+    if wrong and (other := meant_otherwise(scene, measured, held, accuracy, factor, names)):
         explanations = (other, *explanations)
     one, *others = measured.independent
     over = "row" if others else f"{one.column} [{one.meaning.unit}]"

@@ -37,9 +37,18 @@ UNIT = 0.01  # of a unit: how far off a slope is that one still
 
 
 def meant_otherwise(
-    scene: Scene, measured: Measured, held: Sequence[Held], accuracy: float | None, factor: float
+    scene: Scene,
+    measured: Measured,
+    held: Sequence[Held],
+    accuracy: float | None,
+    factor: float,
+    wrong: tuple[str, ...],
 ) -> Explanation | None:
-    """What explains the whole file: one of its columns with another sign, unit or zero."""
+    """What explains the whole file: one of its columns with another sign, unit or zero.
+
+    Args:
+        wrong: what disagrees, as an explanation names it.
+    """
     for words, other in _suppositions(scene, measured):
         try:
             found = held_of(other, scene, accuracy)[0]
@@ -49,12 +58,8 @@ def meant_otherwise(
         leftover = float(np.nanmax(shares, initial=0.0)) / factor
         # Fewer rows that agree are no explanation of those that are out of reach then.
         if leftover <= NEARLY and _reached(found) >= _reached(held):
-            return Explanation(words, "input", tuple(_names(found)), leftover)
+            return Explanation(words, "input", wrong, leftover)
     return None
-
-
-def _names(held: Sequence[Held]) -> dict[str, None]:
-    return dict.fromkeys(f"{h.series.meaning.quantity}.{h.series.meaning.name}" for h in held)
 
 
 def _reached(held: Sequence[Held]) -> int:

@@ -19,8 +19,8 @@ from validate import paper
 from validate.cli import main
 from validate.exit_status import ExitStatus
 from validate.fitting.curves import STEP, Curves
-from validate.fitting.fit import Fit, fit_hardpoints, free_coordinates
-from validate.fitting.words import NOTHING, text_of, unseen_words, warnings_of_fit
+from validate.fitting.fit import fit_hardpoints, free_coordinates
+from validate.fitting.words import NOTHING, text_of, warnings_of_fit
 from validate.measured.poses import Driven
 from validate.output.document import schema_text
 from validate.paper.tables import TABLE_2, TABLE_3
@@ -45,10 +45,6 @@ def wheel_table(car: Scene, digits: int) -> str:
 FREE = ("upper_ball_joint.z", "tie_rod_outer.z")
 
 
-# The rack goes along with its tie rod; of the rod's end the paper's wheel does not depend.
-ALONG = ("rack_centre", "strut_rod_end")
-
-
 def paper_data() -> str:
     return (Path(paper.__file__).parent / "tables-2-and-3.csv").read_text(encoding="utf-8")
 
@@ -59,35 +55,6 @@ def test_the_file_of_the_paper_s_tables_says_what_the_tables_say() -> None:
         (90.0, r.input, *r.wheel_centre) for r in TABLE_3
     ]
     assert rows == [list(row) for row in printed]
-
-
-@cache
-def paper_fit(*free: str) -> Fit:
-    scene = Scene.load("bounce")
-    return fit_hardpoints(scene, measured(paper_data(), scene), free, solves=9)
-
-
-def test_the_papers_tables_come_from_moved_hardpoints_and_not_from_one_choice_of_them_only() -> None:
-    """The reading of the paper: 10.3 mm r.m.s. as drawn, 0.3 mm with hardpoints moved, which is rounding."""
-    points = [name for name in Scene.load("bounce").mechanism.points if name not in ALONG]
-    fit = paper_fit(*points)
-    before, after, count = fit.rms["mm"]
-    assert count == 54
-    assert abs(before - 10.3) < 0.05
-    assert after < 0.35
-    assert fit.unseen
-    assert "not unique" in text_of(fit, "bounce", "the paper's tables")
-    # Eight change nothing at all, of which three are the end of the strut's rod, which is not free here.
-    assert sum(words.endswith(": changes nothing") for words in unseen_words(fit)) == 5
-    # Hardpoints 5 mm away along what changes nothing to first order, and the tables are met as well.
-    scene = Scene.load("bounce")
-    data = measured(paper_data(), scene)
-    curves = Curves(scene, data, tuple(fit.coordinates))
-    theirs = np.concatenate([s.values for s in data.numbers])
-    unseen = np.array(list(fit.unseen[-1].parts.values()))
-    elsewhere = np.array([one.correction for one in fit.coordinates.values()]) + 5.0 * unseen
-    apart = curves.at(elsewhere) - theirs
-    assert float(np.sqrt(np.mean(apart**2))) < 0.35
 
 
 def run(*words: str) -> ExitStatus:
