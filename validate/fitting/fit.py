@@ -42,7 +42,8 @@ from validate.errors import UsageError
 from validate.extras import needed
 from validate.fitting.curves import Curves
 from validate.measured.mapping import Measured
-from validate.measured.poses import Found, at_either_end
+from validate.measured.poses import at_either_end
+from validate.measured.tolerances import out_of_reach
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -62,7 +63,6 @@ SETTLED = 0.01
 CONFIDENCE = 0.95
 MOST_SOLVES = 60
 ENDS = ("before", "after")
-NAMED = 3  # rows that are left out, one by one
 AT_A_BOUND = 1e-9  # of the bounds, within which a correction lies on one
 
 
@@ -289,7 +289,7 @@ def fit_hardpoints(
         converged=bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),
         solves=int(solved.nfev),
         failures=tuple(failures),
-        notes=_notes(curves, start),
+        notes=(*curves.driven.notes, *out_of_reach(measured, start)),
     )
 
 
@@ -297,15 +297,6 @@ def _known(matrix: Array) -> tuple[Array, Array]:
     """A singular value for every column of a matrix, and their right singular vectors in rows."""
     _, found, vectors = np.linalg.svd(matrix, full_matrices=True)
     return np.concatenate([found, np.zeros(matrix.shape[1] - len(found))]), vectors
-
-
-def _notes(curves: Curves, start: Found) -> tuple[str, ...]:
-    """Inputs that the file does not give, and rows that are left out."""
-    names, rows = curves.driven.as_drawn, curves.measured.rows
-    drawn = [f"{name} is as drawn in every design: the file does not give it" for name in names]
-    lost = [f"{rows[row]} is left out: {reason}" for row, reason in sorted(start.reasons.items())]
-    more = [f"{len(lost) - NAMED} more rows are left out"] if len(lost) > NAMED else []
-    return (*drawn, *lost[:NAMED], *more)
 
 
 def free_coordinates(scene: Scene, free: Sequence[str]) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from validate.hardpoint_files.contents import Contents, FilePoint, place_of, plain, short
 from validate.measured.reading import name_and_unit
-from validate.tables.cells import is_number, lines_of
+from validate.tables.cells import is_number, joined, lines_of
 from validate.tables.errors import FileError
 from validate.tables.units import length_called
 
@@ -51,8 +51,9 @@ def read(
     if lines.mixed:
         told = "has numbers with points and with commas"
         raise FileError(source, lines.mixed, told, "one sign before the decimals, none between thousands")
-    rows = [(line, row if lines.mark else _named(row)) for line, row in lines.rows]
-    columns = _said(rows, said, source) if said else _titled(rows, titles, source)
+    known = {plain(title): key for key, some in titles.items() for title in some}
+    rows = [(line, row if lines.mark else _named(row, known)) for line, row in lines.rows]
+    columns = _said(rows, said, source) if said else _titled(rows, known, source)
     points, others = list[FilePoint](), list[str]()
     for line, row in rows[columns.row + 1 :]:
         name, *cells = (row[at] if at < len(row) else "" for at in (columns.at[key] for key in NEEDED))
@@ -72,9 +73,13 @@ def read(
     return Contents(tuple(points), unit=columns.unit, lines=tuple(others))
 
 
-def _named(words: Row) -> Row:
-    """The cells of a line between blanks: the numbers at its end, and a name before."""
+def _named(words: Row, titles: Mapping[str, str]) -> Row:
+    """The cells of a line between blanks: numbers at its end, or their titles, and a name before."""
     count = next((n for n, word in enumerate(reversed(words)) if not is_number(word)), len(words))
+    if not count:
+        words = joined(words)
+        places = [titles.get(plain(name_and_unit(word)[0]), "") in ("x", "y", "z") for word in words]
+        count = len(words) - places.index(True) if any(places) else 0
     return [" ".join(words[: len(words) - count]), *words[len(words) - count :]]
 
 
@@ -90,16 +95,18 @@ def _said(rows: Sequence[tuple[int, Row]], said: Mapping[str, str | int], source
     return _Columns(of, row=at)
 
 
-def _titled(rows: Sequence[tuple[int, Row]], titles: Mapping[str, Sequence[str]], source: str) -> _Columns:
+def _titled(rows: Sequence[tuple[int, Row]], known: Mapping[str, str], source: str) -> _Columns:
     """The columns that the first line of titles names; without one the name comes first, and then x, y, z."""
-    known = {plain(title): key for key, some in titles.items() for title in some}
+    ahead = [*rows[1:], (0, [""])]
     for i, (line, row) in enumerate(rows):
         if any(map(is_number, row)):
             break
         heads = [name_and_unit(cell) for cell in row]
         keys = [known.get(plain(head), "") for head, _ in heads]
         if {"x", "y", "z"}.isdisjoint(keys):
-            if sum(map(bool, row)) > 3:
+            # Between blanks a title of a table is one cell, and so is a line of titles that are not known.
+            over = is_number(ahead[i][1][-1]) and len(row) == 1 and len(row[0].split()) > 3
+            if sum(map(bool, row)) > 3 or over:
                 told = f"has titles that are not known: {short(', '.join(row))}"
                 raise FileError(source, line, told, f"Point, X, Y, Z; {SAY}")
             continue

@@ -122,7 +122,7 @@ def held_of(
     driven = Driven.of(scene, measured) if driven is None else driven
     values = [s.values for s in measured.independent]
     here = driven.at(values)
-    notes = [*measured.notes, *driven.notes, *_out_of_reach(measured, here)]
+    notes = [*measured.notes, *driven.notes, *out_of_reach(measured, here)]
     if not here.reached.any():
         row = min(here.reasons)
         problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[row]})"
@@ -196,7 +196,8 @@ def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:
     )
 
 
-def _out_of_reach(measured: Measured, found: Found) -> list[str]:
+def out_of_reach(measured: Measured, found: Found) -> list[str]:
+    """Why rows are left out, of some one by one."""
     lost = sorted(found.reasons)
     notes = [f"{measured.rows[i]} is left out: {found.reasons[i]}" for i in lost[:NAMED]]
     others = [measured.rows[i] for i in lost[NAMED:]]

@@ -195,6 +195,7 @@ NUMBERED = (
         (table(ending="_FR"), {}, ()),
         (table(order=(2, 1, 0), signs=(1, -1, 1)), {"axes": "up,left,rearward"}, ("by --axes",)),
         ("\n".join(["Z,No.,X,Name,Y", *NUMBERED]), {"axes": OURS}, ()),
+        (table(order=(2, 1, 0), titles="Point Z Y X\n", separator=" ").replace("Wheel ", "Wheel_"), {}, ()),
         ("\n".join([f"{POINT},RX", *(f"{row},1.5" for row in rows())]), {"axes": OURS}, ()),
     ],
 )
@@ -250,6 +251,7 @@ def test_hardpoints_of_adams_car_are_known_by_their_names_with_their_axes_and_si
     [
         ("A,1,2,3,4,5,6", "has 6 numbers for 'A'"),
         ("\n".join(["Punkt,Hoch,Quer,Laengs", *rows()]), "line 1: .* not known: 'Punkt, Hoch, Quer, Laengs'"),
+        ("Point Hoch Quer Laengs\nA 1 2 3", "line 1: .* not known: 'Point Hoch Quer Laengs'"),
         ("Point,X,Y,Z,X,Y,Z\nA,1,2,3,4,5,6", "line 1: has 2 columns of x"),
         ("-3.5,529,122.84\n-45,190,129.9", "line 1: has coordinates without a name"),
         ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", "line 3: has numbers with points and with commas"),
