@@ -178,11 +178,12 @@ def _explained(
     whole = {
         row: sorted(columns, key=lambda h: h.series.meaning.axis or 0)
         for row, columns in by_row.items()
-        if len(columns) == (1 if _of_car(row) else 3) and any(np.isfinite(h.gap).any() for h in columns)
+        if len(columns) == (1 if _of_car(row) else 3) and any(np.isfinite(h.share).any() for h in columns)
     }
     if not whole.keys() & wrong:
         return ()
-    told = np.flatnonzero(np.all([np.isfinite(h.gap) for columns in whole.values() for h in columns], axis=0))
+    every = [h for columns in whole.values() for h in columns]
+    told = np.flatnonzero(np.isfinite([h.share for h in every]).all(axis=0))
     over_time = driven.over_time
     there = _on_the_grid(scene, measured.instants[told]) if over_time else None
     if not over_time:
