@@ -41,7 +41,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     said = {one.name: getattr(options, one.name) for one in fields(Choices)}
     found = import_hardpoints(options.file, **said)
     name = shown(options.file)
-    told = (*found.doubts, *warnings_of(found.scene, found.stands.closing))
+    told = warnings_of(found.scene, found.stands.closing)
     console.put(target, found.text, "the scene")
     if target is not None:
         console.say("\n".join(_report(name, found)))

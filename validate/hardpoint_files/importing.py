@@ -91,7 +91,6 @@ class Imported:
         others: points of the file that are none of ours.
         angles: static angles that the file prints, held to the drawing's.
         stands: the drawing, closed. facts: what was taken for granted, in words.
-        doubts: what looks wrong and was taken as the user said it.
     """
 
     format: Format
@@ -102,7 +101,6 @@ class Imported:
     angles: tuple[AngleCheck, ...]
     stands: Standing
     facts: tuple[str, ...]
-    doubts: tuple[str, ...]
 
 
 def import_hardpoints(path: str | Path, **said: Any) -> Imported:
@@ -186,7 +184,6 @@ def _written(
     points: Sequence[ScenePoint],
     facts: Sequence[str],
     others: Sequence[FilePoint] = (),
-    doubts: Sequence[str] = (),
     angles: Callable[[Mapping[str, float]], Iterable[AngleCheck]] = lambda drawn: (),
     tables: Mapping[str, Any] | None = None,
 ) -> Imported:
@@ -200,9 +197,7 @@ def _written(
     laws, scene = travel_of(drawn, stands)
     text = scene_text(source, found.words, drawn, points, laws, facts, others)
     checks = tuple(angles(stands.angles))
-    return Imported(
-        found, scene, text, tuple(points), tuple(others), checks, stands, tuple(facts), tuple(doubts)
-    )
+    return Imported(found, scene, text, tuple(points), tuple(others), checks, stands, tuple(facts))
 
 
 @dataclass(frozen=True)
@@ -251,13 +246,18 @@ class _Import:
         self.require_all(wheel, axis)
         axes, axes_by = self.axes(wheel)
         unit, unit_by = self.unit()
-        doubts = [*self.against_axes(axes, axes_by, wheel), *self.against_unit(unit, wheel)]
+        # What the user says is taken, and the scene warns of what looks odd in it.
+        if self.choices.axes is None:
+            self.require_axes(axes, axes_by, wheel)
+        if self.choices.unit is None:
+            self.require_size(unit, wheel)
         turned = {name: axes.to_scene(place, unit) for name, place in wheel.places.items()}
         side = self.side(wheel, turned, axes)
         points = self.placed(wheel, turned, axis, side)
         facts = [
             f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
             "here x rearward, y right, z up, in mm",
+            *([] if axes.right_handed else ["these axes are left-handed: is one of them turned round?"]),
             *axle.notes,
             *([self.format.notes[kind]] if kind in self.format.notes else []),
             *([f"lines without a point: {lines}"] if (lines := self.lines) else []),
@@ -272,9 +272,7 @@ class _Import:
             if name not in points
         ]
         angles = partial(check_angles, self.format.angles, axle.angles, wheel.places, topology)
-        return _written(
-            self.source, self.format, kind, side, [*points.values()], facts, wheel.others, doubts, angles
-        )
+        return _written(self.source, self.format, kind, side, [*points.values()], facts, wheel.others, angles)
 
     @property
     def lines(self) -> str:
@@ -450,25 +448,17 @@ class _Import:
                 found.append((one, other, f"{'-+'[apart[most] > 0]}{'xyz'[most]}", at))
         return found
 
-    def against_axes(self, axes: Axes, by: str, wheel: _Wheel) -> list[str]:
-        """Refuse axes that nobody said and the car's points speak against; doubt those of the user.
+    def require_axes(self, axes: Axes, by: str, wheel: _Wheel) -> None:
+        """Refuse axes that the car's points speak against.
 
         Which way is left no point shows: it decides which wheel this is.
         """
-        doubts = []
-        if not axes.right_handed:
-            doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         for _, _, way, at in self.ways(wheel):
-            there = axes.directions["xyz".index(way[1])]
-            along, sign = DIRECTIONS[there]
+            along, sign = DIRECTIONS[axes.directions["xyz".index(way[1])]]
             # x points rearward.
-            if along == at and (sign > 0) == ((way[0] == "+") == (at == 2)):
-                continue
-            told = f"has axes {axes.words} by {by}, but {self.lie(wheel)}"
-            if self.choices.axes is None:
+            if along != at or (sign > 0) != ((way[0] == "+") == (at == 2)):
+                told = f"has axes {axes.words} by {by}, but {self.lie(wheel)}"
                 raise self.refuse(told, f"--axes of the file, or --axes {axes.option} if that is so")
-            doubts.append(f"{told}: are these the right axes and names?")
-        return doubts
 
     def unit(self) -> tuple[str, str]:
         """The unit of lengths, and who says it."""
@@ -480,18 +470,15 @@ class _Import:
         by = {"the file": said, "--unit": chosen, "its format": self.format.unit}
         return next((unit, who) for who, unit in by.items() if unit)
 
-    def against_unit(self, unit: str, wheel: _Wheel) -> list[str]:
-        """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
+    def require_size(self, unit: str, wheel: _Wheel) -> None:
+        """Refuse a unit in which the points make no car."""
         span = max(max(column) - min(column) for column in zip(*wheel.places.values(), strict=True))
         spans = {name: span * size for name, size in LENGTHS.items()}
         fitting = {name: size for name, size in spans.items() if SMALLEST <= size <= LARGEST}
-        if unit in fitting:
-            return []
-        told = f"spans {float(spans[unit]):.4g} mm if its lengths are in {unit}"
-        others = "; ".join(f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
-        if self.choices.unit is not None:
-            return ["; ".join(filter(None, (f"the file {told}", others)))]
-        raise self.refuse(told, others or f"--unit {unit} if that is so")
+        if unit not in fitting:
+            told = f"spans {float(spans[unit]):.4g} mm if its lengths are in {unit}"
+            others = (f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
+            raise self.refuse(told, "; ".join(others) or f"--unit {unit} if that is so")
 
     def side(self, file: _Wheel, turned: Mapping[str, Place], axes: Axes) -> str:
         """The wheel's side, from where it lies; it must be the one that the file or the user says."""

@@ -12,6 +12,7 @@ from foreign_files import CAR, OPTIMUMK, STRUT, WISHBONE, chrono, drawn, importe
 from pointcoord import PointcoordError, Scene, standing
 from pointcoord.mechanism import mechanism_file
 from validate.cli import main
+from validate.closed_drawing import warnings_of
 from validate.errors import UsageError
 from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.format import MJCF, READERS, TABLE, formats
@@ -109,25 +110,26 @@ ASIDE = {name: (x, y - 700.0, z) for name, (x, y, z) in CAR.items()} | {"wheel_c
 
 
 @pytest.mark.parametrize(
-    ("text", "choices", "side", "doubt"),
+    ("text", "choices", "side", "warning"),
     [
         # Exchanged columns of right-handed axes are left-handed.
-        (table(order=(1, 0, 2)), {"axes": "left,forward,up"}, "right", "left-handed"),
+        (table(order=(1, 0, 2)), {"axes": "left,forward,up"}, "right", ""),
         (table(per_unit="1000"), {"unit": "m"}, "right", ""),
-        (table(per_unit="1000"), {"unit": "in"}, "right", "spans 13.72 mm"),
+        (table(per_unit="1000"), {"unit": "in"}, "right", "13.7 mm long"),
+        (table(names=EXCHANGED), {"axes": "forward,left,up"}, "right", "lower_arm_front"),
         (table(), {"side": "right", "mirror": True}, "left", ""),
         (LEFT_STRUT, {"side": "left", "mirror": True}, "right", ""),
         (table(ASIDE), {"side": "right"}, "right", ""),
     ],
 )
-def test_what_the_points_speak_against_is_taken_where_the_user_says_it(
-    text: str, choices: Mapping[str, Any], side: str, doubt: str, tmp_path: Path
+def test_what_the_points_speak_against_is_taken_where_the_user_says_it_and_warned_of(
+    text: str, choices: Mapping[str, Any], side: str, warning: str, tmp_path: Path
 ) -> None:
     found = imported(tmp_path, text, **choices)
+    told = " ".join(warnings_of(found.scene, found.stands.closing))
     assert found.scene.mechanism.side == side
-    assert any(doubt in said for said in found.doubts) if doubt else not found.doubts
-    if text != LEFT_STRUT and choices.get("unit") != "in" and text != table(ASIDE):
-        assert drawn(found) == (MIRRORED if "mirror" in choices else CAR)
+    assert warning in told, told
+    assert any("left-handed" in fact for fact in found.facts) == ("left,forward" in choices.get("axes", ""))
 
 
 def test_a_report_of_both_axles_gives_the_one_that_is_asked_for(tmp_path: Path) -> None:
