@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from validate.comparison.compare import SMALLEST
+from validate.formulations.asked_numbers import is_force
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import TRAVEL
@@ -48,7 +49,7 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 OURS = "pointcoord"
 NO_NUMBERS = "no row has a number of it that can be compared with anything"
-NO_RATES = "rates need a column of time"
+NOT_OVER_INPUTS = "rates and forces need a column of time"
 # A verdict may not rest on a rounding that nobody states and that widens the tolerance by more than this.
 WIDER = 10.0
 # Rows out of reach, or columns, that are named one by one.
@@ -149,7 +150,8 @@ def held_of(
     for s in measured.numbers:
         mine, bound = ours_of(s, here)
         if mine is None or bound is None:
-            why = NO_RATES if s.meaning.per_second and not driven.over_time else NO_NUMBERS
+            timed = not driven.over_time and (s.meaning.per_second or is_force(s.meaning.quantity))
+            why = NOT_OVER_INPUTS if timed else NO_NUMBERS
             nan = np.full(len(nothing), np.nan)
             found.append(Held(s, nan, nan, nothing, nothing, nothing, why))
             notested.setdefault(why, []).append(shown(s.column))

@@ -87,11 +87,14 @@ def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
     assert wrong.endswith(".ackermann")
 
 
-def test_rates_over_an_input_are_not_tested_and_say_what_they_need() -> None:
-    scene = Scene.load("double-wishbone")
-    text = "rack [mm],toe [deg],velocity.wheel_centre.z [mm/s]\n0,0.0000,1.0\n5,0.0,1.0\n"
-    (row,) = (row for row in compared(text, {}, scene).outcome.rows if row.quantity == "velocity")
-    assert (row.verdict, row.why) == ("not tested", "rates need a column of time")
+def test_rates_and_forces_over_an_input_are_not_tested_and_say_what_they_need() -> None:
+    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
+    content["mechanism"] |= {"wheel_radius": 270.0, "loads": {"force": [0.0, 0.0, 3000.0]}}
+    text = "rack [mm],toe [deg],velocity.wheel_centre.z [mm/s],rod_force.tie_rod [N]\n0,0,1.0,1\n5,0,1.0,1\n"
+    rows = {row.quantity: row for row in compared(text, {}, Scene.from_mapping(content, "car")).outcome.rows}
+    for quantity in ("velocity", "rod_force"):
+        why = "rates and forces need a column of time"
+        assert (rows[quantity].verdict, rows[quantity].why) == ("not tested", why)
 
 
 @pytest.mark.parametrize(("name", "order"), [("jerk", 3), ("derivative_12", 12)])
