@@ -318,6 +318,14 @@ def test_a_correction_ends_on_its_bound_and_the_others_are_fitted_to_it_there() 
         assert -fit.bounds <= one.low <= one.correction <= one.high <= fit.bounds
 
 
+def test_a_force_is_fitted_to_in_its_own_unit() -> None:
+    content = CAR.model_dump(exclude_none=True)
+    content["mechanism"] |= {"wheel_radius": 270.0, "loads": {"force": [0.0, 0.0, 3000.0]}}
+    scene = Scene.from_mapping(content, "loaded")
+    text = "time [s],rod_force.tie_rod [N]\n0,100.0\n0.2,101.0\n0.4,103.0\n"
+    assert [*fit_hardpoints(scene, measured(text, scene), ["tie_rod_outer.z"], solves=2).rms] == ["N"]
+
+
 def off_by_10_deg(stop: float) -> str:
     wheel = at_inputs(CAR, {"arm_angle": (1.5, stop), "rack": (0.0, 0.0)}, 5)["wheel"]
     over = {"input.arm_angle [rad]": np.linspace(1.5, stop, 5)}
