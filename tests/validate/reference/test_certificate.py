@@ -45,16 +45,20 @@ def drawn(name: str) -> tuple[Way, list[arb]]:
     return way, newton(way, closed(design).pose.unknown, arb(0))[0]
 
 
-def holds_one(way: Way, centre: list[arb]) -> bool:
-    """Whether a narrow box about a place is proven to hold a solution."""
-    proof = Contraction.at(way, centre, arb(0), middle_inverse(way.matrix(centre, arb(0))))
-    return less(proof.image(NARROW * len(centre)), NARROW * len(centre))
+def holds_one(way: Way, centre: list[arb], width: list[arb] = NARROW, factor: float = 1.0) -> bool:
+    """Whether a box about a place is proven to hold a solution, by so many times the inverse."""
+    inverse = factor * middle_inverse(way.matrix(centre, arb(0)))
+    proof = Contraction.at(way, centre, arb(0), inverse)
+    return less(proof.image(width * len(centre)), width * len(centre))
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
 def test_a_refined_solution_is_certified_and_a_planted_error_in_any_unknown_or_row_is_not(name: str) -> None:
     way, solution = drawn(name)
     assert holds_one(way, solution)
+    assert holds_one(way, solution, factor=1.5)
+    assert not holds_one(way, solution, factor=2.5)
+    assert not holds_one(way, solution, width=[arb(10)])  # other solutions are in this box
     assert all(ball.rad() < arb("1e-70") for ball in start_pose(way, solution, arb(0)).box)
     for place, x in enumerate(solution):
         assert not holds_one(way, [*solution[:place], (x + arb("1e-50")).mid(), *solution[place + 1 :]])
