@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
@@ -240,7 +241,7 @@ def compare_solutions(
         parts = _parts(quantity, names, first, second)
         lacking = dict(_missing(quantity, parts, first, second))
         missing += lacking
-        pair = Pair.of(first, second, quantity, factor)
+        pair = Pair(quantity, (first, second), factor)
         for part in parts:
             row = _reasoned(_row(name, part, pair, instants), lacking, notes, faults)
             # Decided only where one of them may give what it has: else every row has to agree.
@@ -299,36 +300,6 @@ def _reasoned(
 
 
 @dataclass(frozen=True)
-class Side:
-    """What one formulation gives and claims of a quantity.
-
-    Attributes:
-        numbers, claims: by name, (N, 3) or (N,). blind: see `Accuracy.blind`.
-        largest: of the numbers at each instant, (N,). level: see `tolerance.level`, (N,).
-    """
-
-    formulation: str
-    numbers: Mapping[str, Array]
-    claims: Mapping[str, Array]
-    blind: NDArray[np.bool_] | None
-    largest: Array
-    level: Array
-
-    @classmethod
-    def of(cls, side: Solution, quantity: str) -> Side:
-        """A quantity of all that a formulation gives."""
-        numbers, own = side.numbers[quantity], side.accuracy
-        claims = own.claims[quantity]
-        largest = largest_numbers(numbers.values(), len(own.condition))
-        widest = level(claims.values(), largest, own.condition, own.usual.get(quantity))
-        return cls(side.formulation, numbers, claims, own.blind, largest, widest)
-
-    def claimed(self, name: str) -> Array:
-        """What it claims of a name, (N, components): 0 where it claims nothing."""
-        return _columns(self.claims.get(name, np.zeros_like(self.numbers[name])))
-
-
-@dataclass(frozen=True)
 class Pair:
     """A quantity of two formulations at the same instants.
 
@@ -337,39 +308,65 @@ class Pair:
     """
 
     quantity: str
-    one: Side
-    two: Side
+    sides: tuple[Solution, Solution]
     factor: float
 
-    @classmethod
-    def of(cls, one: Solution, two: Solution, quantity: str, factor: float) -> Pair:
-        """A quantity of all that both give."""
-        return cls(quantity, Side.of(one, quantity), Side.of(two, quantity), factor)
+    @cached_property
+    def largest(self) -> list[Array]:
+        """Of both sides the largest number at each instant, (N,)."""
+        return [largest_numbers(side.numbers[self.quantity].values(), len(side.times)) for side in self.sides]
 
     @property
-    def sides(self) -> tuple[Side, Side]:
-        """Both."""
-        return self.one, self.two
+    def names(self) -> list[str]:
+        """Those of which both have numbers, at one instant at least."""
+        one, two = (side.numbers[self.quantity] for side in self.sides)
+        return [name for name in one if name in two] if len(self.sides[0].times) else []
 
-    def gives(self, name: str) -> bool:
-        """Whether both have numbers of a name, at one instant at least."""
-        return len(self.one.largest) > 0 and all(name in side.numbers for side in self.sides)
+    def numbers(self, name: str) -> tuple[Array, Array]:
+        """Of both, (N, components)."""
+        one, two = (_columns(side.numbers[self.quantity][name]) for side in self.sides)
+        return one, two
+
+    def claims(self, name: str) -> tuple[Array, Array]:
+        """What both claim of a name, (N, components): 0 where one claims nothing."""
+        claimed = (side.accuracy.claims[self.quantity].get(name) for side in self.sides)
+        one, two = (
+            np.zeros_like(own) if claim is None else _columns(claim)
+            for own, claim in zip(self.numbers(name), claimed, strict=True)
+        )
+        return one, two
 
     def allowed(self, name: str) -> Array:
         """What a difference is held to, (N, components)."""
         # The smaller of both, so that a wrong number does not widen its own tolerance.
-        largest = min(float(side.largest.max()) for side in self.sides)
-        return self.factor * tolerance(self.one.claimed(name), self.two.claimed(name), largest)
+        return self.factor * tolerance(*self.claims(name), min(float(most.max()) for most in self.largest))
 
     def gap(self, name: str) -> Array:
         """The difference, (N, components)."""
-        mine, other = (_columns(side.numbers[name]) for side in self.sides)
+        (mine, other), (own, others) = self.numbers(name), self.claims(name)
         gap = gaps_between(mine, other, QUANTITIES[self.quantity].unit)
         # Who gives a number that there is none of, a rounding over a rounding, claims nothing of it.
-        claims = self.two.claimed(name), self.one.claimed(name)
-        lone = np.where(np.isnan(mine), claims[0], np.where(np.isnan(other), claims[1], 0.0))
+        lone = np.where(np.isnan(mine), others, np.where(np.isnan(other), own, 0.0))
         gap[lone >= NOTHING] = 0.0
         return gap
+
+    @cached_property
+    def levels(self) -> tuple[Array, Array]:
+        """What both would claim of any number, see `tolerance.level`, (N,)."""
+        one, two = (
+            level(own.claims[self.quantity].values(), most, own.condition, own.usual.get(self.quantity))
+            for own, most in zip((side.accuracy for side in self.sides), self.largest, strict=True)
+        )
+        return one, two
+
+    def wide(self, name: str) -> NDArray[np.bool_]:
+        """At which instants what is allowed tests nothing, (N,)."""
+        # Whose accuracy was stated beforehand may claim much, and what it claims elsewhere is no measure.
+        stated = [side.accuracy.blind for side in self.sides if side.accuracy.blind is not None]
+        if stated:
+            return np.asarray(np.any(stated, axis=0))
+        one, two = (claim.max(axis=-1) for claim in self.claims(name))
+        return untested(one, two, *self.levels)
 
     def tells(self, scene: Scene, name: str) -> bool:
         """Whether a number is none that a solver was given: what was given would not agree as well.
@@ -378,11 +375,11 @@ class Pair:
         of the chassis is all there is to know of its points. An instant of which its accuracy says nothing
         does not count.
         """
-        if (self.one.blind is None) == (self.two.blind is None):
+        blind = [side.accuracy.blind for side in self.sides]
+        if (blind[0] is None) == (blind[1] is None):
             return True
-        own, other = self.sides if self.two.blind is None else self.sides[::-1]
-        kind, part = QUANTITIES[self.quantity], scene.mechanism
-        seen = np.ones(len(own.largest), dtype=bool) if own.blind is None else ~own.blind
+        other = 0 if blind[0] is None else 1
+        kind, part, unseen = QUANTITIES[self.quantity], scene.mechanism, blind[1 - other]
         if kind.of == "point" and name in part.topology.chassis:
             return False
         if per_second(self.quantity):
@@ -390,31 +387,26 @@ class Pair:
         elif kind.of == "point" and name in part.points:
             given_back = np.array(part.points[name], dtype=float)
         else:
-            return bool(seen.any())
-        width = tolerance(own.claimed(name), other.claimed(name), float(other.largest.max()))
-        return bool((np.abs(other.numbers[name] - given_back) > self.factor * width)[seen].any())
+            return not np.all(unseen)
+        width = self.factor * tolerance(*self.claims(name), float(self.largest[other].max()))
+        return bool((np.abs(self.numbers(name)[other] - given_back) > width)[~np.asarray(unseen)].any())
 
 
 def _row(scene: str, name: str, pair: Pair, times: Array) -> Comparison:
     """The comparison of a name at instants, (N,), s."""
-    one, two = pair.sides
-    unit = QUANTITIES[pair.quantity].unit
-    row = Comparison(scene, one.formulation, two.formulation, pair.quantity, name, unit)
-    if not pair.gives(name):
+    who, unit = [side.formulation for side in pair.sides], QUANTITIES[pair.quantity].unit
+    row = Comparison(scene, who[0], who[1], pair.quantity, name, unit)
+    if name not in pair.names:
         return row
-    gap, allowed, claims = pair.gap(name), pair.allowed(name), [side.claimed(name) for side in pair.sides]
+    gap, allowed, claims = pair.gap(name), pair.allowed(name), pair.claims(name)
     share = float(shares(gap, allowed).max())
     worst, widest = (np.unravel_index(np.argmax(array), array.shape) for array in (gap, allowed))
-    # A side whose accuracy was stated beforehand may claim much, and what it claims elsewhere is no measure.
-    stated = [side.blind for side in pair.sides if side.blind is not None]
-    most = [claim.max(axis=-1) for claim in claims]
-    wide = np.any(stated, axis=0) if stated else untested(most[0], most[1], one.level, two.level)
     verdict: Verdict = "agrees"
-    if any(name not in side.claims for side in pair.sides):
+    if any(name not in side.accuracy.claims[pair.quantity] for side in pair.sides):
         verdict = "not tested"
     elif share > 1.0:
         verdict = "disagrees"
-    elif (wide & (gap.max(axis=-1) > SMALLEST)).any():
+    elif (pair.wide(name) & (gap.max(axis=-1) > SMALLEST)).any():
         verdict = "not tested"
     larger = int(claims[1][widest] > claims[0][widest])
     return replace(
@@ -424,7 +416,7 @@ def _row(scene: str, name: str, pair: Pair, times: Array) -> Comparison:
         share=share,
         instant=float(times[worst[0]]),
         verdict=verdict,
-        rests_on=pair.sides[larger].formulation,
+        rests_on=who[larger],
         part=float(pair.factor * claims[larger][widest] / (allowed[widest] + SMALLEST)),
     )
 

@@ -35,8 +35,8 @@ class OverTime:
 def over_time(outcome: Outcome, row: Comparison, instants: Array) -> OverTime | None:
     """A row of an outcome over its instants, (N,); None where one of both gives no such numbers."""
     times, one, two = given_by_both(*outcome.solutions, instants)
-    pair = Pair.of(one, two, row.quantity, outcome.factor)
-    if not pair.gives(row.name):
+    pair = Pair(row.quantity, (one, two), outcome.factor)
+    if row.name not in pair.names:
         return None
     gap, allowed = pair.gap(row.name), pair.allowed(row.name)
     each, worst = np.arange(len(gap)), np.argmax(shares(gap, allowed), axis=1)

@@ -139,8 +139,8 @@ class Evidence:
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
         """The numbers of all rows that both give, held to what both claim."""
         times, one, two = given_by_both(given, held, scene.instants)
-        pairs = {quantity: Pair.of(one, two, quantity, outcome.factor) for quantity in one.numbers}
-        rows = [(q, name) for q, pair in pairs.items() for name in pair.one.numbers if pair.gives(name)]
+        pairs = {quantity: Pair(quantity, (one, two), outcome.factor) for quantity in one.numbers}
+        rows = [(q, name) for q, pair in pairs.items() for name in pair.names]
         trusted = {row: two.numbers[row[0]][row[1]] for row in rows}
         disagree = {(row.quantity, row.name) for row in outcome.disagreements}
         return cls(
