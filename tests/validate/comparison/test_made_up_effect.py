@@ -1,7 +1,7 @@
 """An effect that nobody has heard of goes through everything once the models' registries know it.
 
-Nothing in `validate` names an effect, a quantity or an angle: two made-up ones are planted in the registries,
-a length with a quantity of its own and an angle that jumps by a whole turn.
+Nothing in `validate` names an effect or a quantity: a made-up length with a quantity of its own is planted in
+the registries.
 """
 
 import json
@@ -15,15 +15,12 @@ import pytest
 from program import short_scene
 
 import absolute
-from absolute.dual import arctan2
 from absolute.effects import Effect as AbsoluteEffect
 from absolute.results import Motion
 from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.proof import Numbers
 from pointcoord.effects import registry
-from pointcoord.effects.angle import Angle
-from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.effect import Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology
 from validate.cli import main
@@ -34,7 +31,6 @@ from validate.output.table import text_of
 from validate.reference.car_data import WHEEL
 from validate.reference.effects import registry as reference_registry
 from validate.reference.effects.car import Effect as ReferenceEffect
-from validate.reference.jet import angle
 from validate.reference.vectors import dot
 
 STUB = Quantity("stub", "stub length", "mm", "car")
@@ -61,22 +57,7 @@ class Stub(Effect):
         return {STUB.name: {"stub_axle": exact.errors(found)}}
 
 
-OURS = (
-    Stub("stub_axle", "length of the stub axle, mm", "positive outboard", 0, (STUB,)),
-    # A wheel that stands upright leans by half a turn, more or less.
-    CarNumbers.of(
-        "flip",
-        "camber from the other side, rad",
-        Angle(
-            name="flip",
-            words="flipped camber",
-            sign="where the wheel leans in",
-            line="wheel_axis",
-            sine="up",
-            cosine="inboard",
-        ),
-    ),
-)
+OURS = Stub("stub_axle", "length of the stub axle, mm", "positive outboard", 0, (STUB,))
 
 
 def stub_axle(scale: float = 1.0) -> AbsoluteEffect:
@@ -88,39 +69,21 @@ def stub_axle(scale: float = 1.0) -> AbsoluteEffect:
     return AbsoluteEffect("mm", value)
 
 
-def flip(motion: Motion) -> np.ndarray:
-    """Camber from the other side: + where the wheel leans in at its top."""
-    outboard, _, up = motion.components(motion.line(*motion.corner.ends("wheel_axis")))
-    return arctan2(up, -outboard).value
-
-
-FLIP = AbsoluteEffect("rad", flip)
-
 # In the reference, whose derivatives make bounds of the absolute model's stated accuracy.
-REFERENCES = (
-    ReferenceEffect("stub_axle", "mm", (WHEEL,), lambda car: dot(car.wheel.along, car.outboard)),
-    ReferenceEffect(
-        "flip",
-        "rad",
-        (WHEEL,),
-        lambda car: angle(dot(car.wheel.along, car.up), -dot(car.wheel.along, car.outboard)),
-    ),
-)
+REFERENCE = ReferenceEffect("stub_axle", "mm", (WHEEL,), lambda car: dot(car.wheel.along, car.outboard))
 
 Plant = Callable[..., None]
 
 
 @pytest.fixture
 def planted(monkeypatch: pytest.MonkeyPatch) -> Plant:
-    """Registers the effects in pointcoord and the reference, and in absolute those that it is to know."""
-    for effect in OURS:
-        monkeypatch.setitem(registry.EFFECTS, effect.name, effect)
+    """Registers the effect in pointcoord and the reference, and in absolute one that it is to know."""
+    monkeypatch.setitem(registry.EFFECTS, OURS.name, OURS)
     monkeypatch.setitem(registry.QUANTITIES, STUB.name, STUB)
-    for one in REFERENCES:
-        monkeypatch.setitem(reference_registry.EFFECTS, one.name, one)
+    monkeypatch.setitem(reference_registry.EFFECTS, REFERENCE.name, REFERENCE)
 
     def in_absolute(stub: AbsoluteEffect) -> None:
-        known = {**absolute.EFFECTS, "stub_axle": stub, "flip": FLIP}
+        known = {**absolute.EFFECTS, "stub_axle": stub}
         monkeypatch.setattr(absolute, "EFFECTS", known)
         monkeypatch.setattr("absolute.effects.EFFECTS", known)
 
@@ -129,45 +92,37 @@ def planted(monkeypatch: pytest.MonkeyPatch) -> Plant:
 
 
 def asked(name: str) -> Scene:
-    """A built-in scene that asks for the new effects, and for one that has always been there."""
+    """A built-in scene that asks for the new effect, and for one that has always been there."""
     content: dict[str, Any] = Scene.load(name).model_dump(mode="json", exclude_none=True)
-    return Scene.from_mapping({**content, "effects": ["velocity", "stub_axle", "flip"]})
+    return Scene.from_mapping({**content, "effects": ["velocity", "camber", "stub_axle"]})
 
 
 def made_up(outcome: Outcome) -> dict[tuple[str, str], str]:
-    return {(r.quantity, r.name): r.verdict for r in outcome.rows if r.name in ("stub_axle", "flip")}
+    return {(r.quantity, r.name): r.verdict for r in outcome.rows if r.name == "stub_axle"}
 
 
 @pytest.mark.parametrize("name", ["bounce", "double-wishbone"])
 def test_it_is_compared_like_every_other(name: str, planted: Plant) -> None:
     outcome = compare(asked(name), "pointcoord", "absolute")
-    assert made_up(outcome) == {("stub", "stub_axle"): "agrees", ("wheel", "flip"): "agrees"}
+    assert made_up(outcome) == {("stub", "stub_axle"): "agrees"}
     assert {row.quantity for row in outcome.rows} == {"position", "velocity", "wheel", "stub"}
-    assert {row.name for row in outcome.rows if row.quantity == "wheel"} == {"flip"}
     assert outcome.agreed
-
-
-def test_an_angle_that_jumps_by_a_whole_turn_jumps_at_other_instants_and_agrees(planted: Plant) -> None:
-    first, second = compare(asked("off-axis-strut"), "pointcoord", "absolute").solutions
-    ours, theirs = (solution.numbers["wheel"]["flip"] for solution in (first, second))
-    assert np.ptp(ours) > 6.0
-    assert np.abs(np.exp(1j * ours) - np.exp(1j * theirs)).max() < 1e-13
 
 
 def test_a_fault_of_it_is_caught(planted: Plant) -> None:
     planted(stub_axle(1.0 + 1e-11))
     outcome = compare(asked("off-axis-strut"), "pointcoord", "absolute")
-    assert made_up(outcome) == {("stub", "stub_axle"): "disagrees", ("wheel", "flip"): "agrees"}
+    assert made_up(outcome) == {("stub", "stub_axle"): "disagrees"}
 
 
 def test_a_model_that_does_not_know_it_is_told_and_there_is_no_verdict(
     planted: Plant, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    known = {name: effect for name, effect in absolute.EFFECTS.items() if name not in ("stub_axle", "flip")}
+    known = {name: effect for name, effect in absolute.EFFECTS.items() if name != "stub_axle"}
     monkeypatch.setattr("absolute.effects.EFFECTS", known)
     outcome = compare(asked("off-axis-strut"), "pointcoord", "absolute")
-    assert made_up(outcome) == {("stub", "stub_axle"): "not given", ("wheel", "flip"): "not given"}
-    assert set(outcome.missing) == {"absolute gives no stub length", "absolute gives no wheel angle"}
+    assert made_up(outcome) == {("stub", "stub_axle"): "not given"}
+    assert set(outcome.missing) == {"absolute gives no stub length"}
     assert not outcome.disagreements
     assert not outcome.agreed
     (line,) = (line for line in text_of(outcome_parts(outcome)).splitlines() if line.startswith("stub_axle"))
@@ -175,7 +130,7 @@ def test_a_model_that_does_not_know_it_is_told_and_there_is_no_verdict(
 
 
 def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = short_scene(tmp_path, effects='["stub_axle", "flip"]')
+    path = short_scene(tmp_path, effects='["stub_axle"]')
     assert main(["plan", path]) == 0
     out = capsys.readouterr().out
     assert "computed: length of the stub axle, mm (stub_axle)" in out
@@ -186,14 +141,11 @@ def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.Cap
     places = {axis: row[f"position.wheel_centre.{axis} [mm]"] for axis in "xyz"}
     # A left wheel: outboard is -y.
     assert row["stub.stub_axle [mm]"] == pytest.approx(row["position.strut_lower.y [mm]"] - places["y"])
-    assert 170.0 < abs(row["wheel.flip [deg]"]) <= 180.0
     assert main(["validate", path, "--json", "-"]) == 0
     data = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(json.loads(schema_text())).validate(data)
     rows = {(r["quantity"], r["name"]): r["unit"] for r in data["scenes"][0]["comparisons"][0]["rows"]}
     assert rows["stub", "stub_axle"] == "mm"
-    assert rows["wheel", "flip"] == "rad"
     assert main(["validate", path, "-v"]) == 0
     table = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert [line[2] for line in table if line[:1] == ["stub_axle"]] == ["mm"]
-    assert [line[2] for line in table if line[:1] == ["flip"]] == ["deg"]

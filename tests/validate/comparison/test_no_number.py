@@ -67,20 +67,6 @@ def test_a_centre_that_goes_through_infinity_is_there_for_both_models_or_for_nei
     assert compare(scene, "pointcoord", "absolute").agreed
 
 
-def test_ackermann_is_bounded_up_to_the_poses_where_a_wheel_goes_through_straight_ahead() -> None:
-    """With toe out there is always a wheel that is steered to a side."""
-    content = Scene.load("axle-steer").model_dump(exclude_none=True)
-    for name, (x, y, z) in content["mechanism"]["points"].items():
-        if name.endswith("wheel_axis_inner"):
-            content["mechanism"]["points"][name] = [x - 2.0, y, z]
-    content["inputs"]["rack"] = {"sweep": [-29.0, 29.0]}
-    content["effects"] = ["ackermann"]
-    content["time"]["samples"] = 101
-    outcome = compare(Scene.from_mapping(content, "toe out"), "pointcoord", "absolute")
-    assert {"turning_radius", "ackermann", "ackermann_error"} <= {row.name for row in outcome.rows}
-    assert outcome.agreed
-
-
 def test_a_screw_pitch_that_is_0_everywhere_is_tested() -> None:
     scene = Scene.from_mapping(LEVEL | {"effects": ["screw_axis"]}, "parallel arms")
     outcome = compare(scene, "pointcoord", "absolute")

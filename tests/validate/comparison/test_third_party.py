@@ -9,7 +9,6 @@ import pytest
 
 from pointcoord import Scene
 from validate import Accuracy, FormulationError, Outcome, Solution, compare
-from validate.formulations.protocol import AccuracyError
 
 SCENE = Scene.load("double-wishbone")
 COUNT = len(SCENE.instants)
@@ -73,10 +72,6 @@ SURE = Accuracy(ONES)
         ({"position": [WHEEL]}, "mine: position given as list; needed: arrays by name"),
         ([WHEEL], "mine: its numbers given as list; needed: arrays by name"),
         (
-            {"position": {"wheel_center": WHEEL}},
-            "mine gives position of 'wheel_center', which is left out (did you mean 'wheel_centre'?)",
-        ),
-        (
             {"wheel": {"camber": WHEEL}},
             f"wheel angle of camber has the shape ({COUNT}, 3); needed: ({COUNT},)",
         ),
@@ -117,27 +112,3 @@ def test_what_is_no_solution_and_a_claim_that_is_no_bound_are_refusals(
     with pytest.raises(FormulationError, match=r"^mine: ") as caught:
         with_solution(lambda scene: make())
     assert said in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "claim", [np.full((COUNT, 3), -1e-9), np.ones((COUNT, 3), int), np.ones(COUNT), [1e-9]]
-)
-def test_a_claim_that_is_no_bound_says_what_is_allowed(claim: Any) -> None:
-    with pytest.raises(AccuracyError, match="; allowed: "):
-        claiming({"velocity": {"wheel_centre": claim}})
-
-
-def test_numbers_that_are_none_are_counted_by_instants_and_whole_ones_not_told_of() -> None:
-    holed = WHEEL.copy()
-    holed[2, 0] = holed[5, 1] = holed[5, 2] = np.nan
-    notes = [
-        with_solution(
-            lambda scene, places=places: Solution(
-                "mine", scene.instants, {"position": {"wheel_centre": places}}, SURE
-            )
-        ).notes
-        for places in (holed, WHEEL)
-    ]
-    told = f"mine: position of wheel_centre is not a number at 2 of {COUNT} instants"
-    assert told in notes[0]
-    assert not any("not a number" in note or "instants; the others" in note for note in notes[1])

@@ -112,16 +112,6 @@ def test_a_strut_whose_axis_leads_through_the_ball_joint_is_named() -> None:
     assert "the line of strut leads through lower_ball_joint, not through strut_lower" in only.words
 
 
-def test_a_table_over_travel_shows_a_rod_of_another_length() -> None:
-    scene, content = car("double-wishbone", wheel_travel={"sweep": (-50.0, 50.0)}, rack={"constant": 0.0})
-    angles = camber_and_toe(absolute(with_rod(content, "tie_rod", -4.0)))
-    link, *others = in_a_table(scene, "wheel_travel", np.linspace(-50.0, 50.0, 21), angles, 4)
-    assert link.kind == "link"
-    assert "tie_rod is 4 mm too short" in link.words
-    # Its end may be misread along it instead.
-    assert all("tie_rod_inner." in other.words for other in others)
-
-
 def test_a_rod_of_another_length_is_named_though_one_number_has_a_fault_of_its_own() -> None:
     scene, content = car("five-link")
     scene = scene.model_copy(update={"effects": ["camber", "toe", "steer_angle"]})
@@ -145,17 +135,6 @@ def test_what_both_wheels_of_an_axle_have_exchanged_is_said_once() -> None:
     numbers = {q: {name: part[exchanged(name)] for name in part} for q, part in right.items()}
     (only,) = explained(scene, numbers)
     assert only.words.endswith("what is of left stands under right, and the other way")
-
-
-def test_a_misread_point_is_named_by_angles_where_positions_are_in_metres() -> None:
-    scene, content = car("hmmwv-front")
-    x, y, z = content["mechanism"]["points"]["lower_arm_rear"]
-    content["mechanism"]["points"]["lower_arm_rear"] = [x, y, z + 5.0]
-    numbers = absolute(content).numbers
-    in_metres = {name: place / 1000.0 for name, place in numbers["position"].items()}
-    found = explained(scene, {"position": in_metres, "wheel": numbers["wheel"]})
-    assert [one.kind for one in found] == ["unit", "hardpoint"]
-    assert "lower_arm_rear.z drawn 5 mm too high" in found[1].words
 
 
 def test_a_rod_of_another_length_is_named_where_every_row_is_one_late_besides() -> None:

@@ -105,14 +105,6 @@ def test_angles_of_an_axle_by_another_definition_are_said_to_be() -> None:
     assert only == "left.kingpin, right.kingpin, left.caster, right.caster: the slope, no angle"
 
 
-def test_the_same_fault_is_said_once_beside_a_misread_hardpoint() -> None:
-    scene = over_travel("pushrod", "wheel_angles", "toe", "caster")
-    wheel = misread(scene, "wheel_axis_inner.x", 1.3)["wheel"]
-    first, second = told(scene, {"wheel": {**wheel, "caster": -wheel["caster"]}})
-    assert "wheel_axis_inner.x drawn 1.3 mm" in first
-    assert second == "caster: the other sign"
-
-
 def test_another_definition_of_all_angles_hides_no_misread_hardpoint() -> None:
     content = Scene.load("double-wishbone").model_dump(exclude_none=True)
     content["inputs"] = {"wheel_travel": {"constant": 0.0}, "rack": {"sweep": (-20.0, 20.0)}}

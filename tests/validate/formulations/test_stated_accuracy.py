@@ -160,17 +160,3 @@ def test_an_accuracy_that_is_a_lie_is_seen_to_be_one(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(Problem, "solution", boasting)
     outcome = compare(Scene.load("bounce-and-steer"), "pointcoord", "relative")
     assert {"position", "velocity", "wheel"} <= {row.quantity for row in outcome.disagreements}
-
-
-def test_a_body_may_have_three_points_at_one_place() -> None:
-    scene = Scene.load("five-link")
-    content = scene.model_dump(exclude_none=True)
-    plain = scene.mechanism.plain(tuple(scene.inputs))
-    part = {key: value for key, value in content["mechanism"].items() if key not in ("type", "closure")}
-    part |= {key: plain[key] for key in ("bodies", "rods", "slides", "inputs", "roles")}
-    marks = dict.fromkeys(("first_mark", "second_mark"), part["points"]["wheel_centre"])
-    part["points"] = {**part["points"], **marks}
-    part["bodies"]["knuckle"] += [*marks]
-    outcome = compare(Scene.from_mapping(content | {"mechanism": part}), "pointcoord", "absolute")
-    assert outcome.agreed
-    assert {row.name for row in outcome.rows} >= {*marks}

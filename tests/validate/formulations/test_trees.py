@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import Phase, assume, given, note, settings
-from mechanism_files import mechanism_file
 from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError
@@ -31,16 +30,6 @@ searched = settings(
 
 
 TREES = ("relative", *OUTSIDE)
-
-
-@pytest.mark.parametrize("who", TREES)
-def test_an_arm_on_one_hinge_that_is_driven_has_no_loop_and_is_answered(who: str) -> None:
-    content = Scene.load("semi-trailing-arm").model_dump(exclude_none=True)
-    content["inputs"] = {"arm_turn": {"sine": {"amplitude": 0.1, "angular_frequency": 6.0}}}
-    outcome = compare(Scene.from_mapping(content), "pointcoord", who)
-    assert not outcome.disagreements
-    agreed = {row.name for row in outcome.rows if row.verdict == "agrees" and row.quantity == "acceleration"}
-    assert "wheel_centre" in agreed
 
 
 @pytest.mark.parametrize("who", TREES)
@@ -109,19 +98,3 @@ def test_a_rod_that_is_called_as_an_angle_has_no_force_from_a_tree() -> None:
     assert "toe" in given["wheel"]
     assert "rod_force" not in given
     assert "toe" in formulation("pointcoord").solve(scene).numbers["rod_force"]
-
-
-def test_outboard_is_the_side_of_a_part_wherever_its_wheel_is_drawn() -> None:
-    """A wheel drawn further in than the points of its arms counts its angles as the part says."""
-    content = Scene.load("axle-parallel").model_dump(exclude_none=True)
-    corner = mechanism_file("double_wishbone")
-    del corner["roles"]["inboard"]  # by which such a drawing is refused
-    tables = mechanism_file("axle")
-    for part in tables["parts"].values():
-        part["mechanism"] = corner
-    # The left arm's points are 388 mm to the left.
-    points = {"left.wheel_centre": (0.0, -350.0, 210.0), "left.wheel_axis_inner": (0.0, -290.0, 210.0)}
-    del content["mechanism"]["type"]
-    content["mechanism"] |= {**tables, "points": {**content["mechanism"]["points"], **points}}
-    outcome = compare(Scene.from_mapping(content), "pointcoord", "relative")
-    assert outcome.agreed, outcome.disagreements
