@@ -16,6 +16,7 @@ from validate.diagnosis.least import decimals_of, fitted
 
 Array = NDArray[np.float64]
 
+FEW = 25  # instants that amounts are found from
 ENOUGH_NUMBERS = 3  # of the car, of which one is left out: what one or two alone say fits much
 
 
@@ -26,7 +27,7 @@ class Change:
     Attributes:
         key: which it is. ours: what it is in the scene. step: of differences by it.
         put: puts another one into the scene's content.
-        words: what is said of another one.
+        words: what is said of another one. cost: how far-fetched that is.
     """
 
     key: Hashable
@@ -34,6 +35,7 @@ class Change:
     step: float
     put: Callable[[Content, float], None]
     words: Callable[[float], str]
+    cost: float = 2.5
 
 
 def motion_by(evidence: Evidence, change: Change, amount: float) -> Motion | None:
@@ -53,13 +55,25 @@ def amount_of(
     return fitted(read, change.ours, change.step, evidence.joined(looked), slope)
 
 
-def supposed(evidence: Evidence, change: Change, amount: float, cost: float = 2.5) -> Hypothesis | None:
+def supposed(evidence: Evidence, change: Change, amount: float) -> Hypothesis | None:
     """The whole car with another number; None where it cannot be solved so."""
     motion = motion_by(evidence, change, amount)
     if motion is None or amount == change.ours:
         return None
     rows, decimals = evidence.by(motion), decimals_of(amount)
-    return Hypothesis(change.key, change.words(amount), rows, 1, cost, decimals, whole=True)
+    return Hypothesis(change.key, change.words(amount), rows, 1, change.cost, decimals, whole=True)
+
+
+def any_of(evidence: Evidence, changes: Sequence[Change]) -> Iterator[Hypothesis]:
+    """Each of some numbers by itself, by what tells most."""
+    few = evidence.thinned(FEW)
+
+    def suppose(looked: Sequence[Row]) -> list[Hypothesis]:
+        fits = [(change, amount_of(few, looked, change)) for change in changes]
+        found = (supposed(evidence, change, fit[0]) for change, fit in fits if fit)
+        return [one for one in found if one]
+
+    return by_what_tells(evidence, suppose)
 
 
 def by_what_tells(

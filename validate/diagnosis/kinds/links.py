@@ -9,7 +9,7 @@ is drawn on that line. Only cars of one part are, so no axles.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import combinations
 from typing import Any
 
@@ -21,28 +21,19 @@ from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
 from pointcoord.method import AUTO
 from pointcoord.simulation import prepare_task, scene_mechanism, solve_task
-from validate.diagnosis.evidence import Content, Evidence, Row, kind_of, order
+from validate.diagnosis.evidence import Content, Evidence, kind_of, order
 from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.other_car import Change, amount_of, by_what_tells, supposed
+from validate.diagnosis.other_car import Change, any_of
 
 STEP = 0.05  # mm, of differences by a length
-FEW = 25  # instants that lengths are found from
 # Of the car's size: how far a length may be off and still be meant, and how far another assembly is away.
 KEPT, ELSEWHERE = 1e-5, 1e-4
 
 
 def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each rod by itself."""
-    tables = _tables(evidence.scene)
-    rods = [_length(evidence.scene, tables, rod) for rod in tables.get("rods", {})]
-
-    def of_another_length(looked: Sequence[Row]) -> list[Hypothesis]:
-        few = evidence.thinned(FEW)
-        fits = [(rod, amount_of(few, looked, rod)) for rod in rods]
-        found = (supposed(evidence, rod, fit[0]) for rod, fit in fits if fit)
-        return [one for one in found if one]
-
-    return by_what_tells(evidence, of_another_length)
+    scene, tables = evidence.scene, _tables(evidence.scene)
+    return any_of(evidence, [_length(scene, tables, rod) for rod in tables.get("rods", {})])
 
 
 def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,48 +11,34 @@ from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Content, Evidence, Row, numbers_in
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
 from validate.diagnosis.least import fitted
-from validate.diagnosis.other_car import Change, amount_of, by_what_tells, supposed
+from validate.diagnosis.other_car import FEW, Change, any_of
 from validate.formulations.input_rates import rates
 
 Array = NDArray[np.float64]
 
 SCALED = {"amplitude", "offset", "values"}  # of a law, what is so many times itself if the law is
 STEP = 1e-3  # of differences by a factor, and by an amount
-# How near to a number of six digits a found one is meant to be that number.
-MEANT = 1e-8
-FEW = 25  # instants that amounts are found from
 COST = 1.5  # of another input, which is likelier than that all is late
 FARTHEST = 3  # samples that a motion may be late or early
 
 
 def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each input by itself, taken so many times, or so much more."""
-
-    def taken_otherwise(looked: Sequence[Row]) -> list[Hypothesis]:
-        few, found = evidence.thinned(FEW), list[Hypothesis]()
-        for name, law in evidence.scene.inputs.items():
-            size = float(np.abs(rates(law, evidence.times)[:, 0]).max())
-            # Of an input at 0 there is no factor.
-            for change in (*([_times(evidence, name)] if size else []), _more(evidence, name)):
-                if fit := amount_of(few, looked, change):
-                    one = supposed(
-                        evidence, change, _meant(fit[0], size if change.ours == 0.0 else 1.0), COST
-                    )
-                    found += [one] if one else []
-        return found
-
-    return by_what_tells(evidence, taken_otherwise)
+    # Of an input at 0 there is no factor.
+    moving = [name for name, law in evidence.scene.inputs.items() if rates(law, evidence.times)[:, 0].any()]
+    factors = [_times(name) for name in moving]
+    return any_of(evidence, [*factors, *(_more(evidence, name) for name in evidence.scene.inputs)])
 
 
-def _times(evidence: Evidence, name: str) -> Change:
+def _times(name: str) -> Change:
     def put(content: Content, factor: float) -> None:
         content["inputs"][name] = _law_times(content["inputs"][name], factor)
 
     def words(factor: float) -> str:
         said = {-1.0: "has the other sign", 0.0: "is taken as 0"}
-        return f"the input {name} {said.get(factor, f'is taken {factor:.6g} times')}"
+        return f"the input {name} {said.get(round(factor, 8), f'is taken {factor:.6g} times')}"
 
-    return Change((name, "times"), 1.0, STEP, put, words)
+    return Change((name, "times"), 1.0, STEP, put, words, COST)
 
 
 def _more(evidence: Evidence, name: str) -> Change:
@@ -64,7 +50,7 @@ def _more(evidence: Evidence, name: str) -> Change:
     def words(more: float) -> str:
         return f"the input {name} is taken {abs(more):.6g} {unit} {'more' if more > 0.0 else 'less'}"
 
-    return Change((name, "more"), 0.0, STEP, put, words)
+    return Change((name, "more"), 0.0, STEP, put, words, COST)
 
 
 def _law_times(law: Content, factor: float) -> Content:
@@ -75,12 +61,6 @@ def _law_times(law: Content, factor: float) -> Content:
         scaled = {key: np.multiply(factor, of[key]).tolist() for key in SCALED & of.keys()}
         return {kind: {**of, **scaled}}
     return {kind: np.multiply(factor, of).tolist()}
-
-
-def _meant(amount: float, size: float) -> float:
-    """What an amount is meant to be: 0, 1 or -1, or a number of six digits, where that is nearly it."""
-    near = {0.0: size, 1.0: 1.0, -1.0: 1.0, float(f"{amount:.6g}"): abs(amount)}
-    return next((one for one, scale in near.items() if abs(amount - one) <= MEANT * scale), amount)
 
 
 def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
