@@ -63,6 +63,10 @@ def given(solution: Solution, instants: Array) -> Given:
     if isinstance(times, str) or times.ndim != 1:
         problem = times if isinstance(times, str) else f"have the shape {times.shape}"
         raise FormulationError(who, ValueError(f"its times {problem}; needed: one number for each instant"))
+    own = solution.accuracy
+    if len(own.condition) != len(times):
+        problem = f"its accuracy is of {len(own.condition)} instants; needed: of its {len(times)} times"
+        raise FormulationError(who, ValueError(problem))
     found, places = _places(times, instants)
     if not found.all():
         notes.append(
@@ -76,7 +80,7 @@ def given(solution: Solution, instants: Array) -> Given:
             notes.append(f"{who}: {quantity!r} is no quantity and is left out; there are: {known}")
             continue
         words, shape = QUANTITIES[quantity].words, shape_of(quantity, len(times))
-        claimed = solution.accuracy.claims.get(quantity, {})
+        claimed = own.claims.get(quantity, {})
         for name, raw in _by_name(given_part, f"{who}: {words}", faults).items():
             what = f"{who}: {words} of {name}"
             array = _shaped(raw, shape)
@@ -89,20 +93,11 @@ def given(solution: Solution, instants: Array) -> Given:
             if wrong and not said:
                 notes.append(f"{what} is not a number at {wrong} of {len(array)} instants")
             numbers[quantity][name] = array[places]
-            claim = _shaped(claimed[name], shape) if name in claimed else "is not given"
-            if isinstance(claim, str):
-                notes.append(f"{what}: its accuracy {claim}")
+            if name in claimed:
+                claims[quantity][name] = claimed[name]
             else:
-                claims[quantity][name] = claim[places]
-    condition = _shaped(solution.accuracy.condition, times.shape)
-    if isinstance(condition, str):
-        notes.append(f"{who}: its condition number {condition}; 1 is taken")
-        condition = np.ones_like(times)
-    blind = None if solution.accuracy.blind is None else solution.accuracy.blind[places]
-    usual = {quantity: most[places] for quantity, most in solution.accuracy.usual.items()}
-    accuracy = replace(
-        solution.accuracy, condition=condition[places], claims=claims, blind=blind, usual=usual
-    )
+                notes.append(f"{what}: its accuracy is not given")
+    accuracy = replace(own, claims=claims).at(places)
     return Given(found, Solution(who, instants[found], numbers, accuracy, tuple(notes), tuple(faults)))
 
 

@@ -34,11 +34,8 @@ class AbsoluteCoordinates:
         problem, asked = Problem.of(scene), asked_numbers(scene)
         part = scene.mechanism
 
-        def partial(solved: absolute.Solution | None) -> Solution | None:
-            try:
-                return None if solved is None else problem.solution(self.name, found_of(solved, asked))
-            except AccuracyError:
-                return None
+        def solution(solved: absolute.Solution) -> Solution:
+            return problem.solution(self.name, found_of(solved, asked))
 
         try:
             model = absolute.compile(part.plain(tuple(scene.inputs)))
@@ -52,10 +49,11 @@ class AbsoluteCoordinates:
                 effects=effects,
                 loads=loads,
             )
-            return problem.solution(self.name, found_of(solved, asked))
+            return solution(solved)
         except absolute.AbsoluteError as error:
             before = error.partial
-            raise FormulationError(self.name, error, lambda: partial(before)) from error
+            partial = None if before is None else (lambda: solution(before))
+            raise FormulationError(self.name, error, partial) from error
         except (SceneError, AccuracyError) as error:
             raise FormulationError(self.name, error) from error
 

@@ -8,7 +8,6 @@ to solve as the scene asks. What is claimed is what was left out, whichever it w
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,7 +57,9 @@ class PointCoordinates:
         except SceneError:
             raise
         except PointcoordError as error:
-            raise FormulationError(self.name, error, partial(self._partial, scene, error)) from error
+            before = error.partial
+            partial = None if before is None else (lambda: self._solution(scene, before))
+            raise FormulationError(self.name, error, partial) from error
         return self._solution(scene, motion)
 
     def _solved(self, scene: Scene) -> Motion:
@@ -71,15 +72,6 @@ class PointCoordinates:
         except (MotionTooLong, MotionTooRough):
             # A rough law may be followed to what the scene asks for and no further.
             return simulate(scene, self.method)
-
-    def _partial(self, scene: Scene, error: PointcoordError) -> Solution | None:
-        """What was solved before an error, as far as its errors are bounded."""
-        if error.partial is None:
-            return None
-        try:
-            return self._solution(scene, error.partial)
-        except FormulationError:
-            return None
 
     def _solution(self, scene: Scene, motion: Motion) -> Solution:
         proof = motion.proof(rates=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
@@ -199,11 +200,13 @@ class FormulationError(Exception):
 
     @property
     def partial(self) -> Solution | None:
-        """What was solved before, at the first of the scene's instants; None if nothing.
+        """What was solved before, at the first of the scene's instants; None if nothing, or not how well.
 
         Found when it is first asked for, if it was given as a function: what is claimed of it costs as much
         as of a whole motion, and few who are refused want it.
         """
         if callable(self._partial):
-            self._partial = self._partial()
+            before, self._partial = self._partial, None
+            with suppress(AccuracyError, FormulationError):
+                self._partial = before()
         return self._partial

@@ -62,7 +62,7 @@ class InTree:
         def partial(before: Poses | None) -> Solution | None:
             try:
                 return None if before is None else solution(before)
-            except (PeerError, AccuracyError):
+            except PeerError:
                 return None
 
         try:
