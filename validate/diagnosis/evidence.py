@@ -299,4 +299,7 @@ class Evidence:
             if row[1] == point and kind_of(row) == "point" and order(row) == 0:
                 return array
         motion = self.solved.other("as it is", lambda _: None) if self.over_time else None
-        return None if motion is None else np.asarray(motion.at(self.times).position[point])
+        if motion is None:
+            return None
+        (quantity,) = (q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 0)
+        return np.asarray(motion.at(self.times).numbers[quantity][point])

@@ -9,6 +9,7 @@ import pytest
 
 from pointcoord import Scene
 from validate import Accuracy, FormulationError, Outcome, Solution, compare
+from validate.formulations.protocol import AccuracyError
 
 SCENE = Scene.load("double-wishbone")
 COUNT = len(SCENE.instants)
@@ -112,3 +113,8 @@ def test_what_is_no_solution_and_a_claim_that_is_no_bound_are_refusals(
     with pytest.raises(FormulationError, match=r"^mine: ") as caught:
         with_solution(lambda scene: make())
     assert said in str(caught.value)
+
+
+def test_a_claim_that_is_no_bound_says_what_is_allowed() -> None:
+    with pytest.raises(AccuracyError, match="; allowed: finite numbers from 0 up"):
+        Accuracy(-ONES)

@@ -67,8 +67,8 @@ BACK: Mapping[str, Callable[[Array], Array]] = {
 SAMPLES: Mapping[str, Callable[[Array], Array]] = {
     "one sample late, the first one twice": lambda x: np.concatenate([x[:1], x[:-1]]),
     "one sample early, the last one twice": lambda x: np.concatenate([x[1:], x[-1:]]),
-    "one sample late, the last one first": lambda x: np.roll(x, 1, axis=0),
-    "one sample early, the first one last": lambda x: np.roll(x, -1, axis=0),
+    "one sample late, the last one first": lambda x: np.concatenate([x[-1:], x[:-1]]),
+    "one sample early, the first one last": lambda x: np.concatenate([x[1:], x[:1]]),
 }
 """In words, and what is then given of numbers."""
 
