@@ -28,6 +28,7 @@ class FilePoint:
         side: the wheel that the file says it belongs to, left or right; empty if it does not say.
         part: the axle that the file says it belongs to, front or rear; empty if it does not say.
         corner: the plain words in a column of corners; empty if there is none.
+        section: the heading that it stands under; empty if there is none.
     """
 
     name: str
@@ -36,6 +37,7 @@ class FilePoint:
     side: str = ""
     part: str = ""
     corner: str = ""
+    section: str = ""
 
     def of(self, part: str, side: str) -> bool:
         """Whether it may belong to that wheel; an empty axle or side leaves it open."""

@@ -333,6 +333,8 @@ class _Import:
         known, others = [], []
         for point in self.contents.points:
             found = self.format.ours(point.name, ours)
+            if point.section and (whole := self.format.ours(f"{point.section} {point.name}", ours)):
+                found, point = whole, replace(point, name=f"{point.section} {point.name}")
             if found is None:
                 others.append(point)
                 continue

@@ -2,7 +2,8 @@
 
 A line of titles that the format knows says which columns are x, y and z, in which unit, and of which wheel a
 line is. Without one a line is a name and three numbers. Titles that are not known are not guessed at: a table
-[table] in the file of names says which columns are meant.
+[table] in the file of names says which columns are meant. Words alone on a line are the heading of the points
+that follow.
 """
 
 from __future__ import annotations
@@ -54,20 +55,22 @@ def read(
     known = {plain(title): key for key, some in titles.items() for title in some}
     rows = [(line, row if lines.mark else _named(row, known)) for line, row in lines.rows]
     columns = _said(rows, said, source) if said else _titled(rows, known, source)
-    points, others = list[FilePoint](), list[str]()
+    points, others, section = list[FilePoint](), list[str](), ""
     for line, row in rows[columns.row + 1 :]:
         name, *cells = (row[at] if at < len(row) else "" for at in (columns.at[key] for key in NEEDED))
         if (not name or is_number(name)) and all(map(is_number, filter(None, row))):
             raise FileError(source, line, "has coordinates without a name", ROW)
         if not all(map(is_number, cells)):
-            others += [f"{short(name)} on line {line}"] if name else []
+            section = name if not any(cells) else section
+            others += [f"{short(name)} on line {line}"] if name and any(cells) else []
             continue
         if not columns.said and (count := sum(map(is_number, row))) > 3:
             told = f"has {count} numbers for {short(name)}, in columns without a title"
             raise FileError(source, line, told, f"three, {SAY}")
         corner = columns.at.get("corner", len(row))
         where = plain(row[corner]) if corner < len(row) else ""
-        points.append(FilePoint(name, place_of(cells, source, line, name), line, corner=where))
+        place = place_of(cells, source, line, name)
+        points.append(FilePoint(name, place, line, corner=where, section=section))
     if not points:
         raise FileError(source, 0, "has no points", ROW)
     return Contents(tuple(points), unit=columns.unit, lines=tuple(others))

@@ -112,6 +112,36 @@ def test_each_wheel_of_a_table_of_four_is_the_one_that_is_asked_for(text: str, t
         assert not found.others
 
 
+SECTIONS = {
+    "LOWER A-ARM": {
+        "Front inboard": "lower_arm_front",
+        "Rear inboard": "lower_arm_rear",
+        "Outboard": "lower_ball_joint",
+    },
+    "UPPER A-ARM": {
+        "Front inboard": "upper_arm_front",
+        "Rear inboard": "upper_arm_rear",
+        "Outboard": "upper_ball_joint",
+    },
+    "TIE ROD": {"Inboard": "tie_rod_inner", "Outboard": "tie_rod_outer"},
+    "WHEEL": {"Center": "wheel_centre", "Spindle point": "wheel_axis_inner", "Mass": ""},
+}
+
+
+@pytest.mark.parametrize("commas", ["", ",,,"])
+def test_a_name_is_put_together_of_the_heading_of_its_section_and_its_own(
+    commas: str, tmp_path: Path
+) -> None:
+    lines = ["Point,X,Y,Z"]
+    for heading, its in SECTIONS.items():
+        lines.append(heading + commas)
+        lines += [f"{name},{cells(CAR.get(ours, (1.0, 2.0, 3.0)))}" for name, ours in its.items()]
+    found = imported(tmp_path, "\n".join(lines), axes=OURS)
+    assert drawn(found) == CAR
+    assert [point.name for point in found.others] == ["Mass"]
+    assert "LOWER A-ARM Front inboard, line 3" in found.text
+
+
 def test_columns_that_are_not_known_are_those_that_the_user_names(tmp_path: Path) -> None:
     lines = [f'"{WORDS[name]}",{cells(WHEELS["front", "left"][name])},{cells(CAR[name])}' for name in CAR]
     text, names = "\n".join(["Point,x,y,z,hoch,quer,lang", *lines]), tmp_path / "names.toml"
