@@ -1,7 +1,7 @@
 """Mechanisms in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
 from absolute.compiler import compile
-from absolute.effects import AXLE_EFFECTS, EFFECTS, Effect, effect_names
+from absolute.effects import AXLE_EFFECTS, EFFECTS, Effect, effects_in
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,
@@ -35,6 +35,6 @@ __all__ = [
     "UnreachableError",
     "close_drawing",
     "compile",
-    "effect_names",
+    "effects_in",
     "solve",
 ]

@@ -18,6 +18,7 @@ the plane of a horizontal h and up through c, the knuckle's points move about th
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -62,9 +63,6 @@ class Effect:
     by: str = ""
 
 
-# Lines and places of a wheel
-
-
 def _along(motion: Motion, role: str) -> Dual:
     """The line of a role by its components, (3, N)."""
     return motion.components(motion.line(*motion.corner.ends(role)))
@@ -98,9 +96,6 @@ def _contact_place(motion: Motion) -> Array:
     """The contact point from the origin, by its components, (3, N)."""
     centre = _centre(motion)
     return motion.components(motion.drawn(centre) + motion.moved(centre) + contact(motion)).value
-
-
-# Numbers of places
 
 
 def _of_line(role: str, number: Callable[..., Dual]) -> Number:
@@ -195,9 +190,6 @@ LENGTHS: Mapping[str, Number] = {
     **{name: _of_steering(number) for name, number in AXIS_LENGTHS.items()},
     "damper_length": lambda motion: hypot(*motion.line(*motion.corner.ends("damper"))),
 }
-
-
-# Numbers of velocities
 
 
 def _slope(motion: Motion, number: Dual, by: str) -> Array:
@@ -380,31 +372,27 @@ OF_VELOCITIES: Mapping[str, tuple[str, Values]] = {
 }
 
 
-def _gradient(number: Number, by: str) -> Values:
-    """The change of a number: for each mm of travel, all other inputs and the chassis held; for each mm of
+def _values(number: Number, by: str) -> Values:
+    """A number, or its change: for each mm of travel, all other inputs and the chassis held; for each mm of
     the slide, or rad of roll, all else held; for each second, as everything moves."""
 
     def of(motion: Motion) -> Array:
-        slope = _slope(motion, number(motion), by)
+        found = number(motion)
+        if not by:
+            return found.value
+        slope = _slope(motion, found, by)
         return _ratio(slope, _travelled(motion)) if by == "travel" else slope
 
     return of
 
 
-def _value(number: Number) -> Values:
-    return lambda motion: number(motion).value
-
-
 def _with_gradients(unit: str, numbers: Mapping[str, Number]) -> dict[str, Effect]:
-    found = {}
-    for name, number in numbers.items():
-        found[name] = Effect(unit, _value(number))
-        for by, per in GRADIENTS.items():
-            found[f"{name}_by_{by}"] = Effect(f"{unit}/{per}", _gradient(number, by), by)
-    return found
-
-
-# Numbers that both wheels of an axle make
+    ways = [("", "", unit), *((f"_by_{by}", by, f"{unit}/{per}") for by, per in GRADIENTS.items())]
+    return {
+        name + suffix: Effect(per, _values(number, by), by)
+        for name, number in numbers.items()
+        for suffix, by, per in ways
+    }
 
 
 def _drawn_apart(left: Motion, right: Motion) -> Array:
@@ -501,24 +489,16 @@ AXLE_EFFECTS: Mapping[str, Effect] = {
 }
 
 
-# Effects that are asked for
-
-
-@dataclass(frozen=True)
-class Asked:
+class Asked(NamedTuple):
     """An effect and the parts of the mechanism whose wheels it looks at."""
 
     effect: Effect
     parts: tuple[str, ...]
 
 
-def effect_names(model: Model) -> tuple[str, ...]:
-    """Names of all effects of a model: `NAME` of EFFECTS, in a mechanism with parts `PART.NAME`, and those of
+def effects_in(model: Model) -> dict[str, Asked]:
+    """All effects of a model by name: `NAME` of EFFECTS, in a mechanism with parts `PART.NAME`, and those of
     AXLE_EFFECTS where it has two parts on opposite sides. Some may lack a role or a number of the car."""
-    return tuple(_effects_in(model))
-
-
-def _effects_in(model: Model) -> dict[str, Asked]:
     found = {
         f"{part}.{name}" if part else name: Asked(effect, (part,))
         for part in model.corners
@@ -537,7 +517,7 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
     Raises:
         InputError: there is no such effect; it names those there are.
     """
-    known = _effects_in(model) if names else {}
+    known = effects_in(model) if names else {}
     for name in names:
         if name not in known:
             raise InputError(

@@ -84,8 +84,7 @@ class RowStack:
         offset = [float(row.kind in ("offset", "distance")) for row in rows]
         self._offset, self._offsets = np.array(offset), np.repeat(np.reshape(offset, (-1, 1)), 3, axis=1)
         # What the terms of a row add up to at most, apart from the distances of the origins.
-        arms = np.sqrt(np.vecdot(self._local[1:], self._local[1:])).sum(axis=0)
-        self._spans = np.where(self._offset > 0.0, arms, 1.0)
+        self._spans = np.sqrt(np.vecdot(self._local[1:], self._local[1:])).sum(axis=0)
         # Where the Jacobian's entries are among the four vectors of a row's rate, row by row, and a zero.
         entries = np.arange(12 * self.count).reshape(4, self.count, 3)
         source = np.full((self.count, bodies, 2, 3), entries.size)

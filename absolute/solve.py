@@ -65,7 +65,7 @@ def solve(
         inputs: name -> (N, 3) value, rate and acceleration of every input of the model (rad or mm, per s).
             With the jerks of all as well, (N, 4), there are jerks of points, and so on, (N, orders).
         rates: False for positions only.
-        effects: names of `effect_names(model)`.
+        effects: names of `effects_in(model)`.
         loads: also the forces of rods, joints and slides under the loads of the model.
     Returns:
         Solution with one row per instant.

@@ -73,8 +73,8 @@ def test_half_a_turn_is_pi_with_either_zero() -> None:
 
 def test_names_are_those_of_the_parts_and_of_both_wheels_of_an_axle() -> None:
     parts = {f"{part}.{name}" for part in ("left", "right") for name in absolute.EFFECTS}
-    assert set(absolute.effect_names(absolute.compile(axle()))) == parts | set(absolute.AXLE_EFFECTS)
-    assert absolute.effect_names(absolute.compile(plain())) == tuple(absolute.EFFECTS)
+    assert set(absolute.effects_in(absolute.compile(axle()))) == parts | set(absolute.AXLE_EFFECTS)
+    assert absolute.effects_in(absolute.compile(plain())).keys() == absolute.EFFECTS.keys()
 
 
 def lacking(*names: str, **changed: Any) -> dict[str, Any]:

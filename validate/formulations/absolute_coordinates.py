@@ -70,6 +70,6 @@ def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> F
 
 def effects_in(scene: Scene, model: absolute.Model) -> tuple[list[str], bool]:
     """Which of a scene's numbers of the car are effects of the model, and whether it asks for forces."""
-    known = absolute.effect_names(model)
+    known = absolute.effects_in(model)
     effects = [name for name in asked_of_the_car(scene) if name in known]
     return effects, any(map(is_force, asked_numbers(scene)))
