@@ -1,7 +1,6 @@
 """The mechanism in Pinocchio: one free-flying body each, and the rows that join them."""
 
 from collections.abc import Sequence
-from math import comb
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +9,7 @@ from absolute.backend import pin
 from absolute.errors import DescriptionError
 from absolute.model import Model
 from absolute.rows import Placed, RowStack
-from absolute.vectors import Array, Places
+from absolute.vectors import Array, Places, product_rule
 
 # Rows that depend on each other do so only nearly where the drawing does not close yet.
 LARGEST_DEPENDENT = 0.1
@@ -166,7 +165,7 @@ class Mechanism:
         # Of an angle x it is the real part of z = exp(i x), with z' = i x' z, and so on by the product rule.
         turned = [np.exp(1j * series[0])]
         for n in range(1, len(series)):
-            turned.append(1j * sum(comb(n - 1, i) * series[n - i] * turned[i] for i in range(n)))
+            turned.append(1j * product_rule(n - 1, (series[n - i] * turned[i] for i in range(n))))
         targets = np.zeros((len(series), *turned[-1].shape[:-1], self.stack.count))
         targets[0] = self.stack.drawn
         for target, angle, value in zip(targets, turned, series, strict=True):

@@ -19,14 +19,13 @@ is, is also an arcsine of a . e; but rounding of its derivatives grows with the 
 """
 
 from collections.abc import Iterable, Sequence
-from math import comb
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from absolute.model import Row
-from absolute.vectors import EPS, Array, carried, cross
+from absolute.vectors import EPS, Array, carried, cross, product_rule
 
 # A row is a sum of products of turned features and origins. About 27 roundings of eps / 2 of its terms
 # meet in it: four from the quaternion, four from its products, three from the turning, two from the
@@ -192,14 +191,14 @@ class RowStack:
 
 def _product(one: Sequence[Array], other: Sequence[Array], order: int) -> Array:
     """A derivative of the scalar product of two vectors, from their derivatives."""
-    terms = (comb(order, i) * np.vecdot(one[i], other[order - i]) for i in range(order + 1))
-    return np.asarray(sum(terms))
+    return np.asarray(product_rule(order, (np.vecdot(one[i], other[order - i]) for i in range(order + 1))))
 
 
 def _of_length(vectors: Sequence[Array]) -> Array:
-    """The last derivative of the length of a vector, (..., rows, 3) by derivative: l l = e . e."""
+    """The last derivative of the length of a vector, (..., rows, 3) by derivative: l l' = e . e'."""
     lengths = [np.sqrt(np.vecdot(vectors[0], vectors[0]))]
     for n in range(1, len(vectors)):
-        inner = (comb(n, i) * lengths[i] * lengths[n - i] for i in range(1, n))
-        lengths.append((_product(vectors, vectors, n) - sum(inner)) / (2.0 * lengths[0]))
+        whole = product_rule(n - 1, (np.vecdot(vectors[i], vectors[n - i]) for i in range(n)))
+        known = product_rule(n - 1, (lengths[i] * lengths[n - i] if i else 0.0 for i in range(n)))
+        lengths.append((whole - known) / lengths[0])
     return np.asarray(lengths[-1])

@@ -1,7 +1,8 @@
 """Vectors of doubles."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import comb
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,14 @@ def carried(vector: Array, spins: Sequence[Array], orders: int) -> list[Array]:
     """
     found = [vector]
     for n in range(orders - 1):
-        first, *others = (comb(n, i) * cross(spins[i], found[n - i]) for i in range(min(n + 1, len(spins))))
-        found.append(np.asarray(sum(others, first)))
+        found.append(product_rule(n, (cross(spins[i], found[n - i]) for i in range(min(n + 1, len(spins))))))
     return found
+
+
+def product_rule(order: int, terms: Iterable[Any]) -> Any:
+    """sum_i C(order, i) terms_i, as many as there are."""
+    total: Any = 0.0
+    for i, term in enumerate(terms):
+        share = term if i in (0, order) else comb(order, i) * term
+        total = total + share if i else share
+    return total
