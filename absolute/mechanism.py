@@ -206,13 +206,9 @@ def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
 
 def _largest(vanishing: Array) -> Places:
     """Numbers of as many rows as there are combinations, (rows, combinations), with the largest parts."""
-    chosen = set[int]()
-    for _ in range(vanishing.shape[1]):
-        row = int(np.argmax(np.vecdot(vanishing, vanishing)))
-        chosen.add(row)
-        way = vanishing[row] / np.linalg.norm(vanishing[row])
-        vanishing = vanishing - np.outer(vanishing @ way, way)
-    return np.array(sorted(chosen), dtype=np.intp)
+    from scipy.linalg import qr
+
+    return np.sort(qr(vanishing.T, mode="r", pivoting=True)[1][: vanishing.shape[1]]).astype(np.intp)
 
 
 def too_many_rows(stack: RowStack, left_out: Places) -> DescriptionError:
