@@ -18,6 +18,23 @@ LARGEST_DEPENDENT = 0.1
 LEAST_SPANNED = 0.5
 
 
+AXES = np.eye(3)
+
+
+def _turned() -> Array:
+    """(16, 9) of the products of x, y, z, w of a unit quaternion, what its rotation has beside the identity:
+    2 w [v] + 2 [v] [v] with [v] [v] = v v^T - v . v."""
+    shares = np.zeros((4, 4, 3, 3))
+    for i, axis in enumerate(AXES):
+        shares[i, 3] = 2.0 * np.cross(axis, AXES).T
+        shares[i, :3, i] += 2.0 * AXES
+        shares[i, i] -= 2.0 * AXES
+    return shares.reshape(16, 9)
+
+
+TURNED = _turned()
+
+
 class Group(NamedTuple):
     """Places of its rows and columns, as many, in the Jacobian."""
 
@@ -49,7 +66,7 @@ class Mechanism:
         columns: of [o', w] of all bodies, which are unknown: the first one stands, and points do not turn.
         joint_rows: number of rows before the rows of the inputs.
         choice: of the rows, in the drawing.
-        pin_model, pin_data: the Pinocchio model of the moving bodies.
+        bodies: how many there are. pin_model: the Pinocchio model of those that move.
         drawn: configuration of the drawing, (7 * moving bodies,).
         values: names of the inputs' values, one for each row, and behind these of displacements of the car,
             where heights over the ground hang on them.
@@ -58,7 +75,7 @@ class Mechanism:
 
     def __init__(self, model: Model) -> None:
         self.model, self.drawing = model, model.drawing
-        bodies = len(model.bodies)
+        self.bodies = bodies = len(model.bodies)
         self._sizes = np.array([0, *(3 if body in model.unturned else 6 for body in [*model.bodies][1:])])
         self.columns = np.flatnonzero(np.arange(6) < self._sizes[:, None])
         rows = [*model.joints, *(drive.row for drive in model.inputs)]
@@ -66,12 +83,8 @@ class Mechanism:
         self.pin_model = pin.Model()
         for body in [*model.bodies][1:]:
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)
-        # After the last joint and frame: data made earlier would be too small.
-        self.pin_data = self.pin_model.createData()
         self.drawn = pin.neutral(self.pin_model)
         self.drawn.reshape(-1, 7)[:, :3] = self.drawing.origins[1:]
-        # Of all bodies, the universe first; they change with the data.
-        self._rotations = [placement.rotation for placement in self.pin_data.oMi]
         self._factors = np.array([drive.factor for drive in model.inputs])
         self._cosines = np.array([drive.cosine for drive in model.inputs], dtype=np.bool_)
         over = np.array([drive.over_ground for drive in model.inputs], dtype=np.bool_)
@@ -122,21 +135,23 @@ class Mechanism:
     def poses(self, q: Array) -> tuple[Array, Array]:
         """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), what stands first, at configurations
         (..., 7 * moving bodies)."""
-        lead, bodies = q.shape[:-1], len(self._rotations)
-        rotation, origin = np.empty((*lead, bodies, 3, 3)), np.zeros((*lead, bodies, 3))
-        # All bodies fly freely on the universe.
-        origin[..., 1:, :] = q.reshape(*lead, bodies - 1, 7)[..., :3]
-        each = q.reshape(-1, self.pin_model.nq), rotation.reshape(-1, bodies, 3, 3)
-        for one, turned in zip(*each, strict=True):
-            pin.forwardKinematics(self.pin_model, self.pin_data, one)
-            turned[...] = self._rotations
-        return rotation, origin
+        each = q.reshape(*q.shape[:-1], -1, 7)
+        turned = each[..., 3:]
+        products = (turned[..., :, None] * turned[..., None, :]).reshape(*turned.shape[:-1], 16)
+        rotation, origin = (
+            np.empty((*q.shape[:-1], self.bodies, 9)),
+            np.zeros((*q.shape[:-1], self.bodies, 3)),
+        )
+        rotation[...] = AXES.ravel()
+        rotation[..., 1:, :] += products @ TURNED
+        origin[..., 1:, :] = each[..., :3]
+        return rotation.reshape(*origin.shape, 3), origin
 
     def spread(self, step: Array) -> Array:
         """(..., bodies, 2, 3) [o', w] of unknowns: what is known is zero."""
-        every = np.zeros((*step.shape[:-1], 6 * len(self._rotations)))
+        every = np.zeros((*step.shape[:-1], 6 * self.bodies))
         every[..., self.columns] = step
-        return every.reshape(*step.shape[:-1], len(self._rotations), 2, 3)
+        return every.reshape(*step.shape[:-1], self.bodies, 2, 3)
 
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
         """Configurations (..., 7 * moving bodies) after steps [o', w], (..., bodies, 2, 3), in world axes, of
