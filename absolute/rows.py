@@ -73,8 +73,15 @@ class RowStack:
         # a, r1 and r2 of all rows, (3, rows, 3), and whose they are.
         vectors = np.array([(row.along, row.first_arm, row.second_arm) for row in rows])
         self._local = vectors.reshape(-1, 3, 3).swapaxes(0, 1)
-        self._components = np.repeat(self._local[..., None], 3, axis=-1).transpose(2, 0, 1, 3).copy()
         self._holders = np.array((self.first, self.first, self.second))
+        # The vectors of each body side by side, which one product turns, and where they then are.
+        own = [np.flatnonzero(self._holders == body) for body in range(bodies)]
+        self._beside, places = np.zeros((bodies, 3, max(map(len, own)))), np.zeros(3 * self.count, np.intp)
+        for body, numbers in enumerate(own):
+            self._beside[body, :, : len(numbers)] = self._local.reshape(-1, 3)[numbers].T
+            places[numbers] = self._beside[0].size * body + np.arange(len(numbers))
+        read = places[:, None] + self._beside.shape[2] * np.arange(3)
+        self._read = read.reshape(3, self.count, 3)
         self._distances, self._turns = (
             indices(number for number, row in enumerate(rows) if row.kind == kind)
             for kind in ("distance", "turn")
@@ -94,9 +101,8 @@ class RowStack:
 
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
-        # The product of matrix and vector by its columns: many small products would take longer.
-        x, y, z = (rotation[..., k].take(self._holders, -2) * self._components[k] for k in range(3))
-        vectors = x + y + z
+        turned = rotation @ self._beside
+        vectors = turned.reshape(*turned.shape[:-3], self._beside.size).take(self._read, -1)
         a, r1, r2 = (vectors[..., kind, :, :] for kind in range(3))
         e = self._offsets * (origin.take(self.second, -2) - origin.take(self.first, -2)) + (r2 - r1)
         if self._distances.size:
