@@ -183,7 +183,7 @@ def solution_of(
     Args:
         displaced: (N, 1 + R, 3) displacement of the car and its rates, mm and s.
     """
-    size = mechanism.drawing.size
+    size, turns = mechanism.drawing.size, sum(drive.turns for drive in mechanism.model.inputs)
     states = _points(mechanism, found, displaced, 1 + found.rates.shape[1] if rates else 1)
     points = [dict(zip(mechanism.drawing.points, map(_locked, state), strict=True)) for state in states]
     # Without rates there are none of anything.
@@ -201,8 +201,9 @@ def solution_of(
         residual=_locked(found.residual * size),
         condition=_locked(found.condition),
         # Points are rounded too, whatever is left of the rows: half a unit in the last place of lengths up to
-        # the diameter.
-        accuracy=_locked((found.residual + EPS) * size),
+        # the diameter. What a car turns on is known to 13 roundings of its rotation and origin (see `rows`),
+        # sqrt(13) of eps / 2, which its own points show at once; the others do so with all that they hang on.
+        accuracy=_locked((found.residual + (1 + 2 * turns) * EPS) * size),
         **{kind: {n: _locked(a) for n, a in of.items()} for kind, of in asked.items()},
     )
 
