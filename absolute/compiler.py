@@ -312,16 +312,17 @@ class _Compiler:
         """Points of two bodies are in one place, along some directions of the first."""
         self.joints += [self._between(owner, "offset", ends, way) for way in along]
 
-    def _angles(self, owner: str, first: str, second: str, pairs: Iterable[tuple[Array, Array]]) -> list[Row]:
-        """Products of directions of two bodies. A right angle also allows the reversed joint, but no way of
+    def _across(self, owner: str, first: str, second: str, one: Array, other: Array) -> None:
+        """Directions of two bodies stay at right angles. That also allows the reversed joint, but no way of
         small steps leads there."""
-        return [self._row(owner, "angle", first, second, one, NOTHING, other) for one, other in pairs]
+        self.joints.append(self._row(owner, "angle", first, second, one, NOTHING, other))
 
     def _hinge(self, owner: str, first: str, second: str, point: str, axis: Array) -> None:
         x, y, z = frame = frame_about(axis)
         # Along its own axes, so that one row at a time follows from others where hinges are parallel.
         self._meet(owner, (first, point, second, point), frame)
-        self.joints += self._angles(owner, first, second, ((y, z), (x, z)))
+        self._across(owner, first, second, y, z)
+        self._across(owner, first, second, x, z)
 
     def _distance_row(self, owner: str, start: str, end: str) -> tuple[Row, float]:
         """The distance of points of two bodies, and how far apart they are drawn, mm."""
@@ -407,8 +408,7 @@ class _Compiler:
                 own = self._line(what, *guided[:2])[0]
                 own = -own if float(own @ along) < 0.0 else own
                 x = turned_least(f"{what} of {second}", frame, own)[0]
-                owner = f"slide {name} of {second}"
-                self.joints += self._angles(owner, body, second, ((frame[1], x),))
+                self._across(f"slide {name} of {second}", body, second, frame[1], x)
                 return
         raise DescriptionError(
             f"{what} has turns = false, and no two of its points {list(points)} are of one body: "
@@ -460,7 +460,7 @@ class _Compiler:
         along, length = self._line(f"input {name!r}", about, of)
         way, factor = self.directions[start], length / self.size
         drawn = math.acos(min(max(float(way @ (self.points[of] - self.points[about])) / length, -1.0), 1.0))
-        (row,) = self._angles(name, CHASSIS, body, ((way, factor * along),))
+        row = self._row(name, "angle", CHASSIS, body, way, NOTHING, factor * along)
         self.inputs.append(Input(row, name, factor, drawn, cosine=True))
 
     def _travel(self, name: str, given: Mapping[str, Any]) -> None:
@@ -514,7 +514,7 @@ class _Compiler:
         base = next(iter(self.bodies)) if on_ground else CHASSIS
         disc = self._add(f"disc of {name}", (inner, centre))
         self._hinge(f"axle of {name}", carrier, disc, inner, axis)
-        self.joints += self._angles(f"level of {name}", base, disc, ((up, level),))
+        self._across(f"level of {name}", base, disc, up, level)
         down = -radius * np.cross(level, axis)
         self._over(name, (base, centre, disc, centre), up, beside=down, over_ground=on_ground)
 
