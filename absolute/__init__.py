@@ -13,7 +13,7 @@ from absolute.errors import (
     UnreachableError,
 )
 from absolute.model import Corner, Model
-from absolute.results import Solution
+from absolute.solution import Solution
 from absolute.solve import Assembled, ClosedDrawing, close_drawing, solve
 
 __all__ = [

@@ -1,12 +1,8 @@
 """The refusals of this package: each says what, where, which value, what is allowed, what to try."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from absolute.results import Solution
+from absolute.solution import Solution
 
 
 class AbsoluteError(Exception):

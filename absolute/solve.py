@@ -14,7 +14,8 @@ from absolute.loads import forces
 from absolute.mechanism import Mechanism
 from absolute.model import Model
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates
-from absolute.results import Instants, Motion, Solution, solution_of
+from absolute.results import Instants, Motion, solution_of
+from absolute.solution import Solution
 from absolute.vectors import EPS, Array
 
 # Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `rows`).
