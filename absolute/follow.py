@@ -24,6 +24,7 @@ from absolute.newton import (
     rates,
     rounding_of,
 )
+from absolute.rows import WHOLE_TURN
 from absolute.vectors import EPS, Array, cross
 
 # Inputs (..., inputs) and rates of them -> (1 + rates, ..., rows): targets of the rows, and their rates.
@@ -152,7 +153,11 @@ def through(mechanism: Mechanism, drawn: Configurations, goals: Array) -> Iterat
     Raises:
         UnreachableError, SingularError: at the first instant without a pose, after those before it.
     """
-    pose, at, done = drawn, mechanism.drawn_inputs, 0
+    pose, at, done = drawn, mechanism.drawn_inputs.copy(), 0
+    # After whole turns the car stands as it is drawn.
+    turns = [drive.turns for drive in mechanism.model.inputs]
+    turned = np.round((goals[:1] - at).sum(axis=0) / WHOLE_TURN)[: len(turns)]
+    at[: len(turns)] += WHOLE_TURN * np.where(turns, turned, 0.0)
     while done < len(goals):
         try:
             for found in follow(mechanism, pose, at, goals[done:], mechanism.targets):

@@ -87,6 +87,7 @@ class Mechanism:
         self.drawn.reshape(-1, 7)[:, :3] = self.drawing.origins[1:]
         self._factors = np.array([drive.factor for drive in model.inputs])
         self._cosines = np.array([drive.cosine for drive in model.inputs], dtype=np.bool_)
+        self._turns = np.array([drive.row.kind == "turn" for drive in model.inputs], dtype=np.bool_)
         over = np.array([drive.over_ground for drive in model.inputs], dtype=np.bool_)
         moves = model.moves if over.any() else {}
         self.values = (*(drive.value for drive in model.inputs), *moves)
@@ -181,6 +182,8 @@ class Mechanism:
         turned = [np.exp(1j * series[0])]
         for n in range(1, len(series)):
             turned.append(1j * product_rule(n - 1, (series[n - i] * turned[i] for i in range(n))))
+        # Rows know turns up to whole ones, which would cost digits.
+        series[0] = np.where(self._turns, np.angle(turned[0]), series[0])
         targets = np.zeros((len(series), *turned[-1].shape[:-1], self.stack.count))
         targets[0] = self.stack.drawn
         for target, angle, value in zip(targets, turned, series, strict=True):

@@ -95,6 +95,15 @@ def test_a_wheel_far_from_the_origin_is_driven_as_one_near_it() -> None:
         assert np.abs(near - velocities[1][name]).max() < 100.0 * EPS * 100.0, name
 
 
+def test_a_car_that_has_rolled_many_times_stands_as_one_that_rolled_the_rest() -> None:
+    many, rest = one_arm(), one_arm()
+    many.inputs["roll"][:, 0] += 1000.0
+    rest.inputs["roll"][:, 0] = np.angle(np.exp(1j * many.inputs["roll"][:, 0]))
+    other, solution = many.solve().position, rest.solve()
+    for name in ("stop_end", "damper_top"):  # of the chassis itself
+        assert np.abs(solution.position[name] - other[name]).max() <= 2.0 * solution.accuracy.max(), name
+
+
 def test_no_instants_give_an_empty_motion() -> None:
     motion = shipped("bounce")
     empty = Motion(motion.plain, {name: np.zeros((0, 3)) for name in motion.inputs}).solve(effects=["toe"])
