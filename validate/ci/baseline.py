@@ -20,7 +20,7 @@ import hashlib
 import io
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -72,12 +72,15 @@ class Since:
     Attributes:
         standing: whether it could be compared, and why not.
         words: more of that, such as what of the car is another, or that a formulation is.
+        replaced: whether the run has another formulation in the place of one of the baseline's. Under another
+            name it may be another solver: whether its numbers moved cannot be said.
     """
 
     scene: str
     standing: Standing
     words: str = ""
     moves: tuple[Move, ...] = ()
+    replaced: bool = False
 
     @property
     def compared(self) -> bool:
@@ -96,19 +99,6 @@ class Since:
         return tuple(move for move in self.moves if move.verdict == "gone" and move.formulation in here)
 
     @property
-    def replaced(self) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
-        """The baseline's formulations that this run lacks, and its own in their place; None without either.
-
-        Under another name it may be another solver: whether its numbers moved cannot be said.
-        """
-        then, now = (
-            {move.formulation: None for move in self.moves if move.verdict != verdict}
-            for verdict in ("new", "gone")
-        )
-        lacking, others = tuple(n for n in then if n not in now), tuple(n for n in now if n not in then)
-        return (lacking, others) if lacking and others else None
-
-    @property
     def status(self) -> ExitStatus:
         """What the scene's movement alone would end the run with.
 
@@ -117,12 +107,14 @@ class Since:
         """
         if self.moved or self.lost:
             return ExitStatus.DISAGREE
-        if self.replaced:
-            return ExitStatus.NO_VERDICT
         if self.standing in ("new", "not solved now"):
             return ExitStatus.AGREE
         untested = any(move.verdict == "not tested" for move in self.moves)
-        return ExitStatus.AGREE if self.compared and not untested else ExitStatus.NO_VERDICT
+        return (
+            ExitStatus.AGREE
+            if self.compared and not untested and not self.replaced
+            else ExitStatus.NO_VERDICT
+        )
 
 
 @dataclass(frozen=True)
@@ -162,15 +154,17 @@ class Baseline:
             return Since(name, "another motion", words)
         if not outcomes:
             return Since(name, "not solved now", f"{name} is in the baseline and has no comparison now")
-        found = Since(name, "compared", "", tuple(_moves(name, scene, then.solutions, outcomes, factor)))
-        if found.replaced is None:
-            return found
-        lacking, others = map(", ".join, found.replaced)
+        moves = tuple(_moves(name, scene, then.solutions, outcomes, factor))
+        before = {solution.formulation for solution in then.solutions}
+        now = {solution.formulation for outcome in outcomes for solution in outcome.solutions}
+        lacking, others = (", ".join(sorted(some)) for some in (before - now, now - before))
+        if not lacking or not others:
+            return Since(name, "compared", "", moves)
         words = (
             f"{name} has another formulation than in the baseline: {others} in the place of {lacking}, of "
             "which no number could be compared with it"
         )
-        return replace(found, words=words)
+        return Since(name, "compared", words, moves, replaced=True)
 
 
 def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[str]) -> dict[str, Any]:
@@ -185,17 +179,9 @@ def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[str
                 "words": since.words,
                 "exit_status": since.status.value,
                 "moves": [
-                    {
-                        "formulation": move.formulation,
-                        "quantity": move.row.quantity,
-                        "name": move.row.name,
-                        "unit": move.row.unit,
-                        "moved": move.row.difference,
-                        "bound": move.row.tolerance,
-                        "share": move.row.share,
-                        "instant": move.row.instant,
-                        "verdict": move.verdict,
-                    }
+                    {key: getattr(move.row, key) for key in ("quantity", "name", "unit", "share", "instant")}
+                    | {"formulation": move.formulation, "verdict": move.verdict}
+                    | {"moved": move.row.difference, "bound": move.row.tolerance}
                     for move in since.moves
                 ],
             }
@@ -213,10 +199,7 @@ def _moves(
         # A run that has no such formulation has no number of it.
         nothing = Solution(formulation, NEVER, {}, Accuracy(NEVER))
         one, two = before.get(formulation, nothing), now.get(formulation, nothing)
-        asked = {
-            quantity: tuple({**one.numbers.get(quantity, {}), **two.numbers.get(quantity, {})})
-            for quantity in QUANTITIES
-        }
+        asked = {q: tuple({**one.numbers.get(q, {}), **two.numbers.get(q, {})}) for q in QUANTITIES}
         for row in compare_solutions(scene, one, two, name, asked, factor).rows:
             yield Move(row, _verdict(row, one))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import takewhile
 from textwrap import fill
 
 import numpy as np
@@ -97,20 +96,10 @@ def _draw(axes: Axes, curves: Curves, values: Values, size: tuple[float, float])
 
 
 def _label(numbers: Sequence[Number], letters: int) -> str:
-    """What an axis shows, with its unit and its sign; of several numbers what they have in common."""
-    first = numbers[0]
-    words = first.words if len(numbers) == 1 else _common([n.words for n in numbers])
-    signs = {n.sign for n in numbers}
-    sign = f"\n{fill(f'+ {first.sign}', letters)}" if len(signs) == 1 and first.sign else ""
-    if len(signs) > 1:
-        sign = "\n" + fill(
-            "; ".join(dict.fromkeys(f"+{n.path[-1]} {n.sign}" for n in numbers if n.sign)), letters
-        )
-    return f"{fill(f'{words} [{first.unit_shown}]', letters)}{sign}"
-
-
-def _common(texts: Sequence[str]) -> str:
-    """The words that texts begin with alike."""
-    columns = zip(*(text.split() for text in texts), strict=False)
-    alike = takewhile(lambda words: len({*words}) == 1, columns)
-    return " ".join(words[0] for words in alike).removesuffix(" of").rstrip(",")
+    """What an axis shows, with its unit and where it is positive; the legend names several."""
+    first, signs = numbers[0], list(dict.fromkeys(n.sign for n in numbers if n.sign))
+    words = f"{first.words} " if len(numbers) == 1 else ""
+    told = "; ".join(dict.fromkeys(f"+{n.called} {n.sign}" for n in numbers if n.sign))
+    if len(signs) == 1:
+        told = f"+ {signs[0]}"
+    return "\n".join(fill(line, letters) for line in (f"{words}[{first.unit_shown}]", told) if line)

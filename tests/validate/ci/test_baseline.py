@@ -1,5 +1,6 @@
 """Baselines: what moved beyond what both claims allow, and what cannot be held to one."""
 
+import html
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -204,7 +205,7 @@ def test_the_program_says_what_moved_what_is_new_and_what_is_gone(
     (move,) = (m for m in held["scenes"][0]["moves"] if m["verdict"] == "moved")
     assert move["moved"] == pytest.approx(1e-9, rel=1e-3)
     assert move["share"] > 1.0
-    text = (tmp_path / "x.md").read_text()
+    text = html.unescape((tmp_path / "x.md").read_text())
     assert "moved since the baseline" in text
     assert sum("MOVED, solved by absolute" in line for line in text.splitlines()) == 1
     assert f"{two} is gone" in text
