@@ -31,7 +31,7 @@ from validate.output import report
 from validate.output.console import Console
 from validate.output.report import counted_as
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
-from validate.paper.tables import compare_with_paper
+from validate.paper.tables import WHY_NOT_EQUAL, compare_with_paper
 from validate.plain_text import shown
 from validate.solvers.apart import LIMIT, Apart
 from validate.solvers.check import ACCURACY, required_accuracy
@@ -233,9 +233,7 @@ def _say(
         console.show([line, *verdict.scene_notes(examined)])
     for i, outcome in enumerate(examined.outcomes if verbose else ()):
         notes = (f"  note: {note}" for note in examined.defaults if not i)
-        brief = i and outcome.passed
-        parts = (report.agreement_line(outcome),) if brief else report.outcome_parts(outcome)
-        console.show((*parts, *notes, ""))
+        console.show((*report.outcome_parts(outcome), *notes, ""))
     if since is not None and (verbose or since.status is not ExitStatus.AGREE):
         lines = (f"  {line}" for line in verdict.since_lines(since))
         console.show((f"{since.scene}: since the baseline", *lines, ""))
@@ -248,7 +246,7 @@ def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
     if verbose:
         console.show((*report.printed_parts(record.examined, record.findings), ""))
         if record.paper:
-            console.show((*report.paper_parts(record.paper), ""))
+            console.say(f"{WHY_NOT_EQUAL} {report.paper_sentence(record.paper)}\n")
     elif any(one.printed is not None or one.unprinted is not None for one in record.examined):
         wrong = counted_as(len(record.findings), "wrong result")
         console.say(

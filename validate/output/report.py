@@ -203,14 +203,6 @@ def _counted(count: int, verdict: str) -> str:
     return f"{count} {verdict if count == 1 else verdict.removesuffix('s')}"
 
 
-def agreement_line(outcome: Outcome) -> str:
-    """One line for a further pair that agrees, whose table would say nearly the same."""
-    worst = max(outcome.rows, key=lambda row: row.share if math.isfinite(row.share) else 0.0)
-    what = f"{used(worst.share)}, {about(worst.quantity, worst.name)}"
-    count = counted_as(len(outcome.rows), "comparison")
-    return f"{outcome.scene}: {pair_of(outcome)} agree in {count}; the largest share: {what}"
-
-
 def lines_below(outcome: Outcome) -> Iterator[str]:
     """Why there is no verdict where the rows do not say it, what cannot be used, notes, explanations."""
     yield from silent_lines(outcome)
@@ -284,12 +276,6 @@ def paper_tables(rows: Sequence[PaperRow]) -> Iterator[Table]:
 def paper_sentence(rows: Sequence[PaperRow]) -> str:
     """How far the printed tables are from what the paper's own hardpoints give."""
     return f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate."
-
-
-def paper_parts(rows: Sequence[PaperRow]) -> tuple[Part, ...]:
-    """Both tables with what there is to know of them."""
-    tables = [part for table in paper_tables(rows) for part in (table.caption, table)]
-    return f"The paper's printed tables, row by row. {WHY_NOT_EQUAL}", *tables, paper_sentence(rows)
 
 
 def _vector(vector: Sequence[float], form: str) -> str:

@@ -82,7 +82,7 @@ def test_who_asks_for_more_gets_every_table(
     assert main(["validate", "-v"]) == 0
     out = capsys.readouterr().out
     assert "DISAGREES" not in out
-    told = ("factor 2", "Table 2", "Table 3", "cannot be matched to better than about 10 mm")
+    told = ("factor 2", "10.3 mm r.m.s.", "cannot be matched to better than about 10 mm")
     for words in (*told, *(f"{name}: pointcoord and absolute" for name in few)):
         assert words in out
 
