@@ -53,7 +53,7 @@ TYPES: Mapping[str, Callable[[str], Any]] = {
     "K": whole(0),
     "S": positive,
     "F": positive,
-    **dict.fromkeys(("A", "MM", "MB", "DEG"), float),
+    **dict.fromkeys(("A", "MM", "DEG"), float),
 }
 """What stands for a number in the options of a command: counts, seconds, factors, accuracies, sizes."""
 

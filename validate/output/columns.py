@@ -3,8 +3,8 @@
 A block has some rows of every column; however many rows there are, CSV and Parquet take no more memory
 than a block.
 Motions have a row for each instant. Sweeps have one for each design and instant, with the design's number,
-what varies in it, and whether it was solved; in NPZ they have arrays instead, (designs, instants) of numbers
-and (designs,) of what belongs to a design. The numbers of a design that could not be solved are NaN.
+what varies in it, how far its drawing moves to close, and whether it was solved. The numbers of a design that
+could not be solved are NaN.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def write_sweep(target: str, blocks: Iterable[Sweep]) -> None:
     Raises:
         UsageError, MissingPackage, OutputError: see `write_motion`. PointcoordError: as the blocks raise it.
     """
-    _write(target, (_by_design if Path(target).suffix == ".npz" else _by_instant)(blocks), 1)
+    _write(target, _by_instant(blocks), 1)
 
 
 def write_csv(stream: SupportsWrite[str], motion: Motion, instants: int | None = None) -> None:
@@ -99,7 +99,8 @@ def _of_designs(block: Sweep) -> tuple[Block, NDArray[np.str_]]:
     numbers = block.numbers_of_designs
     found = (block.failures.get(number) for number in numbers.tolist())
     said = np.array([SOLVED if failure is None else failure.reason for failure in found])
-    return {DESIGN: numbers, **{f"{name} [mm]": values for name, values in block.varied.items()}}, said
+    varied = {f"{name} [mm]": values for name, values in block.varied.items()}
+    return {DESIGN: numbers, **varied, CLOSING: block.closing}, said
 
 
 def _by_instant(blocks: Iterable[Sweep]) -> Iterator[Block]:
@@ -115,19 +116,6 @@ def _by_instant(blocks: Iterable[Sweep]) -> Iterator[Block]:
                 **{name: column[here].ravel() for name, column in each.items()},
                 STATUS: np.repeat(said[here], instants),
             }
-
-
-def _by_design(blocks: Iterable[Sweep]) -> Iterator[Block]:
-    """A row for each design; the times, which they share, with the first block only."""
-    for i, block in enumerate(blocks):
-        before, said = _of_designs(block)
-        yield {
-            **before,
-            CLOSING: block.closing,
-            STATUS: said,
-            **({} if i else {TIME: block.times}),
-            **dict(number_columns(block)),
-        }
 
 
 def _write(target: str, blocks: Iterator[Block], group: int) -> None:
