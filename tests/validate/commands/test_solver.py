@@ -11,6 +11,7 @@ import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, complaints
 
 from pointcoord import Scene
+from validate.ci.summary import markdown
 from validate.cli import main
 from validate.solvers.apart import Apart
 from validate.solvers.plain import SolverFailed, given_to_solver
@@ -88,6 +89,19 @@ def test_a_solver_s_numbers_decide_and_what_it_does_not_give_is_listed(
     assert run("wrong", "off-axis-strut.toml", "--accuracy", "1e6", "-q") == 3
     (line,) = capfd.readouterr().err.splitlines()
     assert "no verdict: no number that is given is tested; camber, toe: not tested: " in line
+
+
+def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_summary(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert run("wrong", "off-axis-strut.toml", "--junit", "t.xml", "--summary", "s.md") == 1
+    why = capfd.readouterr().out.partition("  what would explain it: ")[2].splitlines()[0]
+    assert "camber" in why
+    assert "sign" in why
+    (failure,) = ElementTree.parse("t.xml").getroot().iter("failure")
+    assert f"; what would explain it: {why}" in failure.get("message", "")
+    (line,) = (one for one in Path("s.md").read_text("utf-8").splitlines() if "what would explain" in one)
+    assert line.endswith(f"what would explain it: {markdown(why)}")
 
 
 def test_json_is_alone_on_standard_output(solvers: Path) -> None:
