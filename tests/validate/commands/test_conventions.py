@@ -68,6 +68,26 @@ def test_a_table_has_the_number_that_a_program_means(
     np.testing.assert_allclose(found, defined(), rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("convention", "column", "defined"),
+    [("adams", "camber", camber_of_adams), ("optimumk", "toe", toe_of_optimumk)],
+)
+def test_a_map_reads_a_column_as_its_program_means_it(
+    convention: str, column: str, defined: Callable[[], Array]
+) -> None:
+    times, _ = spin_axis()
+    rows = [f"{time!r},{value:.6f}" for time, value in zip(times.tolist(), defined().tolist(), strict=True)]
+    text = "\n".join([f"time [s],{column} [deg]", *rows, ""])
+    as_said = verdicts(compared(text, {"convention": convention}, CAR))
+    assert set(as_said.values()) == {"agrees"}
+    # Without it the column means ours, from which it is hundredths of a degree away, or a sign.
+    assert set(verdicts(compared(text, {}, CAR)).values()) == {"disagrees"}
+    # What is said of the column goes before: a sign, or a whole name of ours.
+    for part in ({"sign": -1 if convention == "adams" else 1}, {"is": f"wheel.{column}"}):
+        said = {"convention": convention, "columns": {column: part}}
+        assert set(verdicts(compared(text, said, CAR)).values()) == {"disagrees"}
+
+
 def test_lotus_means_the_contact_point_by_travel_and_the_offset_by_scrub_radius(tmp_path: Path) -> None:
     path = tmp_path / "car.csv"
     assert main(["table", "double-wishbone", "--convention", "lotus", "-o", str(path), "--quiet"]) == 0
