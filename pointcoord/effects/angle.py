@@ -1,13 +1,12 @@
 r"""Effects that are angles: how a line of the car leans, seen along one of the car's axes.
 
 An angle is atan2(p, q) with p and q the components of the line along two directions of the car, so that it is
-measured in the plane of the two. It is positive where the line has a part along the first. One that was found
-as f is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
+measured in the plane of the two. It is positive where the line has a part along the first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -16,10 +15,9 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import S, angle
 from pointcoord.effects.car_number import Number
-from pointcoord.effects.corner import Corner, View, Wheel
+from pointcoord.effects.corner import Corner, Wheel
 from pointcoord.effects.effect import Doubt, Quantity
 from pointcoord.linkage.car_axes import CarAxes, Direction
-from pointcoord.numerics.enclosure import Enclosed, angle_error
 
 Array = NDArray[np.float64]
 
@@ -44,6 +42,7 @@ class Angle(Number):
     steepest: float = 180.0
     quantity: Quantity = WHEEL
     needs_radius: bool = False
+    power: int = 0
     formula: Callable[..., Any] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -54,21 +53,13 @@ class Angle(Number):
             object.__setattr__(self, name, value)
 
     def _of_corner(self, corner: Corner[S]) -> S:
-        return angle(*self.parts(corner.seen))
+        view = corner.seen
+        line = view.line(*self.ends(view.of))
+        return angle(view.along(line, self.sine), view.along(line, self.cosine))
 
     def ends(self, wheel: Wheel) -> tuple[str, str]:
         start, end = wheel.role(self.line)
         return start, end
-
-    def parts(self, view: View[S]) -> tuple[S, S]:
-        """What it is the angle of: line . sine and line . cosine."""
-        line = view.line(*self.ends(view.of))
-        return view.along(line, self.sine), view.along(line, self.cosine)
-
-    def errors(self, corners: Sequence[Corner[Enclosed]], found: Array, unit: float) -> Array:
-        """From the exact components of the line along the two directions, a whole turn apart or not."""
-        (corner,) = corners
-        return angle_error(*self.parts(corner.seen), found)
 
     def doubt(self, wheel: Wheel, drawn: Mapping[str, Array], axes: CarAxes) -> Doubt:
         """That it is steeper in drawings than in any car.

@@ -13,8 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from pointcoord.effects.arithmetic import Dual, multiple, ratio
-from pointcoord.effects.corner import Corner
-from pointcoord.effects.knuckle import contact_place, told_from_none, velocity_at
+from pointcoord.effects.corner import Corner, contact_place, told_from_none, velocity_at
 
 PERCENT = 100.0
 

@@ -42,8 +42,8 @@ from typing import Any
 import numpy as np
 
 from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, times
-from pointcoord.effects.corner import Corner
-from pointcoord.effects.knuckle import (
+from pointcoord.effects.corner import (
+    Corner,
     angular_velocity,
     contact_place,
     told_from_none,

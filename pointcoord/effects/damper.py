@@ -13,8 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root
-from pointcoord.effects.corner import Corner
-from pointcoord.effects.knuckle import rising, told_from_none
+from pointcoord.effects.corner import Corner, rising, told_from_none
 
 
 def damper_length(corner: Corner[S]) -> S:

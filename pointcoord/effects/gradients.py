@@ -17,8 +17,7 @@ from typing import Any
 
 from pointcoord.effects.arithmetic import Dual, ratio
 from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
-from pointcoord.effects.corner import Corner
-from pointcoord.effects.knuckle import rising
+from pointcoord.effects.corner import Corner, rising
 from pointcoord.effects.numbers import QUANTITIES, WAYS
 
 BY_TIME = "by_time"

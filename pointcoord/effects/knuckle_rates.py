@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import P, cross, multiple, plain, still
+from pointcoord.effects.corner import turn_of_edges
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
-from pointcoord.effects.knuckle import turn_of_edges
 from pointcoord.errors import SingularConfiguration
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology

@@ -25,9 +25,8 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import dot, ratio, root, times
 from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of
-from pointcoord.effects.corner import Corner, Wheel, wheels_of
+from pointcoord.effects.corner import Corner, Wheel, contact_place, turning_of, velocity_at, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, lacks, no_radius, no_role, not_one_input
-from pointcoord.effects.knuckle import contact_place, turning_of, velocity_at
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.slopes import GAP, ByGap, ByLength, Way
 from pointcoord.linkage.topology import Topology

@@ -35,8 +35,7 @@ from pointcoord.effects.arithmetic import (
     sign_of,
     times,
 )
-from pointcoord.effects.corner import Corner, View
-from pointcoord.effects.knuckle import angular_velocity, at_rest
+from pointcoord.effects.corner import Corner, View, angular_velocity, at_rest
 from pointcoord.linkage.car_axes import Direction
 
 # Turns per rack travel of one radius of the wheel that rounding does not tell from none.

@@ -19,7 +19,7 @@ from pointcoord import Scene, simulate
 from pointcoord.bounds import certified_poses, enclosed_points, proof
 from pointcoord.bounds.certified_poses import CertifiedPoses, grouped, with_known
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates
-from pointcoord.effects import knuckle, knuckle_rates
+from pointcoord.effects import corner, knuckle_rates
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
@@ -205,7 +205,7 @@ FAULTS: list[tuple[Callable[..., Any], str, str]] = [
     (enclosed_points._carried, " + c * crossed", ""),
     (EnclosedPoses.reported, " + self.added[derivative]", ""),
     (knuckle_rates.body_rate_error, "s - cross(pull, cross(pull, edge))", "s"),
-    (knuckle.turn_of_edges, "along + across", "along"),
+    (corner.turn_of_edges, "along + across", "along"),
     (enclosure.angle_error, "sine * c - cosine * s", "sine * c"),
 ]
 
@@ -241,7 +241,7 @@ def test_every_number_lies_within_its_bound() -> None:
     [
         (proof._slopes, "drive.input == driven", "drive.input != driven"),
         (enclosed_coordinates, "beside.scaled(opened[1])", "beside.scaled(0.5 * opened[1])"),
-        (knuckle.turning_of, "times(c, normal.slope)", "times(c + c, normal.slope)"),
+        (corner.turning_of, "times(c, normal.slope)", "times(c + c, normal.slope)"),
         (enclosure.quotient, "off / left", "0.0 * off / left"),
     ],
 )
