@@ -9,7 +9,7 @@ travel of a slide steer; the other one moves the wheel up and down. The other in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -77,15 +77,6 @@ class Number:
     way: str = ""
     power: int = 1
     source: str = ""
-
-    def errors(self, corners: Sequence[Corner[Any]], found: Array, unit: float) -> Array:
-        """Proven and expected error of a value that was found, (2, N), from where it exactly is.
-
-        Args:
-            unit: of the corners' lengths, a power of two, mm.
-        """
-        exact: Enclosed = self.formula(*corners)
-        return exact.scaled(unit**self.power).errors(found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,22 +163,27 @@ class CarNumbers(Effect):
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
-        for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [self._corner(poses, wheel) for wheel in wheels]
-            for number in self.numbers:
-                found[number.quantity.name][prefix + number.name] = number.formula(*corners)
+        for name, number, value in self._made(poses):
+            found[number.quantity.name][name] = value
         return found
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
+        """From where each exactly is, in units of the mechanism."""
         unit, time = float(poses.mechanism.unit), poses.powers[self.derivative]
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
+        for name, number, exact in self._made(poses):
+            reported = numbers[number.quantity.name][name]
+            # The units of length and of time are powers of two: no product with them rounds.
+            off = exact.scaled(unit**number.power).errors(reported * time) / time
+            found[number.quantity.name][name] = off
+        return found
+
+    def _made(self, poses: Poses | EnclosedPoses) -> Iterator[tuple[str, Number, Any]]:
+        """Every number by its name, in the arithmetic of the poses."""
         for prefix, wheels in self._subjects(poses.mechanism.topology):
             corners = [self._corner(poses, wheel) for wheel in wheels]
             for number in self.numbers:
-                quantity, name = number.quantity.name, prefix + number.name
-                # The unit of time is a power of two: neither product rounds.
-                found[quantity][name] = number.errors(corners, numbers[quantity][name] * time, unit) / time
-        return found
+                yield prefix + number.name, number, number.formula(*corners)
 
     def _corner(self, poses: Poses | EnclosedPoses, wheel: Wheel) -> Corner[Any]:
         """A corner, with the derivatives by time or along its wheel's way if the numbers take any."""
