@@ -24,10 +24,19 @@ AXES = {
 }
 """Axes by name: ours; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
 
-OF_THE_MECHANISM = ("wheel_radius", "rack_per_turn")
 OF_A_LAW = ("amplitude", "offset", "values")
-# By what power of the unit of length each goes.
-OF_THE_CAR = {"wheelbase": 1, "centre_of_gravity_height": 1, "spring_free_length": 1, "spring_rate": -1}
+# By what power of the unit of length the numbers under a key go.
+POWERS = {
+    "tolerance": 1,
+    "points": 1,
+    "wheel_radius": 1,
+    "rack_per_turn": 1,
+    "wheelbase": 1,
+    "centre_of_gravity_height": 1,
+    "spring_free_length": 1,
+    "spring_rate": -1,
+    "moment": 1,
+}
 
 
 def in_directions(mechanism: dict[str, Any]) -> dict[str, Any]:
@@ -62,44 +71,21 @@ def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
     if not isinstance(units, str) or units not in UNITS:
         raise TableFault(("units",), f"is {shown(units)}", ", ".join(UNITS))
     factor = UNITS[units]
-    if "tolerance" in content:
-        content["tolerance"] = _times(factor, content["tolerance"])
-    mechanism = content.get("mechanism")
-    if isinstance(mechanism, Mapping):
-        lengthy = {name: _times(factor, mechanism[name]) for name in OF_THE_MECHANISM if name in mechanism}
-        points, car, loads = (mechanism.get(name) for name in ("points", "car", "loads"))
-        if isinstance(points, Mapping):
-            lengthy["points"] = _times(factor, points)
-        if isinstance(car, Mapping):
-            lengthy["car"] = {n: _times(factor ** OF_THE_CAR.get(n, 0), v) for n, v in car.items()}
-        if isinstance(loads, Mapping):
-            lengthy["loads"] = _moments(factor, loads)
-        content["mechanism"] = {**mechanism, **lengthy}
-    inputs = content.get("inputs")
+    inputs = content.pop("inputs", None)
+    content = {name: _scaled(value, factor, POWERS.get(name, 0)) for name, value in content.items()}
     if isinstance(inputs, Mapping):
-        content["inputs"] = {
-            name: with_values(law, partial(_times, factor), OF_A_LAW) if name in lengths else law
-            for name, law in inputs.items()
-        }
-    return content
+        in_mm = partial(_scaled, factor=factor, power=1)
+        inputs = {n: with_values(law, in_mm, OF_A_LAW) if n in lengths else law for n, law in inputs.items()}
+    return content if inputs is None else {**content, "inputs": inputs}
 
 
-def _moments(factor: float, loads: Mapping[str, Any]) -> dict[str, Any]:
-    """Loads with their moments, not their forces, so many times as large."""
-    found = dict(loads)
-    for name, part in loads.items():
-        if isinstance(part, Mapping):
-            found[name] = _moments(factor, part)
-        elif name == "moment":
-            found[name] = _times(factor, part)
-    return found
-
-
-def _times(factor: float, value: Any) -> Any:
-    """Numbers, lists and tables of them so many times as large."""
+def _scaled(value: Any, factor: float, power: int) -> Any:
+    """Numbers, lists and tables of them times a power of a factor, which a key may say."""
     if isinstance(value, Mapping):
-        return {name: _times(factor, each) for name, each in value.items()}
+        return {name: _scaled(each, factor, power or POWERS.get(name, 0)) for name, each in value.items()}
+    if not power:
+        return value
     value = own_list(own_number(value))
     if isinstance(value, tuple):
-        return [_times(factor, each) for each in value]
-    return factor * value if isinstance(value, int | float) and not isinstance(value, bool) else value
+        return [_scaled(each, factor, power) for each in value]
+    return factor**power * value if isinstance(value, int | float) and not isinstance(value, bool) else value
