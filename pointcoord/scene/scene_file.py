@@ -272,9 +272,9 @@ class MechanismPart(Part):
         yield from ((f"{part}.", side) for part, side in self._whole.sides.items())
 
     def _wheel_outboard(self) -> None:
+        roles = self.structure.roles
         for prefix, side in self._wheels():
-            inner = self.structure.roles.get(f"{prefix}inboard")
-            axis = self.structure.roles.get(f"{prefix}wheel_axis")
+            inner, axis = roles.get(f"{prefix}inboard"), roles.get(f"{prefix}wheel_axis")
             if not isinstance(inner, str) or axis is None:
                 continue
             wheel, outboard = axis[1], self.axes.on(side).outboard
@@ -302,8 +302,9 @@ class MechanismPart(Part):
                 raise TableFault(("loads", part) if part else ("loads",), "is of no wheel", known)
 
     def _spin_axis(self) -> None:
+        roles = self.structure.roles
         for prefix, *_ in self._wheels():
-            axis = self.structure.roles.get(f"{prefix}wheel_axis")
+            axis = roles.get(f"{prefix}wheel_axis")
             if axis is not None and self.points[axis[0]] == self.points[axis[1]]:
                 own = self._whole.roles[f"{prefix}wheel_axis"][0]
                 raise ValueError(
