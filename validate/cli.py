@@ -156,7 +156,7 @@ def _parsed(words: Sequence[str]) -> argparse.Namespace:
     if name not in COMMANDS:
         problem = "no command is given"
         if name:
-            problem = f"no command is called {shown(name)}{meant(name, COMMANDS)}"
+            problem = f"no command is called {shown(name)}{_scene_instead(name) or meant(name, COMMANDS)}"
         raise UsageError(f"{problem}; there are: {', '.join(COMMANDS)}; see pointcoord --help")
     one = parser(name)
     try:
@@ -166,6 +166,18 @@ def _parsed(words: Sequence[str]) -> argparse.Namespace:
         with suppress(UsageError, TypeError):
             return one.parse_intermixed_args(words[1:])
         raise
+
+
+def _scene_instead(name: str) -> str:
+    """What to write where a word that is no command names a scene or some; empty if it does not."""
+    from pointcoord import built_in_scenes
+
+    plain = name.lower().replace("_", "-")
+    if name.endswith(".toml"):
+        return f" (a scene's file stands after a command: pointcoord simulate {shown(name)})"
+    if named := [scene for scene in built_in_scenes() if f"-{plain}-" in f"-{scene}-"]:
+        return f" (there is {' and '.join(named)} among the scenes: pointcoord simulate {named[0]})"
+    return ""
 
 
 def parser(name: str) -> Parser:

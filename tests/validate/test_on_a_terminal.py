@@ -115,3 +115,11 @@ def test_a_wide_table_is_shown_in_bands_that_fit_and_have_the_inputs_each() -> N
     whole = run("table", "wheel-travel", "--rows", "3").stdout.splitlines()[0].split()
     once = [name for name in names if name != "wheel_travel"]
     assert once == [word for word in whole if not word.startswith("[") and word != "wheel_travel"]
+
+
+def test_a_picture_is_no_text_on_a_terminal_but_a_file_that_is_named(tmp_path: Path) -> None:
+    for name in ("steer.svg", "steer-2.svg"):
+        shown = on_terminal([*PROGRAM, "draw", "steer"], folder=tmp_path)
+        assert f"the picture goes to {name}; -o FILE says another place" in shown
+        assert "<svg" not in shown
+        assert "<svg" in (tmp_path / name).read_text(encoding="utf-8")

@@ -7,21 +7,27 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pointcoord import AssemblyError, Scene, built_in_scenes, standing
+from pointcoord import AssemblyError, PointcoordError, Scene, built_in_scenes, standing
 from pointcoord.drawing_stands import Standing
-from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.mechanism.structure import bodies_in_words, joints_in_words
 from pointcoord.results.closing import ALLOWED
-from pointcoord.simulation import scene_mechanism
+from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
-from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import Command, load_scene, name_of, place_of_picture, told_as
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.picture import svg
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown
 
 PICTURES = (".svg",)
+# Positions, velocities and so on, by time derivative.
+STATES = tuple(
+    f"{effect.quantities[0].words}s".replace("ys", "ies")
+    for effect in (*ALWAYS, *EFFECTS.values())
+    if effect.reports_states
+)
 
 
 def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -34,7 +40,7 @@ def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw a scene's hardpoints."""
-    target = place_of_result(options, PICTURES, console)
+    target = place_of_picture(options, PICTURES, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     with told_as(name):
         drawing = closed_drawing(scene)
@@ -49,7 +55,8 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     scene, name = load_scene(options.scene), name_of(options.scene)
     with told_as(name):
         scene_mechanism(scene)
-    console.say("\n".join([*_mechanism(scene, name), *_computed(scene)]))
+    plan = plan_effects(scene.effects, unreported=scene.unreported_points)
+    console.say("\n".join([*_mechanism(scene, name), *_computed(scene, plan), *_effort(scene, plan)]))
     try:
         with told_as(name):
             stands = standing(scene)
@@ -87,9 +94,9 @@ def _mechanism(scene: Scene, name: str) -> Iterator[str]:
         yield f"redundant: {labels}; {why} and is held to at every answer"
 
 
-def _computed(scene: Scene) -> Iterator[str]:
-    """What is computed, and what is left out."""
-    silent, plan = scene.unreported_points, plan_effects(scene.effects, unreported=scene.unreported_points)
+def _computed(scene: Scene, plan: Plan) -> Iterator[str]:
+    """What is computed, what is left out, and to which time derivative points are solved for that."""
+    silent, topology = scene.unreported_points, scene.mechanism.topology
     yield f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s"
     yield from (f"computed: {effect.gives}" for effect in ALWAYS)
     if silent:
@@ -102,6 +109,48 @@ def _computed(scene: Scene) -> Iterator[str]:
         more = f"; derivatives of these, such as {made[0]} and {made[-1]}, {len(made)} in all" if made else ""
         how = "name one under effects to have it (pointcoord help effects)"
         yield f"left out: {', '.join(plain)}{more}; {how}"
+    derivatives = sorted(plan.derivatives(topology).items(), key=lambda item: -item[1])
+    groups = gathered((_up_to(order), name) for name, order in derivatives)
+    every = len(derivatives) == len(topology.points) and len(groups) == 1
+    yield f"solved for: {_up_to(plan.derivative)}"
+    each = (f"{words} of {'every point' if every else ', '.join(names)}" for words, names in groups.items())
+    yield f"evaluated: {'; '.join(each)}"
+
+
+def _up_to(order: int) -> str:
+    """Positions and their time derivatives up to an order, in words."""
+    *first, last = STATES[: order + 1]
+    return " and ".join(filter(None, (", ".join(first), last)))
+
+
+def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
+    """What the accuracy that is asked for makes the solver do."""
+    try:
+        found = effort(scene)
+    except PointcoordError as error:
+        yield f"takes: not known, because it cannot be solved: {error}"
+        return
+    by_map = found.method == "map"
+    yield found.why or "solved by series in time, which are few enough; a map of the inputs is not needed"
+    rates = f", rates to {found.part:.2g} of their size" if plan.derivative else ""
+    yield f"accuracy: positions to {found.tolerance:.3g} mm{rates}"
+    if found.orders:
+        few, many = min(found.orders), max(found.orders)
+        unknowns = [f"{found.moving} unknowns"]
+        if found.still:
+            unknowns.append(f"{found.still} more stand still and are solved once")
+        if found.not_needed:
+            unknowns.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
+        yield f"solved {'on each patch' if by_map else 'at each step'}: {'; '.join(unknowns)}"
+        series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
+        series += " in the inputs, each proven on a patch of their way," if by_map else ""
+        yield (
+            f"takes: {series} of {f'order {few}' if few == many else f'orders {few} to {many}'}, "
+            f"{sum(found.orders)} orders in all; {found.work.factorisations} factorisations, "
+            f"{found.start.factorisations} of them to assemble the start"
+        )
+    if not found.status.complete:
+        yield f"up to t = {found.stop:.6g} s, where the motion stops"
 
 
 def _where_it_stands(scene: Scene, stands: Standing) -> Iterator[str]:

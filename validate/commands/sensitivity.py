@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +17,14 @@ from pointcoord.sweeping.sensitivity import numbers_named
 from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
 from validate.curves.numbers import asking_for, numbers_asked
 from validate.exit_status import ExitStatus
+from validate.extras import needed
 from validate.output.console import Console
 from validate.output.table import Table, csv_of, text_for
 
 Array = NDArray[np.float64]
 
-ENDINGS = (".csv",)
+PICTURES = (".svg", ".png")
+ENDINGS = (".csv", *PICTURES)
 ROWS = 15
 SAMPLES = 11
 DESIGNS = 400
@@ -46,6 +49,9 @@ class Column:
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print or write the derivatives and the spreads."""
     target = place_of_result(options, ENDINGS, console)
+    ending = "" if target is None else Path(target).suffix
+    if ending in PICTURES:
+        needed("sensitivity", "matplotlib", "plot")
     name = name_of(options.scene)
     scene = load_scene(options.scene).model_copy(update={"effects": ()})
     numbers = numbers_asked(scene, name, options.number, RANKED_FIRST)
@@ -71,7 +77,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             Column(f"{'-' if number.minus else ''}{number.called}", number.unit_shown, changes, spreads)
         )
     coordinates = [found.coordinates[place] for place in order]
-    console.put(target, _text(coordinates, columns, target, options.tolerance), "the table")
+    if ending in PICTURES:
+        console.put(target, _picture(coordinates, columns, name, ending), "the picture")
+    else:
+        console.put(target, _text(coordinates, columns, target, options.tolerance), "the table")
     return ExitStatus.NO_VERDICT if found.failures else ExitStatus.AGREE
 
 
@@ -90,6 +99,26 @@ def _text(coordinates: Sequence[str], columns: Sequence[Column], target: str | N
     rest = len(coordinates) - ROWS
     told = [f"{rest} more coordinates: -o FILE.csv has all"] if rest > 0 else []
     return text_for(sys.stdout, [table, *told, "", made, ""])
+
+
+def _picture(coordinates: Sequence[str], columns: Sequence[Column], name: str, ending: str) -> bytes:
+    """A panel of bars for each number, a bar for each of the first coordinates."""
+    # Imported here: matplotlib takes a second.
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    from validate.output.figure import BLUE, SETTINGS, drawn, plain
+
+    first = coordinates[:ROWS][::-1]
+    with rc_context(SETTINGS):
+        page = Figure(figsize=(2.2 * len(columns) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
+        page.suptitle(f"{name}: change by each hardpoint, per mm", x=0.02, ha="left", fontsize=9.0)
+        panels = page.subplots(1, len(columns), sharey=True, squeeze=False)[0]
+        for axes, one in zip(panels, columns, strict=True):
+            axes.barh(first, one.changes[:ROWS][::-1], color=BLUE)
+            axes.set_xlabel(f"{one.name}, {one.unit}/mm")
+            plain(axes)
+        return drawn(page, ending.removeprefix("."))
 
 
 WORDS = {"samples": SAMPLES, "designs": DESIGNS, "rows": ROWS, "ranked": ", ".join(RANKED_FIRST)}

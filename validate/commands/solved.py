@@ -10,7 +10,7 @@ from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, S
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
-from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import Command, load_scene, name_of, place_of_picture, place_of_result, told_as
 from validate.curves.numbers import TIME, TRAVEL, Curves, Number, angles_of, asking_for, numbers_called, usual
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -21,6 +21,7 @@ from validate.paper.printed import PRINTED
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 PICTURES = (".svg", ".png")
+WHEEL = "wheel"  # the angles of a file
 SMOOTH = 401  # a curve of fewer instants has corners
 
 
@@ -51,8 +52,10 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw curves."""
-    target = place_of_result(options, PICTURES, console)
+    target = place_of_picture(options, PICTURES, console)
     needed("plot", "matplotlib", "plot")
+    if Path(options.scene).suffix in ENDINGS:
+        return _plot_sweep(options, target, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     angles = tuple(n for one in angles_of(scene) for n in numbers_called(one.path[1], scene))
     chosen = _curves(options, scene, name)
@@ -69,11 +72,29 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
         samples = motion if own or len(motion.times) == 1 else next(motion.blocks(count, count))
         curves = chosen or usual(scene, motion, angles)
         picture = figure(curves, lambda n: n.shown(motion, samples), scene.title or name)
-        ending = "svg" if target is None else Path(target).suffix.removeprefix(".")
-        console.put(target, drawn(picture, ending), "the picture")
+        console.put(target, drawn(picture, _ending(target)), "the picture")
         return "the picture"
 
     return solved(scene, target, options, console, write)
+
+
+def _plot_sweep(options: argparse.Namespace, target: str | None, console: Console) -> ExitStatus:
+    """Draw the columns of a sweep's file, a curve for each design."""
+    # Imported here: matplotlib and pandas take a second each.
+    from validate.curves.of_sweep import columns_called, figure_of, read_sweep
+    from validate.output.figure import drawn
+
+    if options.instants is not None:
+        raise UsageError("--instants is about a scene; a file has its own rows")
+    table = read_sweep(options.scene)
+    across, up = (columns_called(table, words) for words in (options.x or (TIME,), options.y or (WHEEL,)))
+    picture = figure_of(table, across[0], up, name_of(options.scene))
+    console.put(target, drawn(picture, _ending(target)), "the picture")
+    return ExitStatus.AGREE
+
+
+def _ending(target: str | None) -> str:
+    return "svg" if target is None else Path(target).suffix.removeprefix(".")
 
 
 def solved(

@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 Columns = Sequence[tuple[Number, Array]]
 """Numbers over the rows of a table, (N,) each, angles in degrees."""
 
-ENDINGS = (".csv",)
+ENDINGS = (".csv", ".md")
 ROWS = 21
 FIGURES, DECIMALS = 5, (2, 6)  # significant digits of the largest number of a column, and limits of decimals
 EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
@@ -125,7 +125,7 @@ def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
 
 
 def _text(columns: Columns, target: str | None, reasons: Mapping[int, str] | None = None) -> str:
-    """CSV, or text with what is positive.
+    """CSV, or Markdown or text with what is positive.
 
     Args:
         reasons: why there are no numbers in a row, of a grid.
@@ -139,7 +139,7 @@ def _text(columns: Columns, target: str | None, reasons: Mapping[int, str] | Non
         f"{'-' if one.minus else ''}{name} [{one.unit_shown}]"
         for name, one in zip(names, numbers, strict=True)
     )
-    if target is not None:
+    if target is not None and target.endswith(".csv"):
         lines = zip(*(each.tolist() for each in values), strict=True)
         if reasons is None:
             return csv_of(head, lines)
@@ -152,6 +152,8 @@ def _text(columns: Columns, target: str | None, reasons: Mapping[int, str] | Non
     signs |= {one.called: one.sign for one in numbers if len(one.path) > 2 and not one.is_force}
     told = [f"{number}: positive {sign}" for number, sign in signs.items() if sign]
     told += [f"forces: {LOADS.sign}"] * any(one.is_force for one in numbers)
+    if target is not None:
+        return "\n".join([table.markdown, "", *(f"- {line}" for line in told), ""])
     return text_for(sys.stdout, [table, "", *told, ""])
 
 

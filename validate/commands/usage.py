@@ -11,6 +11,8 @@ from argparse import ArgumentParser
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from itertools import count
+from pathlib import Path
 from string import Template
 from typing import Any
 
@@ -175,6 +177,20 @@ def place_of_result(options: argparse.Namespace, endings: Collection[str], conso
     target: str = "-" if options.output is None else options.output
     require_results({"-o": target}, (options.scene,), options, console, {"-o": endings}, says=False)
     return None if target == "-" else target
+
+
+def place_of_picture(options: argparse.Namespace, endings: Collection[str], console: Console) -> str | None:
+    """The same of a picture; for a terminal, which shows none, a file of a name that is free, and says so.
+
+    Raises:
+        UsageError, OutputError: see `require_results`.
+    """
+    if options.output is None and sys.stdout is not None and sys.stdout.isatty():
+        stem = "picture" if options.scene == STANDARD_INPUT else Path(options.scene).stem
+        names = (f"{stem}.svg" if number == 1 else f"{stem}-{number}.svg" for number in count(1))
+        options.output = next(name for name in names if not os.path.lexists(name))
+        console.note(f"the picture goes to {shown(options.output)}; -o FILE says another place")
+    return place_of_result(options, endings, console)
 
 
 def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.results.named_columns import html_table
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.wording import nearest, shown
@@ -171,6 +172,20 @@ class Outcome:
         verdicts = dict.fromkeys(row.verdict for row in self.rows)
         counts = ", ".join(f"{sum(row.verdict == v for row in self.rows)} {v}" for v in verdicts)
         return f"<Outcome of {self.scene!r}, {first} and {second}: {counts}>"
+
+    def _repr_html_(self) -> str:
+        """Every row, as a notebook shows it."""
+        head = ("quantity", "name", "largest difference", "tolerance", "verdict")
+        rows = (
+            (
+                row.quantity,
+                row.name,
+                *(f"{x:.1e} {row.unit}" for x in (row.difference, row.tolerance)),
+                row.verdict,
+            )
+            for row in self.rows
+        )
+        return html_table(repr(self), head, rows)
 
 
 def compare(

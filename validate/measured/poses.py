@@ -23,7 +23,6 @@ from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
-from validate.formulations.asked_numbers import is_force
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import CONTACT, INPUT, PLACES, TIME, TRAVEL, Meaning
 from validate.tables.errors import FileError
@@ -237,7 +236,7 @@ class Driven:
     def within(self, found: Found, off: Array) -> Numbers:
         """How far numbers may be off whose points are off by so much, (N,), mm.
 
-        NaN where that may be another pose. Of forces over inputs nothing is known.
+        NaN where that may be another pose.
         """
         # Their packages are an extra.
         from validate.formulations.input_rates import laws_of
@@ -248,8 +247,7 @@ class Driven:
         if self.over_time:
             laws = laws_of(scene, found.inputs[TIME][rows])
         else:
-            own = [name for name in scene.effects if not _of_forces(name)]
-            scene = scene.model_copy(update={"effects": own})
+            scene = _through(scene, {name: value[rows] for name, value in found.inputs.items()})
             still = np.zeros((int(rows.sum()), 2))
             laws = {name: np.column_stack([value[rows], still]) for name, value in found.inputs.items()}
         stated = accuracy_at(scene, off[rows], places, laws)
@@ -304,6 +302,18 @@ def _widest(mechanism: Mechanism, name: str) -> float:
     """How far an input goes to either side at most, rad or mm."""
     unit = mechanism.topology.input_units[name]
     return WIDEST[unit] * (float(mechanism.unit) if unit == "mm" else 1.0)
+
+
+def _through(scene: Scene, inputs: Mapping[str, Array]) -> Scene:
+    """A scene that is at so many instants, a second apart, where inputs have these values, each (N,)."""
+    count = len(next(iter(inputs.values())))
+    times = np.arange(float(count)).tolist()
+    laws: dict[str, Any] = {name: law.model_dump(exclude_none=True) for name, law in scene.inputs.items()}
+    for name, values in inputs.items():
+        table = {"table": {"times": times, "values": values.tolist()}}
+        laws[name] = table if count > 1 else {"constant": float(values[0])}
+    time = {"start": 0.0, "stop": count - 1.0, "samples": count}
+    return Scene.checked(scene.model_copy(update={"inputs": laws, "time": time}), scene.title or "scene")
 
 
 def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:
@@ -376,7 +386,3 @@ def _gives(effect: str, meaning: Meaning, scene: Scene) -> bool:
     numbers = EFFECTS[effect].gives_numbers(scene.mechanism.topology)
     names = numbers.get(meaning.quantity, ())
     return names is None or meaning.name in names
-
-
-def _of_forces(effect: str) -> bool:
-    return any(is_force(quantity.name) for quantity in EFFECTS[effect].quantities)

@@ -49,7 +49,8 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 OURS = "pointcoord"
 NO_NUMBERS = "no row has a number of it that can be compared with anything"
-NOT_OVER_INPUTS = "rates and forces need a column of time"
+NOT_OVER_INPUTS = "rates need a column of time"
+NO_WAY = "no motion leads through the rows in their order, by which forces are bounded"
 # A verdict may not rest on a rounding that nobody states and that widens the tolerance by more than this.
 WIDER = 10.0
 # Rows out of reach, or columns, that are named one by one.
@@ -150,8 +151,9 @@ def held_of(
     for s in measured.numbers:
         mine, bound = ours_of(s, here)
         if mine is None or bound is None:
-            timed = not driven.over_time and (s.meaning.per_second or is_force(s.meaning.quantity))
-            why = NOT_OVER_INPUTS if timed else NO_NUMBERS
+            why = NO_NUMBERS
+            if not driven.over_time and (s.meaning.per_second or is_force(s.meaning.quantity)):
+                why = NOT_OVER_INPUTS if s.meaning.per_second else NO_WAY
             nan = np.full(len(nothing), np.nan)
             found.append(Held(s, nan, nan, nothing, nothing, nothing, why))
             notested.setdefault(why, []).append(shown(s.column))

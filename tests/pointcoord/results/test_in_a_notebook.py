@@ -1,4 +1,4 @@
-"""A notebook shows a motion's numbers, and text in it does not act."""
+"""A notebook shows the numbers of a motion and the rows of an outcome, and text in it does not act."""
 
 import re
 
@@ -6,6 +6,7 @@ import pytest
 
 from pointcoord import Scene, simulate
 from pointcoord.results.named_columns import html_table
+from validate import compare
 
 
 def cells(html: str, kind: str) -> list[str]:
@@ -30,6 +31,11 @@ def test_one_without_numbers_of_a_car_shows_places() -> None:
     head = cells(simulate(Scene.load("bricard"))._repr_html_(), "th")
     assert len(head) > 1
     assert all(name.startswith("position.") for name in head[1:])
+
+
+def test_an_outcome_shows_every_row() -> None:
+    outcome = compare(Scene.load("steer"), "pointcoord", "absolute")
+    assert cells(outcome._repr_html_(), "td")[4::5] == [row.verdict for row in outcome.rows]
 
 
 def test_no_text_acts() -> None:

@@ -186,8 +186,14 @@ def test_the_readme_s_picture_is_what_its_command_makes(
     assert made == kept
 
 
-def test_a_table_in_text_says_each_sign(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["table", "semi-trailing-arm", "--number", "camber", "--number", "recession"]) == 0
+def test_a_table_in_text_says_each_sign_and_in_markdown_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["table", "semi-trailing-arm", "--number", "camber", "--number", "recession"]
+    assert main(words) == 0
     said = capsys.readouterr().out
     assert "camber [deg]" in said
     assert "camber: positive where the wheel leans out at the top" in said
+    assert main([*words, "-o", str(tmp_path / "t.md")]) == 0
+    text = (tmp_path / "t.md").read_text("utf-8")
+    assert "- recession: positive where the contact point goes rearward" in text

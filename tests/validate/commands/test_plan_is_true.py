@@ -1,10 +1,76 @@
-"""What `pointcoord plan` says of a scene is so."""
+"""What `pointcoord plan` says of a scene is so, of its effort too."""
+
+import re
 
 import numpy as np
 import pytest
 
-from pointcoord import Scene
+from pointcoord import Scene, simulate
+from pointcoord.simulation import effort
 from validate.cli import main
+
+TAKES = re.compile(
+    r"accuracy: positions to (?P<tolerance>\S+) mm(?:, rates to (?P<part>\S+) of their size)?\n"
+    r"solved at each step: .*\n"
+    r"takes: (?P<segments>\d+) power series of orders? (?P<few>\d+)(?: to (?P<many>\d+))?, "
+    r"(?P<orders>\d+) orders in all; (?P<all>\d+) factorisations, (?P<start>\d+) of them to assemble "
+    r"the start\n"
+)
+
+
+@pytest.mark.parametrize("name", ["bounce", "five-link", "axle-roll", "bricard"])
+def test_the_effort_that_is_planned_and_printed_is_the_work_of_the_solved_motion(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["plan", name]) == 0
+    told = TAKES.search(capsys.readouterr().out)
+    assert told is not None
+    scene = Scene.load(name)
+    planned, motion = effort(scene), simulate(scene)
+    work = motion.work
+    assert (len(planned.orders), sum(planned.orders)) == (work.segments, work.series_orders)
+    assert (int(told["segments"]), int(told["orders"])) == (work.segments, work.series_orders)
+    assert planned.work.factorisations == work.factorisations == int(told["all"])
+    assert planned.work.residuals == work.residuals
+    assert planned.start.factorisations == motion.start.work.factorisations == int(told["start"])
+    assert (planned.stop, planned.status.complete) == (scene.time.stop, True)
+    assert planned.tolerance == scene.tolerance == float(told["tolerance"])
+    assert planned.part == pytest.approx(planned.tolerance / motion.unit, rel=1e-12)
+    assert int(told["few"]) <= work.series_orders / work.segments <= int(told["many"] or told["few"])
+    # Nothing is summed at the instants.
+    assert planned.work.coordinates_evaluated == 0 < work.coordinates_evaluated
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-15])
+def test_the_tolerance_that_is_planned_is_the_asked_one_or_the_finest_and_the_motion_says_so(
+    tolerance: float,
+) -> None:
+    scene = Scene.load("five-link").model_copy(update={"tolerance": tolerance})
+    planned, motion = effort(scene), simulate(scene)
+    assert sum(planned.orders) == motion.work.series_orders
+    noted = [note for note in motion.notes if note.startswith("the tolerance of ")]
+    assert (planned.tolerance == pytest.approx(tolerance, rel=1e-12, abs=0.0)) == (not noted)
+    assert bool(noted) == (tolerance < 1e-13)
+
+
+def test_a_long_table_is_planned_by_a_map_and_says_why(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    content = Scene.load("steer").model_dump(mode="json", exclude_none=True)
+    times = np.linspace(0.0, 0.4, 2100)
+    content["inputs"]["rack"] = {"table": {"times": times.tolist(), "values": (9.0 * np.sin(times)).tolist()}}
+    scene = Scene.from_mapping(content)
+    planned, motion = effort(scene), simulate(scene)
+    assert planned.method == motion.method == "map"
+    assert planned.why in motion.notes
+    work = motion.work
+    assert (len(planned.orders), sum(planned.orders)) == (work.segments, work.series_orders)
+    assert planned.work.factorisations == work.factorisations
+    monkeypatch.setattr("validate.commands.scenes.load_scene", lambda _: scene)
+    assert main(["plan", "steer"]) == 0
+    told = capsys.readouterr().out
+    assert "solved by a map of the inputs: series in time would be about 2.1e+03, and 2000 are" in told
+    assert "in the inputs, each proven on a patch of their way, of order" in told
 
 
 @pytest.mark.parametrize("scene", ["slider-crank", "andrews-squeezer", "spatial-four-bar"])

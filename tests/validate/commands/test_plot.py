@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from program import short_scene
 
-from pointcoord import NotComputed, Scene, simulate
+from pointcoord import NotComputed, Scene, simulate, sweep
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
 from validate.cli import main
 from validate.curves import picture
 from validate.curves.numbers import Curves, angles_of, asking_for, found, numbers_of, usual
+from validate.curves.of_sweep import columns_called, figure_of, read_sweep
 from validate.errors import UsageError
+from validate.output.columns import ENDINGS
 
 WISHBONE = Scene.load("double-wishbone")
 MOTION = simulate(WISHBONE)
@@ -106,3 +108,24 @@ def test_what_is_named_is_computed_and_a_point_that_is_not_reported_is_said_how_
             asking_for(scene, found(words, numbers_of(scene)))
     with pytest.raises(UsageError, match="is more than one number"):
         found("z", numbers_of(scene))
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_a_file_of_a_sweep_has_a_curve_for_each_design(ending: str, tmp_path: Path) -> None:
+    """The middle one of three designs cannot be solved."""
+    target, words = tmp_path / f"sweep{ending}", ("--designs", str(tmp_path / "designs.csv"))
+    (tmp_path / "designs.csv").write_text("tie_rod_inner.y\n178\n640\n180\n", encoding="utf-8")
+    assert main(("sweep", "double-wishbone", *words, "--instants", "7", "-q", "-o", str(target))) == 3
+    table = read_sweep(str(target))
+    across, up = columns_called(table, ["time"]), columns_called(table, ["camber", "wheel.toe"])
+    assert (across, up) == (["time [s]"], ["wheel.camber [deg]", "wheel.toe [deg]"])
+    few = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"samples": 7})})
+    designs = sweep(few, {"tie_rod_inner.y": [178.0, 180.0]})
+    for axes, name in zip(figure_of(table, across[0], up, "a car").axes, ("camber", "toe"), strict=True):
+        one, none, other = (line.get_xydata() for line in axes.lines)
+        assert np.isnan(none[:, 1]).all()
+        for drawn, solved in zip((one, other), np.degrees(designs.numbers["wheel"][name]), strict=True):
+            # Degrees are one rounding away.
+            assert np.asarray(drawn) == pytest.approx(np.stack([few.instants, solved], axis=-1), rel=1e-14)
+    assert main(("plot", str(target), "-o", str(tmp_path / "a.png"))) == 0
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

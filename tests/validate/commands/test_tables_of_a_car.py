@@ -66,6 +66,8 @@ def test_hardpoints_are_ranked_by_the_first_number_and_their_tolerances_spread(
     best = np.argmax(np.abs(own.largest("toe")))
     assert rows[0]["hardpoint"] == own.coordinates[best]
     assert float(rows[0]["toe [deg/mm]"]) == pytest.approx(math.degrees(own.largest("toe")[best]), rel=1e-12)
+    assert printed(capsys, *words, "-o", str(tmp_path / "toe.svg"))[0] == 0
+    assert "<svg" in (tmp_path / "toe.svg").read_text(encoding="utf-8")
     status, out, _ = printed(capsys, *words)
     assert status == 0
     (line,) = [line for line in out.splitlines() if line.startswith("toe [deg] ")]

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from curve_files import compared, disagreeing, verdicts
 
-from pointcoord import Scene
+from pointcoord import Scene, solve_poses
+from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.registry import number_called
 from validate.formulations.registry import formulation
 
@@ -87,14 +88,24 @@ def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
     assert wrong.endswith(".ackermann")
 
 
-def test_rates_and_forces_over_an_input_are_not_tested_and_say_what_they_need() -> None:
+def test_forces_over_an_input_are_held_to_bounds_of_their_own_poses_and_rates_are_not_tested() -> None:
     content = Scene.load("double-wishbone").model_dump(exclude_none=True)
     content["mechanism"] |= {"wheel_radius": 270.0, "loads": {"force": [0.0, 0.0, 3000.0]}}
-    text = "rack [mm],toe [deg],velocity.wheel_centre.z [mm/s],rod_force.tie_rod [N]\n0,0,1.0,1\n5,0,1.0,1\n"
-    rows = {row.quantity: row for row in compared(text, {}, Scene.from_mapping(content, "car")).outcome.rows}
-    for quantity in ("velocity", "rod_force"):
-        why = "rates and forces need a column of time"
-        assert (rows[quantity].verdict, rows[quantity].why) == ("not tested", why)
+    content["effects"] = ["loads"]
+    scene, racks = Scene.from_mapping(content, "car"), np.linspace(-20.0, 20.0, 5)
+    inputs = {"rack": racks, "arm_angle": drawn_inputs(scene)["arm_angle"]}
+    forces = solve_poses(scene, inputs).numbers["rod_force"]["tie_rod"]
+    for factor, verdict in ((1.0, "agrees"), (1.0 + 1e-8, "disagrees")):
+        rows = (
+            f"{x!r},{factor * force!r},1.0" for x, force in zip(racks.tolist(), forces.tolist(), strict=True)
+        )
+        text = "\n".join(["rack [mm],rod_force.tie_rod [N],velocity.wheel_centre.z [mm/s]", *rows, ""])
+        found = {row.quantity: row for row in compared(text, {}, scene).outcome.rows}
+        assert found["rod_force"].verdict == verdict
+        assert (found["velocity"].verdict, found["velocity"].why) == (
+            "not tested",
+            "rates need a column of time",
+        )
 
 
 @pytest.mark.parametrize(("name", "order"), [("jerk", 3), ("derivative_12", 12)])
@@ -107,13 +118,3 @@ def test_derivatives_over_time_are_read_in_their_unit_and_a_wrong_one_is_seen(na
         rows = [[t, *(j * 1e-3)] for t, j in zip(scene.instants.tolist(), numbers, strict=True)]
         text = "\n".join([",".join(heads), *(",".join(f"{float(x):.9f}" for x in row) for row in rows), ""])
         assert disagreeing(text, {}, scene) == wrong
-
-
-def test_the_numbers_of_another_name_are_told_though_the_file_gives_no_such() -> None:
-    told, meant = "damper_per_wheel", "wheel_per_damper"
-    scene = asking("wheel-travel", EFFECTS)
-    right = file_of(scene, "wheel_travel", (meant,))
-    found = compared(right.replace(meant, told), {}, scene)
-    assert [row.name for row in found.outcome.disagreements] == [told]
-    first = found.outcome.explanations[0]
-    assert f"the numbers of {meant}" in first.words

@@ -1,0 +1,76 @@
+"""Curves of a file that `sweep` or `simulate` wrote: its columns over each other, a curve for each design."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from validate.errors import UsageError
+from validate.output.columns import DESIGN
+from validate.output.figure import SETTINGS, plain
+from validate.plain_text import shown, some_of
+
+NAMED = 8  # columns, in a message
+MOST = 400  # curves: more cover each other, and evenly as many are drawn
+SHADES = "viridis"  # from dark to light, by design
+
+
+def read_sweep(path: str) -> pd.DataFrame:
+    """The table of a file, by its ending.
+
+    Raises:
+        UsageError: it cannot be read, or has no numbers.
+    """
+    read = {".csv": pd.read_csv, ".parquet": pd.read_parquet, ".npz": _of_npz}[Path(path).suffix]
+    try:
+        table = read(path)
+    # What other bytes end with is numpy's affair, pandas' and zipfile's.
+    except Exception as error:
+        allowed = "a file that pointcoord sweep or simulate wrote"
+        raise UsageError(f"{shown(path)} is no table ({shown(str(error))}); give {allowed}") from None
+    return table.select_dtypes("number")
+
+
+def _of_npz(path: str) -> pd.DataFrame:
+    with np.load(path, allow_pickle=False) as archive:
+        return pd.DataFrame(dict(archive))
+
+
+def columns_called(table: pd.DataFrame, words: Sequence[str]) -> list[str]:
+    """The columns whose names are some words, or begin or end with them but for the unit.
+
+    Raises:
+        UsageError: there is none.
+    """
+    found = []
+    for word in words:
+        plain_names = {str(name): str(name).partition(" [")[0] for name in table}
+        whole = [name for name, own in plain_names.items() if word in (name, own)]
+        part = [n for n, own in plain_names.items() if f".{own}.".find(f".{word}.") >= 0]
+        if not (whole or part):
+            there = some_of([*plain_names.values()], NAMED)
+            raise UsageError(f"{shown(word)} names no column of the file; allowed: {there}")
+        found += whole or part
+    return list(dict.fromkeys(found))
+
+
+def figure_of(table: pd.DataFrame, across: str, up: Sequence[str], title: str) -> Figure:
+    """A panel for each column that goes upward, a curve for each design."""
+    designs = [table] if DESIGN not in table else [one for _, one in table.groupby(DESIGN)]
+    chosen = np.unique(np.linspace(0, len(designs) - 1, min(len(designs), MOST)).round().astype(int))
+    with mpl.rc_context(SETTINGS):
+        page = Figure(figsize=(5.5, 2.2 * len(up) + 0.8), layout="constrained")
+        page.suptitle(title, x=0.02, ha="left", fontsize=9.0, parse_math=False)
+        for axes, column in zip(page.subplots(len(up), 1, sharex=True, squeeze=False).flat, up, strict=True):
+            plain(axes)
+            for place in chosen.tolist():
+                shade = mpl.colormaps[SHADES](place / max(len(designs) - 1, 1))
+                axes.plot(designs[place][across], designs[place][column], color=shade, linewidth=1.0)
+            axes.set_ylabel(column)
+        axes.set_xlabel(across)
+    return page
