@@ -101,6 +101,8 @@ def _study(options: argparse.Namespace, command: str) -> Study:
 def _told(report: Report, page: Page | None, options: argparse.Namespace, console: Console) -> ExitStatus:
     """Say and write the report, its JSON apart; the status is that of a run that comes to its end."""
     console.show(report.parts())
+    if options.csv is not None:
+        console.put(options.csv, report.csv(), "the rows")
     if page is not None:
         # Most runs write no page.
         from validate.html.page import make_folder

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pointcoord import Motion
 from validate.diagnosis.evidence import Content, Evidence, Row, kind_of, numbers_in
 from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.least import decimals_of, fitted
+from validate.diagnosis.least import DECIMALS, decimals_of, fitted
 
 Array = NDArray[np.float64]
 
@@ -60,7 +60,9 @@ def supposed(evidence: Evidence, change: Change, amount: float) -> Hypothesis | 
     motion = motion_by(evidence, change, amount)
     if motion is None or amount == change.ours:
         return None
-    rows, decimals = evidence.by(motion), decimals_of(amount)
+    # A hardpoint is drawn at a round number, and a link is off by one.
+    decimals = min(decimals_of(amount), decimals_of(round(amount - change.ours, DECIMALS)))
+    rows = evidence.by(motion)
     return Hypothesis(change.key, change.words(amount), rows, 1, change.cost, decimals, whole=True)
 
 
