@@ -75,7 +75,7 @@ class Angle(Number):
             steepness = float(degrees[member])
             return (
                 f"the drawn {self.words} is {steepness:.4g} deg, that of the line from {start} to {end}: "
-                f"{'are they swapped' if abs(steepness) > 90.0 else 'is one of them misdrawn'}?"
+                f"{'are they swapped, or is side wrong' if abs(steepness) > 90.0 else 'is one misdrawn'}?"
             )
 
         return Doubt(np.abs(degrees) > self.steepest, words)

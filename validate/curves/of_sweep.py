@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
-import pandas as pd
-from matplotlib.figure import Figure
 
 from validate.errors import UsageError
+from validate.extras import MissingPackage
 from validate.output.columns import DESIGN
 from validate.output.figure import SETTINGS, plain
 from validate.plain_text import shown, some_of
+
+try:
+    import matplotlib as mpl
+    import pandas as pd
+    from matplotlib.figure import Figure
+except ImportError as error:
+    raise MissingPackage("validate.curves.of_sweep", error, "plot") from None
 
 NAMED = 8  # columns, in a message
 MOST = 400  # curves: more cover each other, and evenly as many are drawn
