@@ -28,14 +28,22 @@ def test_a_car_in_another_unit_is_doubted_and_solved(factor: float, length: str)
 
 # Where points are drawn: at a place, at that of another, or not at all.
 MISDRAWN: list[tuple[str, dict[str, Any], str]] = [
-    (STRUT, {"wheel_axis_inner": (0.0, -860.0, 309.0)}, "to wheel_centre: are they swapped, or is side wrong?"),
+    (
+        STRUT,
+        {"wheel_axis_inner": (0.0, -860.0, 309.0)},
+        "to wheel_centre: are they swapped, or is side wrong?",
+    ),
     (STRUT, {"wheel_axis_inner": (0.0, -740.0, 200.0)}, "the drawn camber is"),
     (STRUT, {"lower_ball_joint": (-5.0, 712.0, 195.0)}, "the drawn kingpin angle is"),
     (STRUT, {"lower_arm_front": "lower_arm_rear"}, "drawn 300 mm behind lower_arm_rear"),
     (STRUT, {"tie_rod_inner": "tie_rod_outer"}, "tie_rod_inner lies 360 mm outboard of"),
     (WISHBONE, {"lower_arm_front": "lower_arm_rear"}, "drawn 200 mm behind lower_arm_rear"),
     (WISHBONE, {"tie_rod_inner": "tie_rod_outer"}, "tie_rod_inner lies 472 mm outboard of"),
-    (WISHBONE, {"lower_ball_joint": "upper_ball_joint"}, "to upper_ball_joint: are they swapped, or is side wrong?"),
+    (
+        WISHBONE,
+        {"lower_ball_joint": "upper_ball_joint"},
+        "to upper_ball_joint: are they swapped, or is side wrong?",
+    ),
 ]
 
 
