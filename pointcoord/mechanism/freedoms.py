@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.hardpoints import dominant, drawn_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
+from pointcoord.mechanism.structure import Structure
 from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
@@ -33,6 +35,8 @@ ROUNDED = 64.0 * EPS
 # Of symmetric mechanisms many rows are as far from those before: the first one is taken, not the one that
 # rounding makes the farthest, which differs by processor.
 NEARLY = 1.0 - 1e-6
+# Sines of the angle of two hinges. Directions of points that are drawn in doubles are rounded to EPS or so.
+PARALLEL, NEARLY_PARALLEL = 16.0 * EPS, 0.05
 
 
 @dataclass(frozen=True)
@@ -204,3 +208,14 @@ def locked(mechanism: Mechanism, y: Array, off: Array) -> dict[int, MechanismErr
             [labels[row]],
         )
     return found
+
+
+def askew_hinges(structure: Structure, points: Mapping[str, Place]) -> list[str]:
+    """The hinges, each by its two points, that are drawn nearly parallel to others but not exactly."""
+    pairs = (structure.shared(one, other) for one, other in combinations(structure.bodies, 2))
+    ends = [pair for pair in pairs if len(pair) == 2]
+    lines = np.array([np.subtract(points[q], points[p]) for p, q in ends]).reshape(-1, 3)
+    lines = lines / np.linalg.norm(lines, axis=-1, keepdims=True)
+    sines = np.linalg.norm(np.cross(lines[:, None], lines), axis=-1)
+    askew = ((sines > PARALLEL) & (sines < NEARLY_PARALLEL)).any(axis=-1)
+    return [f"{p} - {q}" for (p, q), one in zip(ends, askew, strict=True) if one]

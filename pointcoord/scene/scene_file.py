@@ -33,7 +33,7 @@ from pointcoord.mechanism.file import (
     shipped,
     whole_tables,
 )
-from pointcoord.mechanism.freedoms import free_directions
+from pointcoord.mechanism.freedoms import askew_hinges, free_directions
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS, Names
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
@@ -587,15 +587,18 @@ class Scene(Part):
         missing, fighting = topology.layout.unknowns - len(topology.labels), topology.fighting
         if not missing and not fighting and topology.required_inputs:
             return
-        if not part.freedoms:
-            raise TableFault(
-                ("mechanism",),
-                f"the {part.name} is locked: it has no freedom as drawn, a structure that nothing moves",
-                "one freedom or more, so leave a rod or a slide out, or draw hinges that are meant to be "
-                "parallel exactly so",
-            )
         names = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
         told = [name for name in names if name in self.inputs]
+        if not part.freedoms:
+            askew = askew_hinges(part.structure, part.points)
+            exact = f"; if the hinges {', '.join(askew)} are meant to be parallel, draw them exactly so"
+            driven = f"{', '.join(told)} {'is' if len(told) == 1 else 'are'} driven"
+            raise TableFault(
+                ("mechanism",),
+                f"the {part.name} is locked: it has no freedom as drawn, "
+                f"{f'and {driven}' if told else 'a structure that nothing moves'}",
+                f"one freedom or more, so leave a rod or a slide out{exact if askew else ''}",
+            )
         others = ", ".join(name for name in names if name not in told) or "new ones in [mechanism.inputs]"
         words = f"the {part.name} has {part.freedoms} freedom{'' if part.freedoms == 1 else 's'}, and "
         words += (
