@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
+from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
@@ -21,7 +22,6 @@ from validate.paper.printed import PRINTED
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 PICTURES = (".svg", ".png")
-WHEEL = "wheel"  # the angles of a file
 SMOOTH = 401  # a curve of fewer instants has corners
 
 
@@ -87,7 +87,7 @@ def _plot_sweep(options: argparse.Namespace, target: str | None, console: Consol
     if options.instants is not None:
         raise UsageError("--instants is about a scene; a file has its own rows")
     table = read_sweep(options.scene)
-    across, up = (columns_called(table, words) for words in (options.x or (TIME,), options.y or (WHEEL,)))
+    across, up = (columns_called(table, words) for words in (options.x or (TIME,), options.y or (WHEEL.name,)))
     picture = figure_of(table, across[0], up, name_of(options.scene))
     console.put(target, drawn(picture, _ending(target)), "the picture")
     return ExitStatus.AGREE
