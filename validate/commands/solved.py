@@ -87,7 +87,9 @@ def _plot_sweep(options: argparse.Namespace, target: str | None, console: Consol
     if options.instants is not None:
         raise UsageError("--instants is about a scene; a file has its own rows")
     table = read_sweep(options.scene)
-    across, up = (columns_called(table, words) for words in (options.x or (TIME,), options.y or (WHEEL.name,)))
+    across, up = (
+        columns_called(table, words) for words in (options.x or (TIME,), options.y or (WHEEL.name,))
+    )
     picture = figure_of(table, across[0], up, name_of(options.scene))
     console.put(target, drawn(picture, _ending(target)), "the picture")
     return ExitStatus.AGREE
