@@ -68,6 +68,8 @@ FARTHEST = 1e15
 Instant = Annotated[Number, Field(ge=-FARTHEST, le=FARTHEST)]
 # Where an axle lies, seen from the car's middle.
 AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
+# Along what the chassis turns in inputs that many ask for, and a mechanism's file may have.
+TURNS = {"roll": "forward", "pitch": "left"}
 # Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
 MOST_SAMPLES = 10_000_000
 
@@ -559,7 +561,11 @@ class Scene(Part):
         known = self.mechanism.structure.inputs
         for name in self.inputs:
             if name not in known:
-                raise no_such("input", name, known, ("inputs",))
+                fault = no_such("input", name, known, ("inputs",))
+                if name in TURNS:
+                    turn = f'{name} = {{ turns = "chassis", about = "POINT", along = "{TURNS[name]}" }}'
+                    fault.allowed += f"; to have it, {turn} under [inputs] of a mechanism file of your own"
+                raise fault
         self.mechanism._driven = tuple(name for name in known if name in self.inputs)
         self._inputs_hold_the_mechanism()
         for name, law in self.inputs.items():
