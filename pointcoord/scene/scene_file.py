@@ -18,7 +18,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from pointcoord.effects.conventions import ConventionName
 from pointcoord.effects.effect import Effect
-from pointcoord.effects.point_states import FIRST_NUMBERED, STATES
+from pointcoord.effects.point_states import FIRST_NUMBERED, NAMED, STATES
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import MechanismError, SceneError
 from pointcoord.linkage.car_axes import CarAxes
@@ -524,7 +524,10 @@ class Scene(Part):
                 givers = [
                     effect.name for effect in EFFECTS.values() if name.rpartition(".")[2] in effect.own_names
                 ]
-                hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
+                if (order := name.removeprefix("derivative_")) in map(str, range(1, len(NAMED))):
+                    hint = f" ({STATES[int(order)]!r} is its name)"
+                else:
+                    hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
                 allowed = [name for name, effect in EFFECTS.items() if not effect.base]
                 more = f"{FIRST_NUMBERED} to {STATES[-1]}, and gradients"
                 raise TableFault(
