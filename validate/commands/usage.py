@@ -55,7 +55,8 @@ TYPES: Mapping[str, Callable[[str], Any]] = {
     "K": whole(0),
     "S": positive,
     "F": positive,
-    **dict.fromkeys(("A", "MM", "DEG"), float),
+    "MM": positive,
+    **dict.fromkeys(("A", "DEG"), float),
 }
 """What stands for a number in the options of a command: counts, seconds, factors, accuracies, sizes."""
 
