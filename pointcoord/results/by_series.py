@@ -133,6 +133,9 @@ class ByChain(SolvedScene):
             last_magnitudes(segment.coefficients, (segment.stop - segment.start) / segment.scale)
             for segment in self.chain.segments
         ]
+        for segment, last in zip(self.chain.segments, lasts, strict=True):
+            # Where a series starts is none of what it goes on by, as all of one that stands would be.
+            last[: max(2 - segment.order, 0)] = 0.0
         derivative = self.readout.plan.derivative
 
         def sums(first: int, last: int | None, sizes: Sequence[Array]) -> Array:

@@ -50,6 +50,16 @@ def forces(outcome: Outcome) -> dict[tuple[str, str], str]:
     return {(r.quantity, r.name): r.verdict for r in outcome.rows if r.unit == "N"}
 
 
+def test_forces_of_one_pose_in_which_nothing_moves_are_compared() -> None:
+    plain = Scene.load("pushrod").model_dump(include={"mechanism"}, exclude_unset=True)
+    plain["mechanism"]["loads"] = {"force": [0.0, -3000.0, 3000.0]}
+    still = {"wheel_travel": {"constant": 0.0}, "rack": {"constant": 0.0}}
+    scene = Scene.from_mapping({**plain, "inputs": still, "effects": ["loads"]})
+    found = forces(compare(scene, "pointcoord", "absolute"))
+    assert len(found) >= 10
+    assert set(found.values()) == {"agrees"}
+
+
 @pytest.mark.parametrize("name", [*HINGED, GUIDED, ROLLING])
 def test_three_mechanics_give_the_same_forces(name: str) -> None:
     scene = loaded(name)
