@@ -102,7 +102,7 @@ class Format(BaseModel):
             FileError: it is not written as it must be.
         """
         if self.form == TABLE:
-            return table.read(text, source, self.titles, said)
+            return table.read(text, source, self.titles, said, self.wheels)
         if said:
             raise FileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
         return READERS[self.form](text, source)

@@ -8,7 +8,7 @@ that follow.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from validate.hardpoint_files.contents import Contents, FilePoint, place_of, plain, short
@@ -39,12 +39,17 @@ class _Columns:
 
 
 def read(
-    text: str, source: str, titles: Mapping[str, Sequence[str]], said: Mapping[str, str | int]
+    text: str,
+    source: str,
+    titles: Mapping[str, Sequence[str]],
+    said: Mapping[str, str | int],
+    corners: Collection[str] = (),
 ) -> Contents:
     """The points of a table.
 
     Args:
         titles: what columns are called. said: titles or numbers of the columns that the user means.
+        corners: headings that say which wheel or axle the points below them are of.
     Raises:
         FileError: titles are not as they must be, a point has no name, or there is no point.
     """
@@ -56,19 +61,22 @@ def read(
     rows = [(line, row if lines.mark else _named(row, known)) for line, row in lines.rows]
     columns = _said(rows, said, source) if said else _titled(rows, known, source)
     points, others, section = list[FilePoint](), list[str](), ""
+    ahead = (plain(row[0]) for _, row in reversed(rows[: max(columns.row, 0)]))
+    over = next((words for words in ahead if words in corners), "")
     for line, row in rows[columns.row + 1 :]:
         name, *cells = (row[at] if at < len(row) else "" for at in (columns.at[key] for key in NEEDED))
         if (not name or is_number(name)) and all(map(is_number, filter(None, row))):
             raise FileError(source, line, "has coordinates without a name", ROW)
         if not all(map(is_number, cells)):
-            section = name if not any(cells) else section
+            if not any(cells):
+                section, over = ("", plain(name)) if plain(name) in corners else (name, over)
             others += [f"{short(name)} on line {line}"] if name and any(cells) else []
             continue
         if not columns.said and (count := sum(map(is_number, row))) > 3:
             told = f"has {count} numbers for {short(name)}, in columns without a title"
             raise FileError(source, line, told, f"three, {SAY}")
         corner = columns.at.get("corner", len(row))
-        where = plain(row[corner]) if corner < len(row) else ""
+        where = plain(row[corner]) if corner < len(row) else over
         place = place_of(cells, source, line, name)
         points.append(FilePoint(name, place, line, corner=where, section=section))
     if not points:

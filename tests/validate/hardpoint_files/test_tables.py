@@ -91,7 +91,19 @@ def corners(title: str) -> str:
     return "\n".join([f"{title},Point,X (mm),Y (mm),Z (mm)", *lines])
 
 
+def headings(first: str, second: str) -> str:
+    """The wheels of two axles, each axle under its heading, the first one over the titles."""
+    lines = []
+    for part, head in (("front", [first, POINT]), ("rear", [second])):
+        lines += head
+        for side in ("left", "right"):
+            lines += rows(f"{{}}_{side[0]}", WHEELS[part, side])
+    return "\n".join(lines)
+
+
 SHAPES: dict[str, str] = {
+    "headings of axles": headings("FRONT SUSPENSION", "REAR SUSPENSION"),
+    "headings of axles in a row of cells": headings("Front,,,", "Rear,,,"),
     "a column of corners": corners("Corner"),
     "names that begin with a corner": "\n".join(
         [POINT, *(row for (p, s), car in WHEELS.items() for row in rows(f"{p[0]}{s[0]}_{{}}", car))]
