@@ -148,7 +148,7 @@ def _text(columns: Columns, target: str | None, reasons: Mapping[int, str] | Non
     kept = sum(len(one.path) == 1 for one in numbers)
     table = Table(head, tuple(zip(*map(_rounded, values), strict=True)), kept=kept)
     # The wheels of an axle share a line.
-    signs = {one.called.rpartition(".")[2]: one.sign for one in numbers if one.of_the_car}
+    signs = {"-" * one.minus + one.called.rpartition(".")[2]: one.sign for one in numbers if one.of_the_car}
     signs |= {one.called: one.sign for one in numbers if len(one.path) > 2 and not one.is_force}
     told = [f"{number}: positive {sign}" for number, sign in signs.items() if sign]
     told += [f"forces: {LOADS.sign}"] * any(one.is_force for one in numbers)

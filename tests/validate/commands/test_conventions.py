@@ -109,6 +109,8 @@ def test_a_scene_says_what_names_mean_in_its_tables_sensitivities_pictures_and_f
     said = (str(tmp_path / "car.toml"), "--number", "toe", "-o")
     assert main(["table", *said, str(tmp_path / "table.csv"), "--quiet"]) == 0
     assert "-toe_by_arcsine [deg]" in (tmp_path / "table.csv").read_text().splitlines()[0]
+    assert main(["table", *said, str(tmp_path / "table.md"), "--quiet"]) == 0
+    assert "- -toe_by_arcsine: positive not where the front edge" in (tmp_path / "table.md").read_text()
     # What the command line says goes before.
     assert main(["table", *said, str(tmp_path / "ours.csv"), "--convention", "iso", "--quiet"]) == 0
     assert ",toe [deg]" in (tmp_path / "ours.csv").read_text().splitlines()[0]
