@@ -277,6 +277,14 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
     assert found[0].words.endswith("and rack_centre with it")
 
 
+def test_a_misread_end_of_the_tie_rod_is_named_where_the_rack_is_given_back_as_it_was_drawn() -> None:
+    scene, held = solved("wheel-travel")
+    wrong = drawn_with("wheel-travel", tie_rod_inner__z=5.0)
+    rack = {"rack_centre": held.numbers["position"]["rack_centre"]}
+    (only,) = check(lambda _: {"position": {**wrong["position"], **rack}}, scene, accuracy=1e-6).explanations
+    assert only.words.endswith(": tie_rod_inner.z drawn 5 mm too high, at 159 for 154")
+
+
 def test_a_misread_point_of_a_body_is_a_misread_hardpoint_and_no_other_assembly() -> None:
     # No link holds this point, and so its lengths in other assemblies are those of its body.
     first = diagnosis(SCENES[0], drawn_with(SCENES[0], wheel_centre__x=5.0))[0]

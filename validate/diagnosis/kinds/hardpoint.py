@@ -9,6 +9,7 @@ centre, is misread with it or alone.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene, Sweep, sweep
 from pointcoord.linkage.car_axes import Direction
 from validate.diagnosis.evidence import Content, Evidence, Row, Solved, kind_of, order
-from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.hypothesis import Hypothesis, WouldBe
 from validate.diagnosis.least import LIKELY
 from validate.diagnosis.other_car import Change, amount_of, by_what_tells, supposed
 
@@ -127,9 +128,20 @@ def _misread(evidence: Evidence, few: Evidence, looked: Sequence[Row]) -> list[H
         change = _coordinate(evidence, names[i])
         fit = amount_of(few, looked, change, slopes[i])
         if fit and abs(fit[0]) < farthest and (one := supposed(evidence, change, fit[0])):
-            found.append((fit[1], one))
+            found.append((fit[1], replace(one, rows=_but_for(_echoed(evidence, names[i]), one.rows))))
     best = min((left for left, _ in found), default=0.0)
     return [one for left, one in found if left <= POORER * best]
+
+
+def _echoed(evidence: Evidence, names: Coordinate) -> set[str]:
+    """The points read with another one that are given back at their own places, which say nothing of it."""
+    placed = {row[1] for row in evidence.given if kind_of(row) == "point" and order(row) == 0}
+    others = {name.rpartition(".")[0] for name in names[1:]}
+    return (others & placed) - {of for _, of in evidence.wrong}
+
+
+def _but_for(points: set[str], rows: Mapping[Row, WouldBe]) -> dict[Row, WouldBe]:
+    return {row: numbers for row, numbers in rows.items() if row[1] not in points}
 
 
 def _coordinate(evidence: Evidence, names: Coordinate) -> Change:
@@ -148,6 +160,8 @@ def _said(evidence: Evidence, names: Coordinate, amount: float) -> str:
     component = evidence.scene.mechanism.axes.component
     word = next((word for way, word in TOO.items() if component(direction, way) > 0.999), "")
     word = word or ("large" if amount > 0.0 else "small")
-    with_it = "".join(f", and {other.rpartition('.')[0]} with it" for other in others)
+    echoed = _echoed(evidence, names)
+    points = (other.rpartition(".")[0] for other in others)
+    with_it = "".join(f", and {point} with it" for point in points if point not in echoed)
     drawn = f"{abs(amount):.4g} mm too {word}, at {place + amount:.6g} for {place:.6g}"
     return f"{coordinate} drawn {drawn}{with_it}"
