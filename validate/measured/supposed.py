@@ -93,13 +93,14 @@ def _implied(driven: Driven, some: Measured, name: str) -> Array | None:
     if name not in driven.sensible:
         return None  # it moves the whole car
     here, _ = driven.inputs([s.values for s in some.independent])
-    theirs = np.nan_to_num([s.values for s in some.numbers])
-    wide = np.maximum(np.ptp(theirs, axis=1), LEAST)
+    spread = np.ptp(np.nan_to_num([s.values for s in some.numbers]), axis=1)
+    # By their digits: a column that hardly changes says little of where its rows are.
+    wide = np.maximum([np.nanmax(s.off) for s in some.numbers], LEAST * np.maximum(spread, 1.0))
     low, high = driven.sensible[name]
     size, x = high - low, np.full(len(some.rows), driven.drawn[name])
 
     def gaps(x: Array) -> Array:
-        """Ours less theirs, of their spread, (columns, rows)."""
+        """Ours less theirs, of their last digit, (columns, rows)."""
         found = driven.solved({**here, name: x}, {})
         ours = [ours_of(s, found)[0] for s in some.numbers]
         apart = [s.apart(one, s.values) for s, one in zip(some.numbers, ours, strict=True) if one is not None]
@@ -134,8 +135,9 @@ def _line(s: Series, x: Array, driven: Driven) -> tuple[float, float, str] | Non
         return None
     unit = ANGLES["deg"] if s.meaning.unit == "rad" else s.factor
     zeros, near = x - factor * v, NOTHING * float(np.abs(x).max())
-    # To the digits that their scatter leaves.
-    digits = -math.floor(math.log10(max(float(np.std(zeros)) / unit, LEAST)))
+    # To the digits that their scatter leaves of the mean.
+    scatter = float(np.std(zeros)) / math.sqrt(len(zeros))
+    digits = -math.floor(math.log10(max(scatter / unit, LEAST)))
     zero = unit * round(float(np.mean(zeros)) / unit, digits)
     drawn = driven.drawn[s.meaning.name] if s.meaning.kind == INPUT else 0.0
     zero = next((one for one in (0.0, drawn) if abs(zero - one) <= near), zero)

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from curve_files import compared
+from curve_files import compared, table
 from numpy.typing import NDArray
 
-from pointcoord import Scene, solve_poses
+from pointcoord import Scene, simulate, solve_poses
 
 Array = NDArray[np.float64]
 CAR = Scene.load("double-wishbone")
@@ -98,3 +98,16 @@ def test_another_fault_is_no_other_zero() -> None:
     found = compared(*printed({"rack [mm]": RACKS}, numbers), CAR)
     assert found.outcome.explanations[0].words == "toe: the other sign"
     assert not [one for one in found.outcome.explanations if one.kind == "input"]
+
+
+def test_a_rack_of_the_other_sign_is_told_where_some_angles_hardly_change() -> None:
+    """Four decimals say little of where a row's caster is."""
+    racks = np.linspace(-20.0, 20.0, 21)
+    content = CAR.model_dump(exclude_none=True)
+    content["inputs"] = {"wheel_travel": {"constant": 0.0}, "rack": {"sweep": [-20.0, 20.0]}}
+    content["time"] = {"start": 0.0, "stop": 1.0, "samples": len(racks)}
+    content["effects"] = ["wheel_angles", "toe", "caster"]
+    scene = Scene.from_mapping(content, "steered")
+    angles = {f"wheel.{n} [deg]": np.degrees(a) for n, a in simulate(scene).numbers["wheel"].items()}
+    found = compared(table({"input.rack [mm]": -racks, **angles}, 4), {}, scene)
+    assert [one.words for one in found.outcome.explanations] == ["input.rack has the other sign"]
