@@ -1,9 +1,13 @@
-"""The paper's printed Tables 2 and 3 (see `tables.toml`) beside what its own equations give."""
+"""The paper's printed Tables 2 and 3 (see `tables.toml`) beside what its own equations give, and its Figures.
+
+Figures 5 and 6 are of the bouncing motion of Table 2, 7 and 8 of the steering motion of Table 3: kingpin and
+camber, and the height of the wheel centre, over time. The tables print no angle.
+"""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -101,3 +105,34 @@ def _table(name: str, table: tuple[PrintedRow, ...]) -> list[PaperRow]:
 def _triple(vector: Array) -> tuple[float, float, float]:
     x, y, z = (float(component) for component in vector)
     return x, y, z
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of the paper: curves in a unit over times, s; times and values of the table that prints it."""
+
+    words: str
+    unit: str
+    times: Array
+    curves: Mapping[str, Array]
+    printed: tuple[list[float], list[float]] | None
+
+
+def figures() -> tuple[Figure, ...]:
+    """Figures 5 to 8, from the built-in scenes `bounce` and `steer`."""
+    return (*_pair(5, "bounce", "S = 0", TABLE_2), *_pair(7, "steer", "theta = 90 degrees", TABLE_3))
+
+
+def _pair(number: int, name: str, held: str, table: Sequence[PrintedRow]) -> tuple[Figure, Figure]:
+    motion, said = simulate(name), f"for {held}, over time"
+    angles = {angle: np.degrees(motion.wheel[angle]) for angle in ("kingpin", "camber")}
+    height = {"z10": motion.position["wheel_centre"][:, 2]}
+    printed = [row.time for row in table], [row.wheel_centre[2] for row in table]
+    words = (
+        f"Figure {number}: kingpin and camber {said}",
+        f"Figure {number + 1}: height of the wheel centre {said}",
+    )
+    return (
+        Figure(f"{words[0]} {said}", "deg", motion.times, angles, None),
+        Figure(f"{words[1]} {said}", "mm", motion.times, height, printed),
+    )

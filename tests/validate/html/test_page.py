@@ -125,8 +125,16 @@ def test_a_report_has_every_section_and_the_data_that_it_names(
         assert any(row[2].startswith(number) for row in lines), finding
 
 
-def test_the_paper_s_rows_and_errata_are_on_the_page(built_in: Path) -> None:
+def test_the_paper_s_figures_rows_and_errata_are_on_the_page(built_in: Path) -> None:
     shown = read_file(built_in)
+    by_number = {words.partition(":")[0]: plot["data"] for words, plot in shown.plots}
+    for number, printed_table in ((6, TABLE_2), (8, TABLE_3)):
+        _, crosses = by_number[f"Figure {number}"]
+        wanted = [(row.time, row.wheel_centre[2]) for row in printed_table]
+        assert list(zip(crosses["x"], crosses["y"], strict=True)) == wanted
+        angles = by_number[f"Figure {number - 1}"]
+        assert [one["name"] for one in angles] == ["kingpin", "camber"]
+        assert np.abs(np.diff(angles[0]["y"])).max() < 5.0  # degrees, and smooth
     rows = [plot["data"] for words, plot in shown.plots if words == "wheel centre, z, over time"]
     for table, (printed, computed) in zip((TABLE_2, TABLE_3), rows, strict=True):
         wanted = [(row.time, row.wheel_centre[2]) for row in table]

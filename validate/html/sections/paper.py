@@ -1,4 +1,4 @@
-"""The paper: its tables as its own equations give them, and what is wrong in it by how much."""
+"""The paper: its figures and tables as its own equations give them, and what is wrong in it by how much."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from validate.html.plot import OTHER, OURS, Panel, Plots, marks, panel
+from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, marks, panel
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.report import paper_sentence, paper_tables, printed_parts
 from validate.output.table import Table
 from validate.paper.errata import ERRATA
-from validate.paper.tables import WHY_NOT_EQUAL, PaperRow
+from validate.paper.tables import WHY_NOT_EQUAL, Figure, PaperRow, figures
+
+DASHES = ("solid", "dash")
 
 
 def _blocks(run: Run) -> Iterator[Block]:
@@ -29,6 +31,9 @@ def _blocks(run: Run) -> Iterator[Block]:
 
 
 def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
+    yield Plots(
+        "Figures 5 to 8 of the paper: crosses as printed in its tables", tuple(map(_of_figure, figures()))
+    )
     yield Paragraph(f"{WHY_NOT_EQUAL} {paper_sentence(rows)}")
     for table, number in zip(paper_tables(rows), (2, 3), strict=True):
         panels = tuple(_panels([row for row in rows if row.printed.table == number]))
@@ -40,6 +45,17 @@ def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
     )
     caption = "What is wrong in the paper, and what it measures."
     yield Table(("no.", "where", "what", "measures"), lines, caption=caption)
+
+
+def _of_figure(figure: Figure) -> Panel:
+    return panel(figure.words, "time [s]", f"[{figure.unit}]", _traces(figure))
+
+
+def _traces(figure: Figure) -> Iterator[Trace]:
+    for (name, values), dash in zip(figure.curves.items(), DASHES, strict=False):
+        yield curve(name, figure.times, values, OURS, dash=dash)
+    if figure.printed is not None:
+        yield marks("printed", *figure.printed, OTHER)
 
 
 def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
