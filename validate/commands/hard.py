@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from validate.commands.comparing import Page
 from validate.commands.usage import Command, given, require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -23,6 +24,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     from validate.hard import run as hard_run
 
     cases = catalogue.chosen(options.cases)
+    if options.list and options.report is not None:
+        raise UsageError("--report is about cases that are tried; leave it out with --list")
     require_results({"--json": options.json}, (), options, console)
     head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
     if options.list:
@@ -31,6 +34,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             options.json, head, console, lambda: hard_report.listing_data(cases), lambda: "the list"
         ).closing():
             return ExitStatus.AGREE
+    page = Page.of(options)
     lacking = missing(name for case in cases for name in case.expected)
     for name, why in lacking.items():
         console.warn(f"{name} is left out: {why}")
@@ -60,6 +64,12 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.show(hard_report.summary_parts(results))
         if not hard_run.as_expected(results):
             ending.status = ExitStatus.DISAGREE
+        if page is not None:
+            from validate.html.hard_cases import HardCases
+            from validate.html.run import Run
+
+            document = head.document(hard_report.results_data(results), ending.status, complete=True)
+            ending.status = page.write(Run(head, hard=HardCases.of(document)), console).status
     return ending.status
 
 
@@ -67,7 +77,7 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Count assemblies; status 3 where two runs do not agree on a scene, or miss the drawing's."""
     from validate.assemblies import scenes
 
-    if others := given(options, "--list"):
+    if others := given(options, "--list", "--report"):
         raise UsageError(f"{others[0]} is about cases; leave it out with --assemblies")
     require_results({"--json": options.json}, (), options, console)
     found: list[scenes.SceneCount] = []

@@ -34,7 +34,7 @@ def data_files(run: Run) -> Mapping[str, str]:
         files["numbers.csv"] = csv_of(NUMBERS, _numbers(run))
     if run.published:
         files["published.csv"] = csv_of(PUBLISHED, _published(run.published))
-    if run.hard is not None:
+    if run.hard is not None and run.head.kind != "hard":
         files["hard.json"] = json_text(run.hard.document)
     if run.cost is not None:
         files["cost.json"] = json_text(run.cost.data())

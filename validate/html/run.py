@@ -108,6 +108,8 @@ class Run:
     @cached_property
     def document(self) -> Mapping[str, Any]:
         """The run as plain data, in the form of `--json` of the command that it is of."""
+        if self.hard is not None and self.head.kind == "hard":
+            return self.hard.document
         results = self.record.data()
         if self.cost is not None and self.head.kind == "cost":
             results = self.cost.data()

@@ -106,3 +106,13 @@ def test_an_interrupted_run_leaves_the_cases_that_are_finished(
     data = json.loads(target.read_text())
     assert (data["complete"], data["exit_status"]) == (False, 130)
     assert [one["name"] for one in data["cases"]] == ["done-0", "done-1", "done-2"]
+
+
+def test_the_page_of_a_run_holds_its_cases(made: None, tmp_path: Path) -> None:
+    assert main(["hard", "-q", "--report", str(tmp_path / "page")]) == 1
+    data = json.loads((tmp_path / "page" / "results.json").read_text())
+    jsonschema.validate(data, SCHEMA)
+    assert [case["name"] for case in data["cases"]] == ["ours-fails", "quiet"]
+    page = (tmp_path / "page" / "index.html").read_text()
+    assert "2 hard cases compared with the many-digit reference: disagrees" in page
+    assert main(["hard", "--list", "--report", str(tmp_path / "other")]) == 2
