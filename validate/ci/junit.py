@@ -27,7 +27,7 @@ from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from validate.ci.baseline import Move, Since
-from validate.ci.record import CUT_OFF, Record
+from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.output.report import about, told_row, when
@@ -88,7 +88,7 @@ def _suites(record: Record) -> Iterator[Suite]:
         case = _Case("in the run", "skipped", "gone", f"{name} is in the baseline and not in this run")
         yield f"{name}: since the baseline", {"scene": name, **baseline}, [case]
     for name in record.not_run:
-        yield name, {"scene": name}, [_Case("run", "skipped", "not run", f"not run: {CUT_OFF}")]
+        yield name, {"scene": name}, [_Case("run", "skipped", "not run", f"not run: {record.stopped}")]
 
 
 def _element(name: str, properties: Mapping[str, str], cases: Sequence[_Case]) -> ElementTree.Element:

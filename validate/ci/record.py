@@ -36,6 +36,7 @@ class Record:
         scenes: those of them that could be read, by name.
         files: of results, by the name of the scene whose car they are held to.
         paper: the paper's printed tables beside ours.
+        stopped: why the rest was not run.
     """
 
     names: Sequence[str]
@@ -46,6 +47,7 @@ class Record:
     scenes: dict[str, Scene] = field(default_factory=dict)
     files: dict[str, DataOutcome] = field(default_factory=dict)
     paper: Sequence[PaperRow] = ()
+    stopped: str = CUT_OFF
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
         """Take in a scene; the numbers themselves are let go."""
@@ -54,6 +56,11 @@ class Record:
             self.scenes[examined.name] = scene
         if since is not None:
             self.since.append(since)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run came to its end, be it before its last scene."""
+        return not self.not_run or self.stopped != CUT_OFF
 
     @property
     def not_run(self) -> tuple[str, ...]:
@@ -115,3 +122,9 @@ def _emptied(outcome: Outcome) -> Outcome:
         for solution in outcome.solutions
     )
     return replace(outcome, solutions=(one, two))
+
+
+def ends_the_run(examined: Examined, since: Since | None) -> bool:
+    """Whether a scene ends a run that ends at the first fault: it disagrees, has moved, or is refused."""
+    disagrees = any(outcome.disagreements for outcome in examined.outcomes)
+    return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved or since.lost))

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import get_args
 
 from validate.ci.baseline import Move, Since
-from validate.ci.record import CUT_OFF, Record
+from validate.ci.record import Record
 from validate.comparison.compare import Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
@@ -83,7 +83,7 @@ def _of_scenes(record: Record) -> Iterator[str]:
     yield agreeing(len(by_verdict.pop("agrees", ())), len(record.names))
     yield from _by_verdict(by_verdict)
     if record.not_run:
-        yield f"not run ({CUT_OFF}): {some_of(record.not_run, NAMED)}"
+        yield f"not run ({record.stopped}): {some_of(record.not_run, NAMED)}"
     # How much of what is asked for was compared, of a solver that may give what it has.
     stated = [outcome.counts for outcome in record.outcomes if outcome.stated]
     counts = {key: sum(one[key] for one in stated) for key in (*get_args(Verdict), "given back")}

@@ -165,7 +165,7 @@ def _leave_files(
 
     if recorder is not None:
         why = "" if len(recorder) else "no scene was compared"
-        if why := "the run did not come to its end" if record.not_run else why:
+        if why := why if record.ended else record.stopped:
             console.complain(f"baseline {options.save_baseline}: not written, because {why}")
         else:
             attempt(options.save_baseline, recorder.content())

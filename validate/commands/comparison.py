@@ -12,7 +12,7 @@ from pathlib import Path
 from pointcoord import Scene, SceneError
 from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
-from validate.ci.record import Record
+from validate.ci.record import Record, ends_the_run
 from validate.commands.comparing import comparing, results_of
 from validate.commands.usage import (
     STANDARD_INPUT,
@@ -50,7 +50,7 @@ GOES_WITH: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys((A_SOLVER, "--traceback", "--solver-timeout", "--in-process"), (A_SOLVER,)),
     **dict.fromkeys((A_FILE, "--map"), (A_FILE,)),
     "--accuracy": (A_SOLVER, A_FILE),
-    **dict.fromkeys(("--scenes-dir", "--save-baseline", "--baseline"), (SCENES, A_SOLVER)),
+    **dict.fromkeys(("--scenes-dir", "--fail-fast", "--save-baseline", "--baseline"), (SCENES, A_SOLVER)),
     **dict.fromkeys(("--hard", "--cost"), (SCENES, A_SOLVER)),
     **dict.fromkeys(("scenes", "--report", "--tolerance-factor"), (SCENES, A_SOLVER, A_FILE)),
 }
@@ -131,7 +131,10 @@ def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus
                 examined = scene
             _say(examined, since, time.monotonic() - began, options.verbose, console, width)
             compared.add(examined, since, scene if isinstance(scene, Scene) else None)
-        if not own and not options.scenes and options.scenes_dir is None:
+            if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
+                record.stopped = f"--fail-fast ended the run at {examined.name}"
+                break
+        if not own and not record.not_run and not options.scenes and options.scenes_dir is None:
             record.paper = compare_with_paper()
         _say_at_the_end(record, options.verbose, console)
     return compared.ending.status

@@ -1,13 +1,15 @@
 """The options of `validate` for services that decide: folders, a factor, a stop at the first fault, files."""
 
+import html
 import json
 import os
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from junit_schema import checked
-from program import PAST_ITS_END, complaints, run, short_scene
+from program import BOUNCE, PAST_ITS_END, complaints, run, short_scene
 
 from pointcoord import Scene
 from validate import Solution, compare
@@ -149,3 +151,52 @@ def test_ctrl_c_leaves_the_test_results_of_what_was_done_and_no_baseline(
     kept, interrupted = capsys.readouterr().err.splitlines()
     assert "not written, because the run did not come to its end" in kept
     assert f"{files['--junit']} holds 1 of 2 scenes" in interrupted
+
+
+@pytest.mark.parametrize("fault", ["disagrees", "broken", "moved"])
+def test_the_run_stops_at_the_first_fault_and_names_what_was_not_run(
+    fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, last = short_scene(tmp_path, "a.toml"), short_scene(tmp_path, "c.toml")
+    kept = str(tmp_path / "kept.npz")
+    wrong = short_scene(tmp_path, "b.toml", stop="1.5")
+    more: tuple[str, ...] = ()
+    plain = AbsoluteCoordinates.solve
+
+    def off(self: AbsoluteCoordinates, scene: Scene) -> Solution:
+        solution = plain(self, scene)
+        shift = 1e-3 if scene.time.stop == 1.5 else 0.0
+        places = {name: array + shift for name, array in solution.numbers["position"].items()}
+        return solution.with_numbers({"position": places})
+
+    if fault == "moved":  # since the fault was mended that its baseline has
+        with monkeypatch.context() as patch:
+            patch.setattr(AbsoluteCoordinates, "solve", off)
+            assert main(["validate", wrong, *PAIR, "-q", "--save-baseline", kept]) == 1
+        more = ("--baseline", kept)
+    elif fault == "broken":
+        Path(wrong).write_text(BOUNCE.replace("samples", "sample"))
+    else:
+        monkeypatch.setattr(AbsoluteCoordinates, "solve", off)
+    places = {end: tmp_path / f"out.{end}" for end in ("json", "xml", "md", "npz")}
+    options = ("--json", "--junit", "--summary", "--save-baseline")
+    ends = [word for pair in zip(options, map(str, places.values()), strict=True) for word in pair]
+    status = {"disagrees": 1, "broken": 2, "moved": 1}[fault]
+    capsys.readouterr()
+    assert main(["validate", first, wrong, last, *PAIR, "--fail-fast", *more, *ends]) == status
+    data = json.loads(places["json"].read_text())
+    assert [scene["scene"] for scene in data["scenes"]] == [first, wrong]
+    assert data["not_run"] == [last]
+    assert f"not run (--fail-fast ended the run at {wrong}): {last}" in capsys.readouterr().out
+    root = checked(places["xml"].read_bytes())
+    (skipped,) = root[-1].iter("skipped")
+    assert (root[-1].get("name"), skipped.get("message")) == (
+        last,
+        f"not run: --fail-fast ended the run at {wrong}",
+    )
+    assert f"not run (--fail-fast ended the run at {wrong}): {last}" in html.unescape(
+        places["md"].read_text()
+    )
+    with np.load(places["npz"]) as file:
+        names = [one["scene"] for one in json.loads(str(file["head"]))["scenes"]]
+    assert names == ([first, wrong] if fault in ("disagrees", "moved") else [first])
