@@ -139,7 +139,9 @@ def _reached(table: pd.DataFrame) -> Iterator[Table]:
     if tried.empty:
         return
     scenes, dense = list(dict.fromkeys(tried.scene)), tried.groupby("way").dense.any()
-    times = best.pivot(index="way", columns="scene", values="time").reindex(tried.way.unique())[scenes]
+    times = best.pivot(index="way", columns="scene", values="time").reindex(
+        tried.way.unique(), columns=scenes
+    )
     times = times.loc[times.median(axis=1).sort_values(na_position="last", kind="stable").index]
     there = set(zip(tried.way, tried.scene, strict=True))
 

@@ -101,7 +101,7 @@ def read_rows(path: str) -> list[Row]:
     from pyarrow import parquet
 
     try:
-        table = parquet.read_table(BytesIO(Path(path).read_bytes()))
+        table = parquet.read_table(BytesIO(Path(path).read_bytes()), use_threads=False, pre_buffer=False)
         if odd := set(table.column_names) ^ set(COLUMNS):
             raise ValueError(f"the columns {', '.join(sorted(odd))} are missing or unknown")
         if rows := TypeAdapter(list[Row]).validate_python(table.to_pylist()):

@@ -104,3 +104,10 @@ def test_no_two_ways_share_a_line_or_a_mark_and_new_ones_have_looks_too() -> Non
     assert len({look.marker for look in found.values()}) == len({look.symbol for look in found.values()})
     assert len({look.marker for look in found.values()}) == len(names) + 2
     assert looks(["mujoco"])["mujoco"] == found["mujoco"]
+
+
+def test_a_scene_of_which_nothing_is_exact_has_its_column() -> None:
+    rows = (*ROWS, *measured("elsewhere", "newton", "coarse", alike(1.0), 1e-5))
+    table, *_ = replace(REPORT, rows=rows).tables
+    assert table.head[-1] == "elsewhere"
+    assert {of[-1] for of in table.rows} == {"not reached", "-"}
