@@ -37,7 +37,7 @@ from pointcoord import Scene, SceneError
 from pointcoord.effects.conventions import CONVENTIONS, ConventionName
 from pointcoord.mechanism.faults import faults_of
 from pointcoord.toml_text import parsed, read_file
-from pointcoord.wording import meant
+from pointcoord.wording import meant, shown_key
 from validate.measured.meanings import (
     CONTACT,
     IGNORE,
@@ -296,8 +296,8 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
 
 
 def listed(names: Iterable[str], by: str = ", ") -> str:
-    """Names of a file as they can be shown."""
-    return by.join(map(shown, names))
+    """Names of a file as they can be shown, the long ones shortened."""
+    return by.join(shown(shown_key(name)) for name in names)
 
 
 @dataclass(frozen=True)

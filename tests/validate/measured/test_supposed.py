@@ -111,3 +111,13 @@ def test_a_rack_of_the_other_sign_is_told_where_some_angles_hardly_change() -> N
     angles = {f"wheel.{n} [deg]": np.degrees(a) for n, a in simulate(scene).numbers["wheel"].items()}
     found = compared(table({"input.rack [mm]": -racks, **angles}, 4), {}, scene)
     assert [one.words for one in found.outcome.explanations] == ["input.rack has the other sign"]
+
+
+def test_a_long_name_of_a_column_that_is_ignored_is_shortened() -> None:
+    numbers = {**at(TURNS, np.zeros_like(TURNS)), "w" * 10_000: TURNS}
+    del numbers["rise"]
+    file, said = printed({"arm_angle [rad]": TURNS}, numbers)
+    del said["columns"]["w" * 10_000]
+    found = compared(file, said, CAR)
+    assert found.outcome.agreed
+    assert max(map(len, found.outcome.notes)) < 200
