@@ -16,7 +16,7 @@ from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.inputs import KINDS
 from pointcoord.mechanism.structure import PAIR_ROLES
-from pointcoord.scene.scene_file import CarPart
+from pointcoord.scene.scene_file import TURNS, CarPart
 
 PACKAGE = Path(pointcoord.__file__).parent
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
@@ -37,8 +37,8 @@ def said(tree: ast.Module) -> Iterator[str]:
 POINTS = {point for name in shipped() for point in mechanism_file(name).points}
 INPUTS = {name for one in shipped() for name in mechanism_file(one).inputs}
 # A file may call an input as the format calls its kind, such as `turn`, or as an effect calls what it drives.
-# A type may be called as what a scene says of its car.
-ELSEWHERE = {*KINDS, *EFFECTS, *NUMBERS_OF_THE_CAR}
+# A type may be called as what a scene says of its car, and an error tells how to write inputs of some names.
+ELSEWHERE = {*KINDS, *EFFECTS, *NUMBERS_OF_THE_CAR, *TURNS}
 EXACT = {*shipped()} - CarPart.model_fields.keys() | (INPUTS - ELSEWHERE)
 
 
