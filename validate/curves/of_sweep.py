@@ -47,16 +47,15 @@ def _of_npz(path: str) -> pd.DataFrame:
 
 
 def columns_called(table: pd.DataFrame, words: Sequence[str]) -> list[str]:
-    """The columns whose names are some words, or begin or end with them but for the unit.
+    """The columns whose names, but for the unit, are some words or have them among their parts.
 
     Raises:
         UsageError: there is none.
     """
-    found = []
+    found, plain_names = [], {str(name): str(name).partition(" [")[0] for name in table}
     for word in words:
-        plain_names = {str(name): str(name).partition(" [")[0] for name in table}
         whole = [name for name, own in plain_names.items() if word in (name, own)]
-        part = [n for n, own in plain_names.items() if f".{own}.".find(f".{word}.") >= 0]
+        part = [n for n, own in plain_names.items() if f".{word}." in f".{own}."]
         if not (whole or part):
             there = some_of([*plain_names.values()], NAMED)
             raise UsageError(f"{shown(word)} names no column of the file; allowed: {there}")

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import finest_tolerance
 from validate.comparison.compare import SMALLEST, Outcome, Pair, gaps_between
@@ -58,11 +57,6 @@ def together(rows: Iterable[Row]) -> list[tuple[Row, ...]]:
     for row in rows:
         groups.setdefault(row if kind_of(row) == "car" else row[0], []).append(row)
     return [tuple(some) for some in groups.values()]
-
-
-def axes_of(scene: Scene) -> CarAxes:
-    """The directions of a scene's car."""
-    return scene.mechanism.axes
 
 
 def numbers_in(numbers: Numbers, rows: Iterable[Row]) -> Array:
