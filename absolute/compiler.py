@@ -608,7 +608,13 @@ def _point_of(name: str, value: object) -> Array:
 
 
 def _unit_of(name: str, vector: Array) -> Array:
-    """The direction of a vector, or a DescriptionError where it is zero."""
+    """The direction of a vector; one of length 1 but for rounding is it: to divide it would round it again.
+
+    Raises:
+        DescriptionError: it is zero.
+    """
+    if abs(float(vector @ vector) - 1.0) <= 4.0 * EPS:
+        return vector
     largest = float(np.abs(vector).max())
     if largest == 0:
         raise DescriptionError(

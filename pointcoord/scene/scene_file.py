@@ -36,6 +36,7 @@ from pointcoord.mechanism.file import (
 from pointcoord.mechanism.freedoms import askew_hinges, free_directions
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS, Names
 from pointcoord.mechanism.structure import TABLES, Structure
+from pointcoord.numerics.rounding import EPS
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of, read_in, swept, with_drawn
@@ -66,6 +67,9 @@ PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
 # power, the order of its series, it stays below the largest number, 2^1024.
 FARTHEST = 1e15
 Instant = Annotated[Number, Field(ge=-FARTHEST, le=FARTHEST)]
+# What products of directions may be off: components printed with 12 digits leave 1e-12; more is a slip.
+SLIP = 1e-12
+NO_DIRECTION = (0.0, 0.0, 0.0)
 # Where an axle lies, seen from the car's middle.
 AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
 # Along what the chassis turns in inputs that many ask for, and a mechanism's file may have.
@@ -180,7 +184,7 @@ class MechanismPart(Part):
     closure: Text = "drawn"
     side: Literal["left", "right"] = "left"
     up: Vector = (0.0, 0.0, 1.0)
-    right: Vector = (0.0, 1.0, 0.0)
+    right: Annotated[Vector, Field(validate_default=True)] = (0.0, 1.0, 0.0)
     wheel_radius: Positive | None = None
     rack_per_turn: NotZero | None = None
     car: CarPart | None = None
@@ -223,6 +227,22 @@ class MechanismPart(Part):
             mechanism_file(type)
         return type
 
+    @field_validator("up", "right")
+    @classmethod
+    def _to_rounding(cls, direction: Vector, others: ValidationInfo) -> Vector:
+        """The direction to the last digit: printed with fewer, each model would take another one for it.
+
+        What is off by more than that is told in `agree`.
+        """
+        given, up = np.array(direction), np.array(others.data.get("up", NO_DIRECTION))
+        with np.errstate(over="ignore", invalid="ignore"):
+            off = max(abs(float(given @ given) - 1.0), abs(float(given @ up)))
+        if not 4.0 * EPS < off <= SLIP:
+            return direction
+        x, y, z = across = given - float(given @ up) * up
+        size = float(np.linalg.norm(across))
+        return float(x) / size, float(y) / size, float(z) / size
+
     @field_validator("closure")
     @classmethod
     def _known_closure(cls, closure: str, others: ValidationInfo) -> str:
@@ -262,10 +282,9 @@ class MechanismPart(Part):
 
     def _orthonormal(self) -> None:
         up, right = np.array(self.up), np.array(self.right)
-        # Components printed with 15 digits leave 1e-15 in each product; anything above is a slip.
         with np.errstate(over="ignore", invalid="ignore"):
             worst = np.max(np.abs([up @ up - 1.0, right @ right - 1.0, up @ right]))
-        if not worst <= 1e-12:
+        if not worst <= SLIP:
             raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
 
     def _wheels(self) -> Iterator[tuple[str, str]]:
