@@ -28,6 +28,8 @@ LARGEST_COORDINATE, SMALLEST_SIZE = 1e100, 1e-100
 # Two points nearer than this to each other, in units of size, share half of their digits: rounding of the
 # coordinates given turns the line between them by as much as half of its digits.
 SHORTEST_AXIS = math.sqrt(EPS)
+# Products of directions that are turned in doubles are off by a few roundings.
+ROUNDED = 16.0 * EPS
 # `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
 LARGEST_SKEW = 1e-6
 SIDES = ("left", "right")
@@ -613,7 +615,7 @@ def _unit_of(name: str, vector: Array) -> Array:
     Raises:
         DescriptionError: it is zero.
     """
-    if abs(float(vector @ vector) - 1.0) <= 4.0 * EPS:
+    if abs(float(vector @ vector) - 1.0) <= ROUNDED:
         return vector
     largest = float(np.abs(vector).max())
     if largest == 0:

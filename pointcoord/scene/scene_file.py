@@ -67,8 +67,9 @@ PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
 # power, the order of its series, it stays below the largest number, 2^1024.
 FARTHEST = 1e15
 Instant = Annotated[Number, Field(ge=-FARTHEST, le=FARTHEST)]
-# What products of directions may be off: components printed with 12 digits leave 1e-12; more is a slip.
-SLIP = 1e-12
+# What products of directions may be off: a few roundings where they are turned in doubles, and 1e-12 where
+# they are printed with 12 digits; more is a slip.
+ROUNDED, SLIP = 16.0 * EPS, 1e-12
 NO_DIRECTION = (0.0, 0.0, 0.0)
 # Where an axle lies, seen from the car's middle.
 AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
@@ -237,7 +238,7 @@ class MechanismPart(Part):
         given, up = np.array(direction), np.array(others.data.get("up", NO_DIRECTION))
         with np.errstate(over="ignore", invalid="ignore"):
             off = max(abs(float(given @ given) - 1.0), abs(float(given @ up)))
-        if not 4.0 * EPS < off <= SLIP:
+        if not ROUNDED < off <= SLIP:
             return direction
         x, y, z = across = given - float(given @ up) * up
         size = float(np.linalg.norm(across))
