@@ -615,9 +615,9 @@ def _unit_of(name: str, vector: Array) -> Array:
     Raises:
         DescriptionError: it is zero.
     """
-    if abs(float(vector @ vector) - 1.0) <= ROUNDED:
-        return vector
     largest = float(np.abs(vector).max())
+    if largest < 2.0 and abs(float(vector @ vector) - 1.0) <= ROUNDED:
+        return vector
     if largest == 0:
         raise DescriptionError(
             f"{name} is {vector.tolist()}; a direction must not be zero", name, vector.tolist()
