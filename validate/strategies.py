@@ -39,12 +39,19 @@ import numpy as np
 from pointcoord import Scene
 from pointcoord.method import AUTO
 from validate.cars.base_cars import Variant, input_sets, variants_of
-from validate.cars.car import Car, other_side, rotation, turned
+from validate.cars.car import Car, content_of, rotation
 from validate.cars.input_ends import drawn_inputs
-from validate.cars.moved_points import HALVED, SHARE, Moves, drawn_back, sliding, with_every_point
-from validate.cars.near_singular import NearPose, approach
-from validate.cars.random_cars import is_accepted
-from validate.cars.scene_content import content_of
+from validate.cars.random_cars import (
+    HALVED,
+    SHARE,
+    Moves,
+    NearPose,
+    approach,
+    drawn_back,
+    is_accepted,
+    sliding,
+    with_every_point,
+)
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import FormulationError
@@ -99,7 +106,7 @@ def inputs(draw: st.DrawFn, mechanism: Mechanism, stop: float = 0.5) -> dict[str
     Args:
         mechanism: of a scene's content, such as `mechanisms` draws.
     """
-    car = Car.of_mechanism(mechanism)
+    car = Car.of(mechanism)
     return draw(_laws(car, draw(_driven(car, input_sets(car))), stop))
 
 
@@ -200,9 +207,9 @@ def _cars_of(draw: st.DrawFn, variant: Variant, reach: int | None, turns: bool) 
     mirror = draw(st.booleans()) and not variant.of_parts
 
     def put(car: Car) -> Car:
-        return turned(other_side(car) if mirror else car, turn)
+        return (car.mirrored() if mirror else car).turned(turn)
 
-    return put(drawn_back(base, moves, lambda car: is_accepted(put(car), variant.input_sets[0]))), variant
+    return drawn_back(base, moves, put, variant.input_sets[0]), variant
 
 
 def _is_solved(scene: Scene) -> bool:

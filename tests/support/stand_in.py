@@ -23,6 +23,6 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, solve: Solve, *names: str) -> None
             return solve(scene)
 
     monkeypatch.setattr(
-        "validate.hard.trial.formulation",
+        "validate.hard.answer.formulation",
         lambda name: Stand() if not names or name in names else formulation(name),
     )

@@ -14,7 +14,7 @@ proven: it rests on the paths, which are followed again from other starts until 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
 
@@ -28,18 +28,8 @@ from validate.extras import MissingPackage
 try:
     from flint import acb, acb_mat, arb, ctx
 
+    from validate.reference import krawczyk
     from validate.reference.errors import NotDecidedError
-    from validate.reference.krawczyk import (
-        Contraction,
-        Curve,
-        Matrix,
-        column,
-        less,
-        matrix_of,
-        middle_inverse,
-        newton,
-        within,
-    )
     from validate.reference.vectors import Scalar
 except ImportError as error:
     raise MissingPackage("validate.assemblies", error) from None
@@ -72,7 +62,7 @@ class Assembly:
     drawn: bool
 
 
-@dataclass(frozen=True)
+@dataclass
 class Counted:
     """What was found.
 
@@ -84,9 +74,9 @@ class Counted:
     """
 
     paths: int
-    candidates: tuple[int, ...]
-    certified: tuple[int, ...]
-    assemblies: tuple[Assembly, ...]
+    candidates: list[int] = field(default_factory=list)
+    certified: list[int] = field(default_factory=list)
+    assemblies: list[Assembly] = field(default_factory=list)
 
     @property
     def real(self) -> int:
@@ -96,11 +86,8 @@ class Counted:
     @property
     def agreed(self) -> bool:
         """Whether each of two runs has found all that is known, without a path that is not certified."""
-        whole = [
-            found == proven == len(self.assemblies)
-            for found, proven in zip(self.candidates, self.certified, strict=True)
-        ]
-        return sum(whole) >= RUNS
+        runs = zip(self.candidates, self.certified, strict=True)
+        return sum(found == proven == len(self.assemblies) for found, proven in runs) >= RUNS
 
     @property
     def drawn(self) -> bool:
@@ -117,32 +104,24 @@ def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) 
         NotOnLegsError: the knuckle is not held by six conditions that are known.
     """
     quadratic = forms(mechanism, places)
-    found = Counted(0, (), (), ())
+    found = Counted(2 ** len(quadratic))
     with ctx.workprec(BITS):
         matrices = [acb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
         while not found.agreed and len(found.candidates) < MOST_RUNS:
-            ends = _poses(solve_quadratic(quadratic, len(found.candidates)))
+            ends = solve_quadratic(quadratic, len(found.candidates))
+            # Of a pose <e, e> is not zero.
+            ends = ends[np.abs((ends[:, :4] ** 2).sum(axis=1)) > NO_TURN]
             proven = [one for one in (_certified(matrices, end) for end in ends) if one is not None]
-            distinct = list(found.assemblies)
+            found.candidates.append(len(ends))
+            found.certified.append(len(proven))
             for one in proven:
-                if all(_apart(one.box, other.box) for other in distinct):
-                    distinct.append(one)
-            found = Counted(
-                2 ** len(quadratic),
-                (*found.candidates, len(ends)),
-                (*found.certified, len(proven)),
-                tuple(distinct),
-            )
+                if all(_apart(one.box, other.box) for other in found.assemblies):
+                    found.assemblies.append(one)
     return found
 
 
-def _poses(ends: Complex) -> Complex:
-    """Solutions that turn: of a pose <e, e> is not zero."""
-    return np.asarray(ends[np.abs((ends[:, :4] ** 2).sum(axis=1)) > NO_TURN])
-
-
 @dataclass(frozen=True)
-class _Forms(Curve):
+class _Forms(krawczyk.Curve):
     """The forms of homogeneous numbers, of which one is 1; x are the others. There is no t."""
 
     matrices: Sequence[acb_mat]
@@ -154,39 +133,40 @@ class _Forms(Curve):
 
     def rows(self, x: Sequence[acb], t: Scalar) -> list[acb]:
         """x^T Q x."""
-        z = column(self.whole(x))
+        z = krawczyk.column(self.whole(x))
         return [(z.transpose() * (matrix * z))[0, 0] for matrix in self.matrices]
 
     def entries(self, x: Sequence[acb], t: Scalar, one: int = 1) -> list[tuple[int, int, acb]]:
         """2 Q x."""
-        z = column(self.whole(x, one))
+        z = krawczyk.column(self.whole(x, one))
         slopes = [(matrix * z).entries() for matrix in self.matrices]
         for slope in slopes:
             del slope[self.chart]
         return [(i, j, 2 * entry) for i, slope in enumerate(slopes) for j, entry in enumerate(slope)]
 
-    def bend(self, change: Sequence[acb]) -> Matrix:
+    def bend(self, change: Sequence[acb]) -> krawczyk.Matrix:
         """The same without what the number 1 makes of it."""
-        return matrix_of(len(change), self.entries(change, 0, 0))
+        return krawczyk.matrix_of(len(change), self.entries(change, 0, 0))
 
     def holds_one(self, centre: Sequence[acb], radius: str) -> bool:
         """Whether discs are proven to hold one solution and no other."""
-        width, inverse = [arb(radius)] * len(centre), middle_inverse(self.matrix(centre, 0))
-        return less(Contraction.at(self, centre, 0, inverse).image(width), width)
+        width, inverse = [arb(radius)] * len(centre), krawczyk.middle_inverse(self.matrix(centre, 0))
+        return krawczyk.less(krawczyk.Contraction.at(self, centre, 0, inverse).image(width), width)
 
 
 def _certified(matrices: Sequence[acb_mat], end: Complex) -> Assembly | None:
     """The assembly near an end of a path; None where nothing is proven."""
     chart = int(np.argmax(np.abs(end)))
     forms, near = _Forms(matrices, chart), np.delete(end / end[chart], chart)
+    narrow, wide = ([arb(radius)] * len(near) for radius in (NARROW, WIDE))
     try:
-        centre, _ = newton(forms, [acb(complex(number)) for number in near], 0)
+        centre, _ = krawczyk.newton(forms, [acb(complex(number)) for number in near], 0)
         middle = [acb(x.real) for x in centre]
-        real = within(centre, middle, [arb(NARROW)] * len(centre)) and forms.holds_one(middle, NARROW)
+        real = krawczyk.within(centre, middle, narrow) and forms.holds_one(middle, NARROW)
         centre = middle if real else centre
         if not (real or forms.holds_one(centre, NARROW)):
             return None
-        at_drawing = chart == 0 and less([x.abs_upper() for x in centre], [arb(WIDE)] * len(centre))
+        at_drawing = chart == 0 and krawczyk.less([x.abs_upper() for x in centre], wide)
         drawn = at_drawing and forms.holds_one(centre, WIDE)
     except NotDecidedError:
         return None

@@ -13,8 +13,6 @@ one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,7 +28,7 @@ NEWTON, LAST = 3, 5
 END, SHORTEST = 1.0 - 1e-8, 1e-13
 CLOSE = 1e-3
 SINGULAR = 1e9  # condition number at which an end is not told from one on a curve
-MOST = 5000
+MOST = 5000  # steps of a path
 
 
 def solve_quadratic(forms: Array, seed: int = 0) -> Complex:
@@ -43,88 +41,76 @@ def solve_quadratic(forms: Array, seed: int = 0) -> Complex:
     """
     random = np.random.default_rng(seed)
     count = len(forms)
-    lines, x = _start(count, random)
-    squares = lines[:, :, None] * lines[:, None, :]
-    factors = np.exp(2j * np.pi * random.uniform(size=(count, 1, 1)))
-    paths = _Paths(forms.astype(complex), factors * (squares[1:] - squares[0]))
-    t, step, good = np.zeros(len(x)), np.full(len(x), FIRST), np.zeros(len(x), dtype=int)
-    active = np.arange(len(x))
-    for _ in range(MOST):
-        if not len(active):
-            break
-        length = np.minimum(step[active], END - t[active])
-        ahead, there = paths.ahead(x[active], t[active], length)
-        moved, stuck = active[there], active[~there]
-        x[moved], t[moved] = ahead[there], t[moved] + length[there]
-        good[moved] += 1
-        step[stuck] *= 0.5
-        good[stuck] = 0
-        grown = moved[good[moved] >= 2]
-        step[grown] *= 2.0
-        good[grown] = 0
-        active = active[(t[active] < END) & (step[active] > SHORTEST)]
-    return paths.ends(x[t >= END])
-
-
-def _start(count: int, random: np.random.Generator) -> tuple[Complex, Complex]:
-    """Orthonormal lines l, (n + 1, n + 1), and the solutions l_r . x = +-l_0 . x of unit length."""
+    # Orthonormal lines l, (n + 1, n + 1), and the solutions l_r . x = +-l_0 . x of unit length.
     shape = (count + 1, count + 1)
     lines, _ = np.linalg.qr(random.normal(size=shape) + 1j * random.normal(size=shape))
     signs = 1.0 - 2.0 * ((np.arange(2**count)[:, None] >> np.arange(count)) & 1)
-    values = np.concatenate([np.ones((2**count, 1)), signs], axis=1) / np.sqrt(count + 1.0)
-    return lines, values @ lines.conj()
+    x = np.concatenate([np.ones((2**count, 1)), signs], axis=1) / np.sqrt(count + 1.0) @ lines.conj()
+    squares = lines[:, :, None] * lines[:, None, :]
+    factors = np.exp(2j * np.pi * random.uniform(size=(count, 1, 1)))
+    both = np.stack([factors * (squares[1:] - squares[0]), forms])
+    t, step, good = np.zeros(len(x)), np.full(len(x), FIRST), np.zeros(len(x), dtype=int)
+    active = np.arange(len(x))
+    with np.errstate(all="ignore"):
+        for _ in range(MOST):
+            if not len(active):
+                break
+            length = np.minimum(step[active], END - t[active])
+            ahead, there = _ahead(both, x[active], t[active], length)
+            moved, stuck = active[there], active[~there]
+            x[moved], t[moved] = ahead[there], t[moved] + length[there]
+            good[moved] += 1
+            grown = moved[good[moved] >= 2]
+            step[grown] *= 2.0
+            step[stuck] *= 0.5
+            good[grown] = good[stuck] = 0
+            active = active[(t[active] < END) & (step[active] > SHORTEST)]
+        return _ends(both, x[t >= END])
 
 
-@dataclass(frozen=True)
-class _Paths:
-    """The forms at both ends, (n, n + 1, n + 1) each."""
+def _at(both: Complex, x: Complex, t: Array) -> tuple[Complex, Complex, Complex]:
+    """Values, (P, n), derivatives by x, (P, n, n + 1), and by t, (P, n), of points (P, n + 1)."""
+    start, goal = np.einsum("srij,pj->spri", both, x)
+    row = start + t[:, None, None] * (goal - start)
+    value, change = (np.einsum("pri,pi->pr", rows, x) for rows in (row, goal - start))
+    return value, 2.0 * row, change
 
-    goal: Complex
-    start: Complex
 
-    def at(self, x: Complex, t: Array) -> tuple[Complex, Complex, Complex]:
-        """Values, (P, n), derivatives by x, (P, n, n + 1), and by t, (P, n), of points (P, n + 1)."""
-        goal, start = (np.einsum("rij,pj->pri", forms, x) for forms in (self.goal, self.start))
-        part = t[:, None, None]
-        row = part * goal + (1.0 - part) * start
-        value, change = (np.einsum("pri,pi->pr", rows, x) for rows in (row, goal - start))
-        return value, 2.0 * row, change
+def _ahead(both: Complex, x: Complex, t: Array, step: Array) -> tuple[Complex, NDArray[np.bool_]]:
+    """Unit vectors a step further, and which of them have arrived there."""
 
-    def ahead(self, x: Complex, t: Array, step: Array) -> tuple[Complex, NDArray[np.bool_]]:
-        """Unit vectors a step further, and which of them have arrived there."""
-        along = step[:, None]
-        with np.errstate(all="ignore"):
-            first = self._tangent(x, t, x)
-            second = self._tangent(x + 0.5 * along * first, t + 0.5 * step, x)
-            third = self._tangent(x + 0.5 * along * second, t + 0.5 * step, x)
-            fourth = self._tangent(x + along * third, t + step, x)
-            y = x + along * (first + 2.0 * second + 2.0 * third + fourth) / 6.0
-            y, sizes = self._newton(y, t + step, x, NEWTON)
-            there = (sizes[0] < NEAR) & (sizes[-1] < ARRIVED)
-            return y / np.linalg.norm(y, axis=1, keepdims=True), there
+    def tangent(y: Complex, share: float) -> Complex:
+        _, rows, change = _at(both, y, t + share * step)
+        return _solved(rows, x, -change)
 
-    def ends(self, x: Complex) -> Complex:
-        """The regular solutions at t = 1 that Newton's method leads to from near it."""
-        one = np.ones(len(x))
-        with np.errstate(all="ignore"):
-            y, sizes = self._newton(x, one, x, LAST)
-            _, rows, _ = self.at(y, one)
-            condition = np.linalg.cond(_bordered(rows, x))
-            regular = (sizes[0] < CLOSE) & (condition < SINGULAR)
-            return np.asarray((y / np.linalg.norm(y, axis=1, keepdims=True))[regular])
+    along = step[:, None]
+    first = tangent(x, 0.0)
+    second = tangent(x + 0.5 * along * first, 0.5)
+    third = tangent(x + 0.5 * along * second, 0.5)
+    fourth = tangent(x + along * third, 1.0)
+    y = x + along * (first + 2.0 * second + 2.0 * third + fourth) / 6.0
+    y, sizes = _newton(both, y, t + step, x, NEWTON)
+    return y / np.linalg.norm(y, axis=1, keepdims=True), (sizes[0] < NEAR) & (sizes[-1] < ARRIVED)
 
-    def _newton(self, y: Complex, t: Array, normal: Complex, steps: int) -> tuple[Complex, list[Array]]:
-        sizes = []
-        for _ in range(steps):
-            value, rows, _ = self.at(y, t)
-            change = _solved(rows, normal, -value)
-            y = y + change
-            sizes.append(np.linalg.norm(change, axis=1) / np.linalg.norm(y, axis=1))
-        return y, sizes
 
-    def _tangent(self, x: Complex, t: Array, normal: Complex) -> Complex:
-        _, rows, change = self.at(x, t)
-        return _solved(rows, normal, -change)
+def _ends(both: Complex, x: Complex) -> Complex:
+    """The regular solutions at t = 1 that Newton's method leads to from near it."""
+    one = np.ones(len(x))
+    y, sizes = _newton(both, x, one, x, LAST)
+    _, rows, _ = _at(both, y, one)
+    regular = (sizes[0] < CLOSE) & (np.linalg.cond(_bordered(rows, x)) < SINGULAR)
+    return np.asarray((y / np.linalg.norm(y, axis=1, keepdims=True))[regular])
+
+
+def _newton(both: Complex, y: Complex, t: Array, normal: Complex, steps: int) -> tuple[Complex, list[Array]]:
+    """Points after some steps at right angles to a vector, and the relative length of each step."""
+    sizes = []
+    for _ in range(steps):
+        value, rows, _ = _at(both, y, t)
+        change = _solved(rows, normal, -value)
+        y = y + change
+        sizes.append(np.linalg.norm(change, axis=1) / np.linalg.norm(y, axis=1))
+    return y, sizes
 
 
 def _bordered(rows: Complex, normal: Complex) -> Complex:

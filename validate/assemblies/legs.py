@@ -29,13 +29,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.cars.car import direction
+from validate.spanning_tree.cut import car_directions
 
 Array = NDArray[np.float64]
 
 CHASSIS = "chassis"
 CONDITIONS = 6
-UNIT = np.eye(4)
+UNIT, NONE = np.eye(4), np.zeros((4, 4))
 
 
 def _before(vector: Array) -> Array:
@@ -50,12 +50,12 @@ def _after(vector: Array) -> Array:
     return np.array([[0, -x, -y, -z], [x, 0, z, -y], [y, -z, 0, x], [z, y, -x, 0]])
 
 
-def _form(turns: Array, both: Array, moves: Array) -> Array:
+def _form(turns: Array, both: Array, moves: Array = NONE) -> Array:
     """The symmetric matrix of e^T turns e + e^T both g + g^T moves g, (8, 8)."""
     return np.block([[(turns + turns.T) / 2, both / 2], [both.T / 2, moves]])
 
 
-STUDY = _form(np.zeros((4, 4)), UNIT, np.zeros((4, 4)))
+STUDY = _form(NONE, UNIT)
 """<e, g>."""
 
 
@@ -74,26 +74,24 @@ def forms(mechanism: Mapping[str, Any], places: Mapping[str, Array]) -> Array:
     knuckle = mechanism["roles"].get("knuckle")
     if knuckle is None:
         raise NotOnLegsError("the mechanism names no knuckle, whose role is not given")
-    body = mechanism["bodies"][knuckle]
     # About the middle of the knuckle, in its size, numbers are of order one.
-    middle = np.mean([places[name] for name in body], axis=0)
-    size = max(float(np.abs(places[name] - middle).max()) for name in places)
+    middle = np.mean([places[name] for name in mechanism["bodies"][knuckle]], axis=0)
+    size = max(float(np.abs(place - middle).max()) for place in places.values())
     local = {name: (place - middle) / size for name, place in places.items()}
-    found = [STUDY, *_conditions(mechanism, knuckle, local)]
+    found = np.array([STUDY, *_conditions(mechanism, knuckle, local)])
     if len(found) != CONDITIONS + 1:
         raise NotOnLegsError(
             f"{len(found) - 1} conditions hold {knuckle}, and assemblies are counted of {CONDITIONS}: rods, "
             "arms on hinges, a slide and the inputs"
         )
-    stacked = np.array(found)
-    return np.asarray(stacked / np.abs(stacked).max(axis=(1, 2), keepdims=True))
+    return np.asarray(found / np.abs(found).max(axis=(1, 2), keepdims=True))
 
 
 def _conditions(mechanism: Mapping[str, Any], knuckle: str, at: Mapping[str, Array]) -> Iterator[Array]:
     bodies, slides, inputs = mechanism["bodies"], mechanism["slides"], mechanism["inputs"].values()
-    body = set(bodies[knuckle])
-    driven = {slide for one in inputs for slide in _listed(one.get("travel", ()))}
-    still = {*bodies[CHASSIS]}
+    body, still = set(bodies[knuckle]), set(bodies[CHASSIS])
+    travels = [one["travel"] for one in inputs if "travel" in one]
+    driven = {slide for one in travels for slide in ((one,) if isinstance(one, str) else one)}
     for name, slide in slides.items():
         if slide["body"] == CHASSIS and name in driven:
             still.update(slide["points"])
@@ -107,8 +105,8 @@ def _conditions(mechanism: Mapping[str, Any], knuckle: str, at: Mapping[str, Arr
                 yield from (on_plane(at[point], axis) for axis in np.eye(3))
             else:
                 yield from (at_distance(at[point], at[end]) for end in sorted(hinge))
-    for one, other in (*mechanism["rods"].values(), *(i["distance"] for i in inputs if "distance" in i)):
-        for end, far in ((one, other), (other, one)):
+    for ends in (*mechanism["rods"].values(), *(one["distance"] for one in inputs if "distance" in one)):
+        for end, far in (ends, ends[::-1]):
             if end in body and far in still:
                 yield at_distance(at[end], at[far])
     for slide in slides.values():
@@ -120,12 +118,7 @@ def _conditions(mechanism: Mapping[str, Any], knuckle: str, at: Mapping[str, Arr
                 yield on_plane_of_body(at[fixed], normal)
     for one in inputs:
         if one.get("height") in body:
-            normal = direction(mechanism["up"], mechanism["right"], one["along"])
-            yield on_plane(at[one["height"]], normal)
-
-
-def _listed(names: Any) -> tuple[str, ...]:
-    return (names,) if isinstance(names, str) else tuple(names)
+            yield on_plane(at[one["height"]], car_directions(mechanism)[one["along"]])
 
 
 def at_distance(point: Array, fixed: Array) -> Array:
@@ -138,10 +131,10 @@ def at_distance(point: Array, fixed: Array) -> Array:
 def on_plane(point: Array, normal: Array) -> Array:
     """A point of the body stays on the plane through it with a fixed normal."""
     n = _before(normal)
-    return _form(n.T @ _after(point) - (normal @ point) * UNIT, 2 * n.T, np.zeros((4, 4)))
+    return _form(n.T @ _after(point) - (normal @ point) * UNIT, 2 * n.T)
 
 
 def on_plane_of_body(fixed: Array, normal: Array) -> Array:
     """A fixed point stays on the plane through it that the body carries, with a normal of the body."""
     b = _after(normal)
-    return _form(b.T @ _before(fixed) - (normal @ fixed) * UNIT, -2 * b.T, np.zeros((4, 4)))
+    return _form(b.T @ _before(fixed) - (normal @ fixed) * UNIT, -2 * b.T)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +14,7 @@ from validate.assemblies.legs import NotOnLegsError
 from validate.output.table import Part, Table
 
 SHIPPED = ("bounce", "off-axis-strut", "double-wishbone", "five-link")
-HEAD = ("scene", "held", "paths", "candidates", "certified", "distinct", "real", "the drawing's")
+NUMBERS = ("paths", "candidates", "certified", "distinct", "real")
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,15 @@ class SceneCount:
     def found(self) -> bool:
         """Whether two runs agree, and the drawing's is among them."""
         return self.counted is not None and self.counted.agreed and self.counted.drawn
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """As plain data."""
+        one, where = self.counted, {"scene": self.scene, "held": list(self.held)}
+        if one is None:
+            return {**where, "reason": self.reason}
+        numbers = (one.paths, one.candidates, one.certified, len(one.assemblies), one.real)
+        return {**where, **dict(zip(NUMBERS, numbers, strict=True)), "drawn": one.drawn, "agreed": one.agreed}
 
 
 def counts(name: str) -> Iterator[SceneCount]:
@@ -60,40 +69,26 @@ def _ways_to_hold(scene: Scene) -> list[tuple[str, ...]]:
     own = [name for name in scene.inputs if name not in steering and not known[name].moves_the_chassis]
     if len(own) != 1:
         return [(*own, *steering)]
-    others = [name for name, one in known.items() if one.kind in ("angle", "height")]
+    others = [name for name, one in known.items() if one.kind in ("arm", "height")]
     return [(name, *steering) for name in dict.fromkeys((*own, *others))]
 
 
 def parts(found: Sequence[SceneCount]) -> tuple[Part, ...]:
     """What was counted, for people."""
-    rows = [_row(one, one.counted) for one in found if one.counted is not None]
-    lines = [
-        f"{one.scene}, {' and '.join(one.held)}: not counted: {one.reason}" for one in found if one.reason
-    ]
-    table: list[Part] = [Table(HEAD, tuple(rows))] if rows else []
-    return (*table, *lines)
-
-
-def _row(one: SceneCount, counted: Counted) -> tuple[str, ...]:
-    candidates, certified = (" ".join(map(str, runs)) for runs in (counted.candidates, counted.certified))
-    numbers = (str(counted.paths), candidates, certified, str(len(counted.assemblies)), str(counted.real))
-    return (one.scene, " ".join(one.held), *numbers, "real" if counted.drawn else "not found")
+    rows = tuple(
+        (
+            *(one.scene, " ".join(one.held)),
+            *(str(one.data[name]).strip("[]").replace(",", "") for name in NUMBERS),
+            "real" if one.data["drawn"] else "not found",
+        )
+        for one in found
+        if one.counted is not None
+    )
+    head = ("scene", "held", *NUMBERS, "the drawing's")
+    why = (f"{one.scene}, {' and '.join(one.held)}: not counted: {one.reason}" for one in found if one.reason)
+    return (*([Table(head, rows)] if rows else ()), *why)
 
 
 def data(found: Sequence[SceneCount]) -> dict[str, Any]:
     """The same for programs."""
-    return {"counts": [{"scene": one.scene, "held": list(one.held), **_data(one)} for one in found]}
-
-
-def _data(one: SceneCount) -> Mapping[str, Any]:
-    if one.counted is None:
-        return {"reason": one.reason}
-    return {
-        "paths": one.counted.paths,
-        "candidates": list(one.counted.candidates),
-        "certified": list(one.counted.certified),
-        "distinct": len(one.counted.assemblies),
-        "real": one.counted.real,
-        "drawn": one.counted.drawn,
-        "agreed": one.counted.agreed,
-    }
+    return {"counts": [one.data for one in found]}

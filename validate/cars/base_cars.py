@@ -15,10 +15,11 @@ import numpy as np
 
 from pointcoord import PointcoordError, Scene, built_in_scenes
 from pointcoord.mechanism import shipped
-from validate.cars.car import Car, Closure
+from validate.cars.car import Car
 from validate.cars.input_ends import condition, drawn_inputs, end
 
 ALIKE = 5.0  # times the condition number of the base car by its own inputs: what holds some freedom hardly
+Names = tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Variant:
     """
 
     suspension: str
-    closure: Closure
+    closure: str
     scene: str = field(default="", compare=False)
 
     @cached_property
@@ -39,13 +40,13 @@ class Variant:
         """The scene of the base car."""
         return Scene.load(self.scene)
 
-    @property
+    @cached_property
     def base(self) -> Car:
         """A car to make others from."""
         return Car.of(self.base_scene)
 
     @property
-    def chassis_motions(self) -> tuple[str, ...]:
+    def chassis_motions(self) -> Names:
         """Inputs that move the whole car."""
         return tuple(name for name, one in self.base.structure.inputs.items() if one.moves_the_chassis)
 
@@ -60,18 +61,23 @@ class Variant:
         return bool(self.base_scene.mechanism.topology.left_out)
 
     @cached_property
-    def input_sets(self) -> tuple[tuple[str, ...], ...]:
+    def input_sets(self) -> tuple[Names, ...]:
         """Sets of inputs that move the mechanism, that of the base car's scene first."""
-        base = self.base
         own = tuple(name for name in self.base_scene.inputs if name not in self.chassis_motions)
-        limit = ALIKE * condition(base, drawn_inputs(base, own))
-        return own, *(one for one in _moving_sets(base, len(own), limit) if set(one) != set(own))
+        limit = ALIKE * condition(self.base, drawn_inputs(self.base, own))
+        return own, *(one for one in _moving_sets(self.base, len(own), limit) if set(one) != set(own))
 
     @cached_property
-    def ending_sets(self) -> tuple[tuple[str, ...], ...]:
+    def ending_sets(self) -> tuple[Names, ...]:
         """Those of them of which some input has an end, from the drawing of the base car."""
-        base = self.base
-        return tuple(names for names in self.input_sets if any(_ends(base, names, one) for one in names))
+        return tuple(names for names in self.input_sets if any(self._ends(names, one) for one in names))
+
+    def _ends(self, inputs: Names, driven: str) -> bool:
+        home = drawn_inputs(self.base, inputs)
+        try:
+            return any(end(self.base, home, driven, ahead) is not None for ahead in (False, True))
+        except PointcoordError:
+            return False
 
     @property
     def words(self) -> str:
@@ -89,7 +95,7 @@ def variants() -> tuple[Variant, ...]:
     return tuple(sorted(known, key=lambda v: (v.suspension, v.closure != "drawn", v.closure)))
 
 
-def variants_of(suspension: str | None = None, closure: Closure | None = None) -> list[Variant]:
+def variants_of(suspension: str | None = None, closure: str | None = None) -> list[Variant]:
     """Those that are asked for.
 
     Args:
@@ -116,38 +122,28 @@ def _of_scene(name: str) -> Variant:
     return Variant(part.name, part.closure, name)
 
 
-def input_sets(car: Car) -> tuple[tuple[str, ...], ...]:
+def input_sets(car: Car) -> tuple[Names, ...]:
     """Sets of inputs that move a car; of a shipped mechanism those that move its base car."""
     for variant in variants():
         if (variant.suspension, variant.closure, None) == (car.suspension, car.closure, car.tables):
             return variant.input_sets
-    known = car.structure.inputs
-    each = (_moving_sets(car, size) for size in range(1, len(known) + 1))
+    each = (_moving_sets(car, size) for size in range(1, len(car.structure.inputs) + 1))
     return next((sets for sets in each if sets), ())
 
 
-def _moving_sets(car: Car, size: int, limit: float = np.inf) -> tuple[tuple[str, ...], ...]:
+def _moving_sets(car: Car, size: int, limit: float = np.inf) -> tuple[Names, ...]:
     """The sets of so many inputs that are as many as there are freedoms, and hold them all.
 
     Args:
         limit: of the condition number of the drawing.
     """
-    inputs = car.structure.inputs
-    names = [name for name, one in inputs.items() if not one.moves_the_chassis]
-    return tuple(chosen for chosen in combinations(names, size) if _moves(car, chosen, limit))
 
+    def moves(inputs: Names) -> bool:
+        try:
+            home = drawn_inputs(car, inputs)
+            return set(home) == set(inputs) and condition(car, home) < limit
+        except PointcoordError:
+            return False
 
-def _ends(car: Car, inputs: tuple[str, ...], driven: str) -> bool:
-    home = drawn_inputs(car, inputs)
-    try:
-        return any(end(car, home, driven, ahead) is not None for ahead in (False, True))
-    except PointcoordError:
-        return False
-
-
-def _moves(car: Car, inputs: tuple[str, ...], limit: float) -> bool:
-    try:
-        home = drawn_inputs(car, inputs)
-        return set(home) == set(inputs) and condition(car, home) < limit
-    except PointcoordError:
-        return False
+    names = [name for name, one in car.structure.inputs.items() if not one.moves_the_chassis]
+    return tuple(filter(moves, combinations(names, size)))

@@ -1,8 +1,8 @@
-"""A car to try: its hardpoints and axes, and what closes its drawing; turned, moved, scaled, mirrored."""
+"""A car to try: hardpoints, axes, what closes its drawing; turned, moved, scaled, mirrored; its scenes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.scene.scene_file import MechanismPart
 from validate.spanning_tree.cut import car_directions
 
 Array = NDArray[np.float64]
-Points = dict[str, tuple[float, float, float]]
-Closure = str  # what closes a drawing, as a scene names it
+Point = tuple[float, float, float]
+Points = dict[str, Point]
+# A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.
+Law = float | Sequence[float] | Mapping[str, Any]
 
 UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
 
@@ -35,31 +38,24 @@ class Car:
         wheel_radius: mm; needed by inputs at the wheel's contact point alone.
     """
 
-    points: Mapping[str, tuple[float, float, float]]
+    points: Mapping[str, Point]
     side: str = "left"
-    up: tuple[float, float, float] = UP
-    right: tuple[float, float, float] = RIGHT
-    closure: Closure = "drawn"
+    up: Point = UP
+    right: Point = RIGHT
+    closure: str = "drawn"
     suspension: str = "macpherson"
     tables: Mapping[str, Any] | None = None
     wheel_radius: float | None = None
 
     @classmethod
-    def of(cls, scene: Scene) -> Car:
-        """The car of a scene."""
-        return cls._of(scene.mechanism)
-
-    @classmethod
-    def of_mechanism(cls, content: Mapping[str, Any]) -> Car:
-        """The car of the `mechanism` of a scene's content.
+    def of(cls, part: Scene | MechanismPart | Mapping[str, Any]) -> Car:
+        """The car of a scene, or of the `mechanism` of one's content.
 
         Raises:
             SceneError: it is no car.
         """
-        return cls._of(MechanismPart.checked(content, "a car"))
-
-    @classmethod
-    def _of(cls, part: MechanismPart) -> Car:
+        part = part.mechanism if isinstance(part, Scene) else part
+        part = part if isinstance(part, MechanismPart) else MechanismPart.checked(part, "a car")
         given = {name: getattr(part, name) for name in ("title", *TABLES)}
         # A shipped mechanism has none of its own.
         shipped = not (given["bodies"] or given["parts"])
@@ -87,11 +83,7 @@ class Car:
         Raises:
             SceneError: it is no car.
         """
-        return self._part.file.structures[self.closure]
-
-    @property
-    def _part(self) -> MechanismPart:
-        return MechanismPart.checked(self.mechanism, "a car")
+        return MechanismPart.checked(self.mechanism, "a car").file.structures[self.closure]
 
     @property
     def array(self) -> dict[str, Array]:
@@ -103,42 +95,88 @@ class Car:
         """Its largest extent along an axis, mm."""
         return float(np.ptp(np.array(list(self.points.values())), axis=0).max())
 
+    def room(self, name: str, share: tuple[float, float]) -> float:
+        """A way of an input that suits the car.
+
+        Args:
+            share: rad if it is an angle, else parts of the car's size.
+        """
+        return share[0] if self.structure.inputs[name].unit == "rad" else share[1] * self.size
+
     def direction(self, name: str) -> Array:
         """A direction of the car, unit vector: up, right, down, left, forward (up x right) or rearward."""
-        return direction(self.up, self.right, name)
+        return car_directions({"up": self.up, "right": self.right})[name]
 
     def drawn_as(self, points: Mapping[str, Array]) -> Car:
         """The car with other hardpoints."""
-        return replace(self, points=as_tuples(points))
+        return replace(self, points={name: as_tuple(place) for name, place in points.items()})
+
+    def _each(self, put: Callable[[Array], Array]) -> Car:
+        return self.drawn_as({name: put(place) for name, place in self.array.items()})
+
+    def mirrored(self) -> Car:
+        """The same suspension on the other side of the car, mirrored in the plane through the origin."""
+        right, side = np.array(self.right), "left" if self.side == "right" else "right"
+        return replace(self._each(lambda place: place - 2.0 * (place @ right) * right), side=side)
+
+    def turned(self, turn: Array) -> Car:
+        """The whole car turned by an orthogonal matrix of determinant 1, its axes with it."""
+        up, right = (as_tuple(turn @ np.array(axis)) for axis in (self.up, self.right))
+        return replace(self._each(lambda place: turn @ place), up=up, right=right)
+
+    def moved(self, away: Array) -> Car:
+        """The whole car displaced, mm."""
+        return self._each(lambda place: place + away)
+
+    def scaled(self, scale: float) -> Car:
+        """All lengths of the car multiplied, as seen from the origin."""
+        radius = None if self.wheel_radius is None else scale * self.wheel_radius
+        return replace(self._each(lambda place: scale * place), wheel_radius=radius)
 
 
-def direction(up: Sequence[float], right: Sequence[float], name: str) -> Array:
-    """A direction by its name from a car's axes, see `Car.direction`."""
-    return car_directions({"up": up, "right": right})[name]
+def content_of(
+    car: Car,
+    laws: Mapping[str, Law],
+    *,
+    start: float = 0.0,
+    stop: float | None = None,
+    samples: int | None = None,
+    tolerance: float = 1e-9,
+    effects: Sequence[str] | None = None,
+    title: str = "",
+) -> dict[str, Any]:
+    """The content of a scene: every scene that is made here is made by this function.
+
+    Args:
+        laws: of the inputs, rad and mm over s.
+        start, stop: s; without a stop there is a single instant.
+        samples: instants; three of a motion if not given.
+        tolerance: mm.
+        effects: if not given all that the car has and every model gives.
+    Raises:
+        SceneError: it is no scene, and no effects are given.
+    """
+    stop = start if stop is None else stop
+    content = {
+        **({"title": title} if title else {}),
+        "effects": list(effects or ()),
+        "tolerance": tolerance,
+        "mechanism": car.mechanism,
+        "inputs": {name: _input(law) for name, law in laws.items()},
+        "time": {"start": start, "stop": stop, "samples": samples or (1 if stop == start else 3)},
+    }
+    if effects is not None:
+        return content
+    # Gradients follow from the rest, and take as long; trees of joints have no jerks.
+    had = (EFFECTS[name] for name in Scene.from_mapping(content).mechanism.effects)
+    plain = [one.name for one in had if not (one.way or one.base) and one.derivative <= 2]
+    return content | {"effects": plain}
 
 
-def other_side(car: Car) -> Car:
-    """The same suspension on the other side of the car, mirrored in the plane through the origin."""
-    right = np.array(car.right)
-    there = car.drawn_as({name: place - 2.0 * (place @ right) * right for name, place in car.array.items()})
-    return replace(there, side="left" if car.side == "right" else "right")
-
-
-def turned(car: Car, turn: Array) -> Car:
-    """The whole car turned by an orthogonal matrix of determinant 1, its axes with it."""
-    there = car.drawn_as({name: turn @ place for name, place in car.array.items()})
-    return replace(there, up=as_tuple(turn @ np.array(car.up)), right=as_tuple(turn @ np.array(car.right)))
-
-
-def moved(car: Car, away: Array) -> Car:
-    """The whole car displaced, mm."""
-    return car.drawn_as({name: place + away for name, place in car.array.items()})
-
-
-def scaled(car: Car, scale: float) -> Car:
-    """All lengths of the car multiplied, as seen from the origin."""
-    there = car.drawn_as({name: scale * place for name, place in car.array.items()})
-    return there if car.wheel_radius is None else replace(there, wheel_radius=scale * car.wheel_radius)
+def _input(law: Law) -> dict[str, Any]:
+    if isinstance(law, Mapping):
+        return dict(law)
+    return {"polynomial": list(law)} if isinstance(law, Sequence) else {"constant": float(law)}
 
 
 def rotation(axis: int, cosine: float, sine: float) -> Array:
@@ -150,23 +188,13 @@ def rotation(axis: int, cosine: float, sine: float) -> Array:
     return turn
 
 
-def any_rotation(seed: int) -> Array:
+def any_rotation(seed: int | np.random.Generator) -> Array:
     """A turn drawn at random, the same for the same seed."""
-    return random_rotation(np.random.default_rng(seed))
-
-
-def random_rotation(rng: np.random.Generator) -> Array:
-    """A turn drawn at random."""
-    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
     return np.asarray(turn * np.sign(np.linalg.det(turn)))
 
 
-def as_tuples(points: Mapping[str, Array]) -> Points:
-    """Plain numbers, as a scene has them."""
-    return {name: as_tuple(place) for name, place in points.items()}
-
-
-def as_tuple(vector: Array) -> tuple[float, float, float]:
+def as_tuple(vector: Array) -> Point:
     """The three numbers of a vector."""
     x, y, z = (float(component) for component in vector)
     return x, y, z

@@ -12,13 +12,12 @@ stop some 1e-12 of its length before.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from pointcoord import Scene, drawing_stands, simulate
-from validate.cars.car import Car
-from validate.cars.scene_content import Law, content_of
+from validate.cars.car import Car, Law, content_of
 
 Inputs = dict[str, float]
 
@@ -28,8 +27,7 @@ Inputs = dict[str, float]
 NEAR = (1e-8, 1e-9, 2e-11)
 
 
-@dataclass(frozen=True)
-class End:
+class End(NamedTuple):
     """An end of an input, the others held.
 
     Attributes:
@@ -41,6 +39,11 @@ class End:
     reach: float
 
 
+def at(car: Car, laws: Mapping[str, Law], effects: tuple[str, ...] = ()) -> Scene:
+    """The scene of one instant."""
+    return Scene.from_mapping(content_of(car, laws, effects=effects))
+
+
 def drawn_inputs(car: Car, inputs: Collection[str] = ("arm_angle", "rack")) -> Inputs:
     """The inputs' values in the drawing once it is closed, rad and mm.
 
@@ -48,15 +51,6 @@ def drawn_inputs(car: Car, inputs: Collection[str] = ("arm_angle", "rack")) -> I
         PointcoordError: it is no car, its drawing does not close, or it has other freedoms.
     """
     return drawing_stands.drawn_inputs(at(car, dict.fromkeys(inputs, 1.0)))
-
-
-def room(car: Car, name: str, share: tuple[float, float]) -> float:
-    """A way of an input that suits the car.
-
-    Args:
-        share: rad if it is an angle, else parts of the car's size.
-    """
-    return share[0] if car.structure.inputs[name].unit == "rad" else share[1] * car.size
 
 
 def condition(car: Car, inputs: Mapping[str, float]) -> float:
@@ -87,8 +81,12 @@ def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | 
     Raises:
         PointcoordError: there is no such pose, or no straight way from the drawing to the end.
     """
-    there = redrawn(car, held)
-    ends = drawing_stands.reach_of(at(there, held), driven)
+
+    def speed(value: float) -> float:
+        velocity = simulate(at(car, {**held, driven: [value, 1.0]}, ("velocity",))).velocity
+        return float(np.linalg.norm([velocity[name][0] for name in velocity]))
+
+    ends = drawing_stands.reach_of(at(redrawn(car, held), held), driven)
     other, this = ends if ahead else ends[::-1]
     if not this.limits:
         return None
@@ -96,19 +94,10 @@ def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | 
     for near in NEAR:
         nearer = value - near * (reach if ahead else -reach)
         farther = value - 4.0 * near * (reach if ahead else -reach)
-        slow, fast = (_speed(car, {**held, driven: [at, 1.0]}) for at in (farther, nearer))
+        slow, fast = speed(farther), speed(nearer)
         grown = (fast / slow) ** 2
         # Four times as near a fold it is 4, but for what the end before is off.
         if not 2.0 < grown < 8.0:
             return None
         value = nearer + (nearer - farther) / (grown - 1.0)
     return End(value, reach)
-
-
-def _speed(car: Car, laws: Mapping[str, Law]) -> float:
-    velocity = simulate(at(car, laws, ("velocity",))).velocity
-    return float(np.linalg.norm([velocity[name][0] for name in velocity]))
-
-
-def at(car: Car, laws: Mapping[str, Law], effects: tuple[str, ...] = ()) -> Scene:
-    return Scene.from_mapping(content_of(car, laws, effects=effects))

@@ -19,11 +19,14 @@ import numpy as np
 
 from pointcoord import PointcoordError, Scene
 from validate.cars.base_cars import Variant
-from validate.cars.input_ends import End, Inputs, drawn_inputs, end, redrawn, room
+from validate.cars.car import content_of
+from validate.cars.input_ends import Inputs, drawn_inputs, end, redrawn
 from validate.cars.random_cars import RandomCar, random_car
-from validate.cars.scene_content import content_of
 
 Kind = Literal["regular", "near an end", "singular drawing"]
+Random = np.random.Generator
+Times = tuple[float, float]
+"""Start and stop, s."""
 KINDS: tuple[Kind, ...] = ("regular", "near an end", "singular drawing")
 SHARES = (0.88, 0.09, 0.03)  # of the kinds
 SEED = 20261123  # another recipe for the scenes takes another seed: a store of results keeps it
@@ -47,37 +50,30 @@ def random_scene(number: int) -> RandomScene:
     rng = np.random.default_rng([SEED, number])
     kind: Kind = KINDS[int(rng.choice(len(KINDS), p=SHARES))]
     drawn = random_car(rng)
-    home = drawn_inputs(drawn.car, drawn.inputs)
-    found = None if kind == "regular" else _some_end(rng, drawn, home)
-    if found is None:
-        kind = "regular"
-    elif kind == "singular drawing":
-        drawn, home = _drawn_near(rng, drawn, home, *found)
+    home, driven, last = drawn_inputs(drawn.car, drawn.inputs), "", 0.0
+    if kind != "regular":
+        driven, last = _some_end(rng, drawn, home)
+        kind = kind if driven else "regular"
+    if kind == "singular drawing":
+        drawn, home = _drawn_near(rng, drawn, home, driven, last)
     duration = 10.0 ** rng.uniform(-3.0, 2.0)
     start = float(rng.choice([0.0, rng.uniform(-duration, duration)]))
     times = start, start + duration
-    if kind == "near an end" and found is not None:
-        driven, last = found
+    if kind == "near an end":
         laws: dict[str, Any] = {name: {"constant": value} for name, value in home.items()}
-        laws[driven] = _approach(rng, home[driven], last.value, *times)
+        laws[driven] = _approach(rng, home[driven], last, times)
     else:
-        laws = {name: _about(rng, drawn, name, value, LARGEST, *times) for name, value in home.items()}
+        laws = {name: _about(rng, drawn, name, value, LARGEST, times) for name, value in home.items()}
     for name in drawn.variant.chassis_motions:
         if rng.random() < 0.5:
-            laws[name] = _about(rng, drawn, name, 0.0, HEAVED, *times)
-    content = content_of(
-        drawn.car,
-        laws,
-        start=start,
-        stop=start + duration,
-        tolerance=1e-9 * drawn.scale,
-        title=f"random car {number}",
-    )
+            laws[name] = _about(rng, drawn, name, 0.0, HEAVED, times)
+    tolerance, title = 1e-9 * drawn.scale, f"random car {number}"
+    content = content_of(drawn.car, laws, start=start, stop=times[1], tolerance=tolerance, title=title)
     return RandomScene(number, drawn.variant, kind, Scene.from_mapping(content))
 
 
-def _some_end(rng: np.random.Generator, drawn: RandomCar, home: Inputs) -> tuple[str, End] | None:
-    """An input and one of its ends, the others as drawn; None if no input has any."""
+def _some_end(rng: Random, drawn: RandomCar, home: Inputs) -> tuple[str, float]:
+    """An input and the value of one of its ends, the others as drawn; no name if no input has any."""
     ways = [(name, ahead) for name in drawn.inputs for ahead in (False, True)]
     for place in rng.permutation(len(ways)):
         driven, ahead = ways[int(place)]
@@ -86,18 +82,18 @@ def _some_end(rng: np.random.Generator, drawn: RandomCar, home: Inputs) -> tuple
         except PointcoordError:
             continue
         if last is not None:
-            return driven, last
-    return None
+            return driven, last.value
+    return "", 0.0
 
 
 def _drawn_near(
-    rng: np.random.Generator, drawn: RandomCar, home: Inputs, driven: str, last: End
+    rng: Random, drawn: RandomCar, home: Inputs, driven: str, last: float
 ) -> tuple[RandomCar, Inputs]:
     """The car drawn anew near an end, and its inputs there; farther from it where it must be."""
     left = 10.0 ** rng.uniform(NEAREST, -1.0)
     while True:
         try:
-            there = redrawn(drawn.car, home | {driven: last.value + left * (home[driven] - last.value)})
+            there = redrawn(drawn.car, home | {driven: last + left * (home[driven] - last)})
             return replace(drawn, car=there), drawn_inputs(there, drawn.inputs)
         except PointcoordError:
             if left == 1.0:
@@ -106,24 +102,12 @@ def _drawn_near(
 
 
 def _about(
-    rng: np.random.Generator,
-    drawn: RandomCar,
-    name: str,
-    value: float,
-    largest: tuple[float, float],
-    start: float,
-    stop: float,
+    rng: Random, drawn: RandomCar, name: str, value: float, largest: tuple[float, float], times: Times
 ) -> dict[str, Any]:
-    """The law of an input about a value or some way from it."""
-    middle = value + float(rng.choice([0.0, rng.uniform(-1.0, 1.0)])) * room(drawn.car, name, OFFSET)
-    return _law(rng, middle, room(drawn.car, name, largest), start, stop)
-
-
-def _law(
-    rng: np.random.Generator, middle: float, largest: float, start: float, stop: float
-) -> dict[str, Any]:
-    """An input about `middle` that moves by up to about `largest` from start to stop, often much less."""
-    reach, duration = largest * 10.0 ** rng.uniform(-5.0, 0.0), stop - start
+    """An input about a value or some way from it, that moves by up to about `largest`, often much less."""
+    middle = value + float(rng.choice([0.0, rng.uniform(-1.0, 1.0)])) * drawn.car.room(name, OFFSET)
+    reach = drawn.car.room(name, largest) * 10.0 ** rng.uniform(-5.0, 0.0)
+    (start, stop), duration = times, times[1] - times[0]
     kind = rng.choice(["constant", "polynomial", "sine", "table"])
     if kind == "constant":
         return {"constant": middle}
@@ -135,25 +119,24 @@ def _law(
         return {"sine": {**wave, "angular_frequency": rng.uniform(0.1, 4.0) / duration, "offset": middle}}
     count = int(rng.integers(4, 7))
     inner = np.arange(1, count - 1) + rng.uniform(-0.3, 0.3, count - 2)
-    times = [start, *(start + duration * inner / (count - 1)).tolist(), stop]
-    return {"table": {"times": times, "values": (middle + reach * rng.uniform(-1.0, 1.0, count)).tolist()}}
+    instants = [start, *(start + duration * inner / (count - 1)).tolist(), stop]
+    return {"table": {"times": instants, "values": (middle + reach * rng.uniform(-1.0, 1.0, count)).tolist()}}
 
 
-def _approach(
-    rng: np.random.Generator, start_value: float, limit: float, start: float, stop: float
-) -> dict[str, Any]:
+def _approach(rng: Random, drawn: float, limit: float, times: Times) -> dict[str, Any]:
     """An input that goes from its drawn value close to a limit, by one time in ten past it."""
     left = 10.0 ** rng.uniform(NEAREST, -1.0) * float(rng.choice([1.0, -1.0], p=[0.9, 0.1]))
-    end = limit + left * (start_value - limit)
+    end = limit + left * (drawn - limit)
     kind = rng.choice(["held", "straight", "slowing"])
     if kind == "held":
         return {"constant": end}
-    begin = end + rng.uniform(0.1, 1.0) * (start_value - end)
+    begin = end + rng.uniform(0.1, 1.0) * (drawn - end)
     if kind == "straight":
-        times = np.linspace(start, stop, 4)
         # The last value is `end` to the last bit, which no polynomial's would be.
-        return {"table": {"times": times.tolist(), "values": np.linspace(begin, end, 4).tolist()}}
+        return {
+            "table": {"times": np.linspace(*times, 4).tolist(), "values": np.linspace(begin, end, 4).tolist()}
+        }
     # end + (begin - end) cos, a quarter of a wave later: it arrives with no rate, but an acceleration.
-    speed = 0.5 * math.pi / (stop - start)
-    wave = {"amplitude": begin - end, "angular_frequency": speed, "phase": math.pi - speed * stop}
+    speed = 0.5 * math.pi / (times[1] - times[0])
+    wave = {"amplitude": begin - end, "angular_frequency": speed, "phase": math.pi - speed * times[1]}
     return {"sine": {**wave, "offset": end}}

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.cars.car import Car, any_rotation, moved, other_side, turned
+from validate.cars.car import Car, Law, any_rotation, content_of
 from validate.cars.paper_car import PAPER
-from validate.cars.scene_content import Law, content_of
 from validate.formulations.reference_solution import reference_instant
 
 Array = NDArray[np.float64]
@@ -26,9 +25,8 @@ SQUARE = 1.5707963267948966  # rad: the arm angle at which rise and angle are mo
 def as_given(scene: Scene) -> Car:
     """The car of a scene, without points that are put where others are drawn."""
     car, others = Car.of(scene), scene.mechanism.structure.stand_ins
-    return replace(
-        car, points={n: p for n, p in car.points.items() if p != car.points.get(others.get(n, ""))}
-    )
+    given = {n: p for n, p in car.points.items() if p != car.points.get(others.get(n, ""))}
+    return replace(car, points=given)
 
 
 def _cars() -> dict[str, Car]:
@@ -41,10 +39,10 @@ def _cars() -> dict[str, Car]:
     for name, row in rows.items():
         points = {**cars[row["of"]].points, **{point: tuple(place) for point, place in row["points"].items()}}
         cars[name] = replace(cars[row["of"]], points=points, closure=row.get("closure", "drawn"))
-    other = other_side(cars["beside"])
     # The strut beside its ball joint on the other side of the car, leaning every way; and far away.
-    cars["other"] = turned(other, any_rotation(1))
-    cars["turned"] = moved(turned(other, any_rotation(9)), np.array([3e6, -2e6, 2e6]))
+    other = cars["beside"].mirrored()
+    cars["other"] = other.turned(any_rotation(1))
+    cars["turned"] = other.turned(any_rotation(9)).moved(np.array([3e6, -2e6, 2e6]))
     return cars
 
 
@@ -53,17 +51,15 @@ CARS: Mapping[str, Car] = _cars()
 PAPER_CAR, BESIDE_CAR = CARS["paper"], CARS["beside"]
 
 
-def scene_content(
-    car: Car, arm_angle: Law = SQUARE, rack: Law = 0.0, heave: Law | None = None, **settings: Any
-) -> dict[str, Any]:
+def scene_content(car: Car, arm_angle: Law = SQUARE, rack: Law = 0.0, **settings: Any) -> dict[str, Any]:
     """The content of a scene of a car that arm angle and rack drive, rad and mm over s.
+
+    Whatever is wrong with the car: that is for those who read the scene.
 
     Args:
         settings: as for `content_of`.
     """
-    laws = {"arm_angle": arm_angle, "rack": rack} | ({} if heave is None else {"heave": heave})
-    # Whatever is wrong with the car: that is for those who read the scene.
-    return content_of(car, laws, **{"effects": ASKED, **settings})
+    return content_of(car, {"arm_angle": arm_angle, "rack": rack}, **{"effects": ASKED, **settings})
 
 
 def drawn_angle(car: Car) -> float:

@@ -13,9 +13,8 @@ from functools import partial
 from typing import Any
 
 from validate.formulations.protocol import Solution
-from validate.hard.answer import Answer, Outcome
+from validate.hard.answer import MAP, NOT_ASKED, OURS, Answer, Outcome, Trial, try_scene
 from validate.hard.subjects import PAPER, SUBJECTS, Content, Subject, hyphens
-from validate.hard.trial import MAP, NOT_ASKED, OURS, Trial, try_scene
 from validate.reference import InfeasibleError
 
 SOLVERS = (OURS, "pointcoord-newton", "absolute", "relative")
@@ -56,7 +55,6 @@ RIGHT_OR_REFUSED = Expected(("right", "refused"))
 REFUSED = Expected(("refused",))
 # Of mechanisms that a model may refuse, and of which there may be no reference: then nothing is judged.
 IF_ANY = Expected(("right", "refused", "unjudged"))
-ByFormulation = Mapping[str, Expected]
 
 
 def right_from(least: float) -> Expected:
@@ -91,7 +89,7 @@ class Case:
     values: tuple[float, ...]
     scene: SceneAt
     subject: Subject
-    expected: ByFormulation
+    expected: Mapping[str, Expected]
     judge: Judge | None = None
     facts: Facts | None = None
     unit: str = "mm"
@@ -106,14 +104,14 @@ class Case:
         """Try one value; by a map as well if it is one of the few, where there is something to compare."""
         by_map = [MAP] if value in self.mapped else []
         trial = try_scene(value, self.content(value), [*self.expected, *by_map])
-        facts = dict(self.facts(self.subject, value)) if self.facts else {}
-        answers = list(trial.answers[: len(self.expected)])
-        if self.judge is not None:
-            answers = [self.judge(self.subject, value, trial, answer) for answer in answers]
+        answers, of_map = trial.answers[: len(self.expected)], trial.answers[len(self.expected) :]
+        if (judge := self.judge) is not None:
+            answers = tuple(judge(self.subject, value, trial, answer) for answer in answers)
         comparable = isinstance(trial.reference, Solution | InfeasibleError) or trial.reference is NOT_ASKED
         if trial.scene is not None and comparable:
-            answers += trial.answers[len(self.expected) :]
-        return replace(trial, answers=tuple(answers), facts={**trial.facts, **facts})
+            answers += of_map
+        facts = self.facts(self.subject, value) if self.facts else {}
+        return replace(trial, answers=answers, facts={**trial.facts, **facts})
 
     def without(self, formulations: Collection[str]) -> Case:
         """The same, tried by none of some formulations, such as those that are not installed."""
@@ -129,18 +127,16 @@ class Case:
         by_map = OURS in self.expected and MAP not in self.expected and not self.beyond
         return (self.values[len(self.values) // 2], self.values[-1]) if by_map else ()
 
-    def allowed(self, formulation: str) -> Expected:
-        """What a formulation may come to.
+    def unexpected(self, trial: Trial) -> tuple[Answer, ...]:
+        """The answers of a trial that are not allowed.
 
         A map may be refused, its effort being bounded; it answers only where the other method may.
         """
-        if formulation == MAP and MAP not in self.expected:
-            return RIGHT_OR_REFUSED if "right" in self.expected[OURS].outcomes else REFUSED
-        return self.expected[formulation]
-
-    def unexpected(self, trial: Trial) -> tuple[Answer, ...]:
-        """The answers of a trial that are not allowed."""
-        return tuple(a for a in trial.answers if not self.allowed(a.formulation).met(trial.value, a.outcome))
+        allowed = dict(self.expected)
+        if OURS in allowed:
+            of_map = RIGHT_OR_REFUSED if "right" in allowed[OURS].outcomes else REFUSED
+            allowed.setdefault(MAP, of_map)
+        return tuple(a for a in trial.answers if not allowed[a.formulation].met(trial.value, a.outcome))
 
     @property
     def behaviour(self) -> str:
@@ -167,19 +163,22 @@ class Case:
 
 
 def family(
-    scene: SceneAt,
+    cases: list[Case],
+    group: str,
     parameter: str,
     values: Values | Every,
-    expected: Expected | ByFormulation | Callable[[Subject], Expected] = RIGHT,
+    expected: Expected | Mapping[str, Expected] | Callable[[Subject], Expected] = RIGHT,
     subjects: Sequence[Subject] = SUBJECTS,
     *,
-    given: bool = True,
     name: str = "",
     why: str = "",
     suffix: str | None = None,
+    given: bool = True,
     **more: Any,
-) -> tuple[Case, ...]:
-    """A case for each of some mechanisms, see `Case`; those that are hard by nature are given to nobody.
+) -> Callable[[SceneAt], SceneAt]:
+    """Put the cases that a scene makes of some mechanisms at the end of some others, see `Case`.
+
+    Those that are hard by nature are given to nobody.
 
     Args:
         values: all that a single mechanism or the strut is tried at, the others at one of them; or of each.
@@ -187,29 +186,33 @@ def family(
         name, why: the scene's own name, and the first paragraph of its text, if not given.
         suffix: of the name; that of the mechanism if not given.
     """
-    made: Any = scene
-    while isinstance(made, partial):
-        made = made.func
 
-    def case(one: Subject) -> Case:
-        which = expected(one) if callable(expected) else expected
-        each = dict.fromkeys(SOLVERS, which) if isinstance(which, Expected) else which
-        refusable = set(each.values()) <= {REFUSED, RIGHT_OR_REFUSED}
-        some = values(one) if callable(values) else values
-        tried = values_of(one, some) if len(subjects) > 1 and not callable(values) else some
-        return Case(
-            name=(name or hyphens(made.__name__)) + (one.suffix if suffix is None else suffix),
-            why=why or reason_of(made),
-            parameter=parameter,
-            values=tuple(tried),
-            scene=scene,
-            subject=one,
-            expected=each,
-            given=given and (refusable or one.name not in HARD),
-            **more,
-        )
+    def rows(scene: SceneAt) -> SceneAt:
+        made: Any = scene.func if isinstance(scene, partial) else scene
+        for one in subjects:
+            which = expected(one) if callable(expected) else expected
+            each = dict.fromkeys(SOLVERS, which) if isinstance(which, Expected) else which
+            refusable = set(each.values()) <= {REFUSED, RIGHT_OR_REFUSED}
+            if callable(values):
+                tried = values(one)
+            else:
+                tried = values_of(one, values) if len(subjects) > 1 else values
+            case = Case(
+                name=(name or hyphens(made.__name__)) + (one.suffix if suffix is None else suffix),
+                group=group,
+                why=why or reason_of(made),
+                parameter=parameter,
+                values=tuple(tried),
+                scene=scene,
+                subject=one,
+                expected=each,
+                given=given and (refusable or one.name not in HARD),
+                **more,
+            )
+            cases.append(case)
+        return scene
 
-    return tuple(map(case, subjects))
+    return rows
 
 
 def reason_of(function: Callable[..., Any]) -> str:

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from typing import Any
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import End, reach_of
@@ -57,7 +56,7 @@ def last_value(
         ValueError: no end is near the place where pointcoord sees it.
     """
     there = held or subject.home
-    return _last_value(subject, driven, ahead, tuple(there[name] for name in subject.kinds))
+    return _last_value(subject, driven, ahead, tuple(there[name] for name in subject.driven))
 
 
 def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
@@ -65,11 +64,11 @@ def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
 
     Turns from the drawing have none of their own: they go round, or end where something else locks.
     """
-    drawn = tuple(subject.drawn[name] for name in subject.kinds)
+    drawn = tuple(subject.drawn[name] for name in subject.driven)
     return tuple(
         (name, bool(ahead))
-        for name, kind in subject.kinds.items()
-        if kind != "turn"
+        for name in subject.driven
+        if not subject.is_a("turn", name)
         for ahead, end in enumerate(_seen(subject, name, drawn))
         if end.limits
     )
@@ -77,11 +76,16 @@ def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
 
 @cache
 def _last_value(subject: Subject, driven: str, ahead: bool, values: Values) -> LastValue:
-    held: dict[str, Fraction | float] = dict(zip(subject.kinds, values, strict=True))
+    held = dict(zip(subject.driven, values, strict=True))
     low, high = _seen(subject, driven, values)
     reach, seen = high.value - low.value, Fraction((low, high)[ahead].value)
-    beyond = held | {driven: seen + Fraction(BEYOND * (reach if ahead else -reach))}
-    design = _drawn_at(subject, held)
+    # Drawn at a pose, to many digits, so that one input alone leads from there to its end.
+    plain = subject.plain
+    if held != subject.drawn:
+        pose = reference_instant(subject.scene, {name: (value, 0, 0) for name, value in held.items()})
+        plain["points"] = {name: pose.position[name] for name in plain["points"]}
+    design = Design.from_plain(plain)
+    beyond = {**held, driven: seen + Fraction(BEYOND * (reach if ahead else -reach))}
     try:
         reached(design, CLEAR, design.driven({name: (value, 0, 0) for name, value in beyond.items()}))
     except InfeasibleError as fold:
@@ -91,18 +95,9 @@ def _last_value(subject: Subject, driven: str, ahead: bool, values: Values) -> L
     raise ValueError(f"{driven} of {subject.name!r} has no end near {float(seen)!r}")
 
 
-def _drawn_at(subject: Subject, held: Mapping[str, Any]) -> Design:
-    """The mechanism drawn at a pose, to many digits, so that one input alone leads from there to its end."""
-    plain = subject.plain
-    if held != subject.drawn:
-        pose = reference_instant(subject.scene, {name: (value, 0, 0) for name, value in held.items()})
-        plain["points"] = {name: pose.position[name] for name in plain["points"]}
-    return Design.from_plain(plain)
-
-
 @cache
 def _seen(subject: Subject, driven: str, values: Values) -> tuple[End, End]:
     """Both ends of an input as pointcoord sees them, the others held at these values."""
-    held = dict(zip(subject.kinds, values, strict=True))
+    held = dict(zip(subject.driven, values, strict=True))
     there = subject.car if held == subject.drawn else drawn_at(subject.car, held)
     return reach_of(Scene.from_mapping(subject.absolute(held, there)), driven)

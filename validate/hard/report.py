@@ -8,15 +8,13 @@ from dataclasses import asdict
 from itertools import groupby
 from typing import Any, get_args
 
-from validate.hard.answer import Answer, Outcome
+from validate.hard.answer import MAP, Answer, Outcome
 from validate.hard.case import Case
 from validate.hard.run import Examined, as_expected, counts
-from validate.hard.trial import MAP
 from validate.output.report import counted_as
 from validate.output.table import Part, Table
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
-SIZES = ("error", "bound", "share", "condition")
 SHORT = 90  # characters of a reason in a table
 
 
@@ -32,22 +30,27 @@ def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
     case, values = result.case, result.case.values
     span = f"{values[0]:g}{f' to {values[-1]:g}' * (len(values) > 1)}, {counted_as(len(values), 'value')}"
     sizes = (f"error [{case.unit}]", f"bound [{case.unit}]", "of its bound", "condition")
+    rows = []
+    for name, found in counts([result]).items():
+        given = result.answers(name)
+        unlike = any(answer.formulation == name for _, answer in result.unexpected)
+        refused = [(value, a) for value, a in given if a.outcome == "refused"]
+        verdict = "NOT as expected" if unlike else "as expected"
+        verdict += "".join(f"; gives up at {value:g}: {short(a.reason)}" for value, a in refused[:1])
+        digits = _digits([answer for _, answer in given])
+        rows.append((name, str(len(given)), *_outcomes(found), *digits, verdict))
     lines: list[Part] = [
         f"{case.name}: {case.why}",
         f"  parameter: {case.parameter}, {span}",
         f"  expected: {case.behaviour}",
-        Table(
-            ("formulation", "tried", *OUTCOMES, *sizes, "verdict"),
-            tuple(_row(result, name) for name in counts([result])),
-            indent=2,
-        ),
+        Table(("formulation", "tried", *OUTCOMES, *sizes, "verdict"), tuple(rows), indent=2),
     ]
     if every_value:
-        rows = tuple(
+        each = tuple(
             (f"{value:g}", a.formulation, a.outcome, *_digits([a]), short(a.reason))
             for value, a in result.answers()
         )
-        lines.append(Table(("value", "formulation", "outcome", *sizes, "verdict"), rows, indent=2))
+        lines.append(Table(("value", "formulation", "outcome", *sizes, "verdict"), each, indent=2))
         lines += [
             f"  at {t.value:g}: {', '.join(f'{k}: {v}' for k, v in t.facts.items())}"
             for t in result.trials
@@ -60,17 +63,6 @@ def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
     return tuple(lines)
 
 
-def _row(result: Examined, name: str) -> tuple[str, ...]:
-    given = [answer for _, answer in result.answers(name)]
-    verdict = "as expected"
-    if any(answer.formulation == name for _, answer in result.unexpected):
-        verdict = "NOT as expected"
-    refused = [(value, a) for value, a in result.answers(name) if a.outcome == "refused"]
-    verdict += "".join(f"; gives up at {value:g}: {short(a.reason)}" for value, a in refused[:1])
-    outcomes: Counter[Outcome] = Counter(answer.outcome for answer in given)
-    return (name, str(len(given)), *_outcomes(outcomes), *_digits(given), verdict)
-
-
 def _outcomes(found: Mapping[Outcome, int]) -> list[str]:
     return [str(found.get(outcome) or ".") for outcome in OUTCOMES]
 
@@ -78,7 +70,7 @@ def _outcomes(found: Mapping[Outcome, int]) -> list[str]:
 def _digits(answers: Sequence[Answer]) -> list[str]:
     """The largest of each size; a share of a bound that is just below 1 is not rounded up to it."""
     found = []
-    for what in SIZES:
+    for what in ("error", "bound", "share", "condition"):
         most = max((x for a in answers if (x := getattr(a, what)) is not None), default=None)
         found.append("-" if most is None else "0.99" if 0.99 < most < 1.0 else f"{most:.2g}")
     return found
@@ -121,26 +113,23 @@ def listing_data(cases: Sequence[Case]) -> dict[str, Any]:
 
 def results_data(results: Sequence[Examined]) -> dict[str, Any]:
     """Everything, as plain data: each case with each trial."""
-    return {
-        "as_expected": as_expected(results),
-        "counts": {name: dict(found) for name, found in counts(results).items()},
-        "cases": [_case_data(result) for result in results],
-    }
+    cases = [
+        {
+            **_description(result.case),
+            "seconds": result.seconds,
+            "trials": [
+                {"value": t.value, "answers": [asdict(a) for a in t.answers], "facts": dict(t.facts)}
+                for t in result.trials
+            ],
+            "unexpected": [asdict(answer) | {"value": value} for value, answer in result.unexpected],
+        }
+        for result in results
+    ]
+    found = {name: dict(found) for name, found in counts(results).items()}
+    return {"as_expected": as_expected(results), "counts": found, "cases": cases}
 
 
 def _description(case: Case) -> dict[str, Any]:
     same = ("name", "group", "why", "parameter", "unit", "behaviour")
     expected = {name: asdict(one) for name, one in case.expected.items()}
     return {**{name: getattr(case, name) for name in same}, "values": list(case.values), "expected": expected}
-
-
-def _case_data(result: Examined) -> dict[str, Any]:
-    return {
-        **_description(result.case),
-        "seconds": result.seconds,
-        "trials": [
-            {"value": t.value, "answers": [asdict(a) for a in t.answers], "facts": dict(t.facts)}
-            for t in result.trials
-        ],
-        "unexpected": [asdict(answer) | {"value": value} for value, answer in result.unexpected],
-    }

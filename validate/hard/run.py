@@ -1,4 +1,4 @@
-"""Running cases: every value of the parameter is tried, whatever the ones before came to."""
+"""Cases tried one after the other, and what all of it comes to."""
 
 from __future__ import annotations
 
@@ -8,34 +8,38 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from validate.extras import MissingPackage
-from validate.hard.answer import Answer, Outcome
+from validate.hard.answer import Answer, Outcome, Trial, said
 from validate.hard.case import Case
-from validate.hard.trial import Trial, said
+
+ValueAndAnswer = tuple[float, Answer]
 
 
 @dataclass(frozen=True)
 class Examined:
-    """A case with its trials, in the order of its values, and how long they took, s."""
+    """A case with its trials, in the order of its values, and how long they took, s.
+
+    Answers come with the value of the parameter.
+    """
 
     case: Case
     trials: tuple[Trial, ...]
     seconds: float
 
-    def answers(self, formulation: str = "") -> tuple[tuple[float, Answer], ...]:
-        """What a formulation answered, or all did, each with the value of the parameter."""
+    def answers(self, formulation: str = "") -> tuple[ValueAndAnswer, ...]:
+        """What a formulation answered, or all did."""
         return tuple(
             (t.value, a) for t in self.trials for a in t.answers if formulation in ("", a.formulation)
         )
 
     @property
-    def unexpected(self) -> tuple[tuple[float, Answer], ...]:
-        """Answers that the case does not allow, each with its value."""
+    def unexpected(self) -> tuple[ValueAndAnswer, ...]:
+        """Answers that the case does not allow."""
         return tuple((trial.value, one) for trial in self.trials for one in self.case.unexpected(trial))
 
     @property
-    def wrong(self) -> tuple[tuple[float, Answer], ...]:
-        """Wrong numbers without a warning, each with its value."""
-        return tuple((trial.value, one) for trial in self.trials for one in trial.wrong)
+    def wrong(self) -> tuple[ValueAndAnswer, ...]:
+        """Wrong numbers without a warning."""
+        return tuple((value, one) for value, one in self.answers() if one.outcome == "wrong")
 
 
 def examine(case: Case) -> Examined:

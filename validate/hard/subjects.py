@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 from pointcoord import Scene, built_in_scenes
 from pointcoord.drawing_stands import drawn_inputs
-from validate.cars.car import Car
-from validate.cars.scene_content import Law, content_of
+from validate.cars.car import Car, Law, content_of
 from validate.hard.cars import ASKED, CARS, SQUARE, as_given, drawn_angle
 
 Content = dict[str, Any]
-# angle: 0 to pi from a direction; turn: any number of turns from the drawing; length.
-Kind = Literal["angle", "turn", "length"]
-KINDS: Mapping[str, Kind] = {"arm": "angle", "turn": "turn"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +44,13 @@ class Subject:
         return Scene.from_mapping(self.absolute(dict.fromkeys(self.driven, 0.0)))
 
     @cached_property
-    def kinds(self) -> Mapping[str, Kind]:
-        """Of each input that is driven."""
-        inputs = self.scene.mechanism.structure.inputs
-        return {name: KINDS.get(inputs[name].kind, "length") for name in self.driven}
-
-    @property
     def units(self) -> Mapping[str, str]:
-        """Of each input that is driven."""
-        return {name: "mm" if kind == "length" else "rad" for name, kind in self.kinds.items()}
+        """Of each input that is driven: rad or mm."""
+        return {name: self.scene.mechanism.structure.inputs[name].unit for name in self.driven}
+
+    def is_a(self, kind: str, driven: str) -> bool:
+        """Whether an input is of a kind: `arm`, an angle up to half a turn; `turn`, any number of turns."""
+        return self.scene.mechanism.structure.inputs[driven].kind == kind
 
     @property
     def heaves(self) -> bool:
@@ -84,30 +78,27 @@ class Subject:
         return self.level or self.drawn
 
     def content(
-        self,
-        rad: Law = 0.0,
-        mm: Law = 0.0,
-        heave: Law | None = None,
-        *,
-        car: Car | None = None,
-        scale: float = 1.0,
-        **settings: Any,
+        self, rad: Law = 0.0, mm: Law = 0.0, heave: Law | None = None, *, scale: float = 1.0, **settings: Any
     ) -> Content:
         """A scene in which every input moves about home by the law of its unit.
 
         Args:
             rad, mm: laws of angles and of lengths, from home.
-            car: in place of the mechanism as it is drawn.
             scale: of the car over the mechanism as it is drawn.
+            settings: as for `absolute`.
         """
         inputs = {
             name: moved_by(mm, scale * self.home[name]) if unit == "mm" else moved_by(rad, self.home[name])
             for name, unit in self.units.items()
         }
-        return self.absolute(inputs | ({} if heave is None else {"heave": heave}), car, **settings)
+        return self.absolute(inputs | ({} if heave is None else {"heave": heave}), **settings)
 
     def absolute(self, inputs: Mapping[str, Law], car: Car | None = None, **settings: Any) -> Content:
-        """A scene with these laws, which are not counted from home."""
+        """A scene with these laws, which are not counted from home.
+
+        Args:
+            car: in place of the mechanism as it is drawn. settings: as for `content_of`.
+        """
         return content_of(car or self.car, inputs, **{"effects": self.effects, **settings})
 
 
@@ -125,10 +116,8 @@ def moved_by(law: Law, home: float) -> Law:
     if not isinstance(law, Mapping):
         return home + law
     if "sine" in law:
-        wave = law["sine"]
-        return {"sine": {**wave, "offset": home + wave.get("offset", 0.0)}}
-    table = law["table"]
-    return {"table": {**table, "values": [home + value for value in table["values"]]}}
+        return {"sine": {**law["sine"], "offset": home + law["sine"].get("offset", 0.0)}}
+    return {"table": {**law["table"], "values": [home + value for value in law["table"]["values"]]}}
 
 
 def _others() -> Iterator[Subject]:

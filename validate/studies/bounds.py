@@ -28,8 +28,8 @@ from numpy.typing import NDArray
 from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.numerics.rounding import EPS
 from validate.cars.base_cars import variants
-from validate.cars.near_singular import NearPose, near_pose
-from validate.cars.scene_content import content_of
+from validate.cars.car import content_of
+from validate.cars.random_cars import NearPose, near_pose
 from validate.exit_status import ExitStatus
 from validate.formulations.reference_solution import inputs_at, off_by, reference_instant
 from validate.output.table import Part, Table

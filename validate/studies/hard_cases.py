@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from dataclasses import asdict, replace
 
 from validate.exit_status import ExitStatus
-from validate.hard.answer import Answer
+from validate.hard.answer import Answer, Trial
 from validate.hard.case import Case
 from validate.hard.catalogue import chosen
 from validate.hard.report import results_data, summary_parts
 from validate.hard.run import Examined, as_expected, tried
-from validate.hard.trial import Trial
 from validate.studies.study import Findings, Row, Study, Task
 
 ANSWER = {

@@ -9,13 +9,10 @@ from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.drawing_stands import drawn_inputs as drawn_inputs_of
 from pointcoord.linkage.directions import DIRECTIONS
 from validate.cars.base_cars import variants
-from validate.cars.car import Car
+from validate.cars.car import Car, content_of
 from validate.cars.input_ends import drawn_inputs, end
-from validate.cars.moved_points import LEFT_OVER, sliding
-from validate.cars.near_singular import near_pose
-from validate.cars.random_cars import random_car
+from validate.cars.random_cars import LEFT_OVER, near_pose, random_car, sliding
 from validate.cars.random_scenes import KINDS, random_scene
-from validate.cars.scene_content import content_of
 
 NUMBERS = st.integers(0, 2**32 - 1)
 EXAMPLES = settings.default.max_examples if settings.default else 100

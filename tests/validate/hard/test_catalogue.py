@@ -20,15 +20,14 @@ from pointcoord.effects.registry import QUANTITIES
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
-from validate.hard import trial as trying
-from validate.hard.answer import Answer, judged_answer
+from validate.hard import answer as trying
+from validate.hard.answer import MAP, OURS, Answer, Trial, judged_answer, try_scene
 from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.case import REFUSED, RIGHT, Case, Expected, family
 from validate.hard.catalogue import CASES
 from validate.hard.report import case_parts, summary_parts
 from validate.hard.run import as_expected, examine
 from validate.hard.subjects import PAPER, Subject
-from validate.hard.trial import MAP, OURS, Trial, try_scene
 from validate.output.table import text_of
 
 
@@ -138,9 +137,9 @@ def made_case(answers: dict[float, Answer], expected: Expected = RIGHT) -> Case:
     def judge(_: Subject, value: float, __: Trial, ___: Answer) -> Answer:
         return answers[value]
 
-    values = tuple(answers)
-    (case,) = family(made, "a number", values, {"absolute": expected}, [PAPER], group="0. Made", judge=judge)
-    return case
+    cases: list[Case] = []
+    family(cases, "0. Made", "a number", tuple(answers), {"absolute": expected}, [PAPER], judge=judge)(made)
+    return cases[0]
 
 
 def test_a_wrong_number_is_never_expected() -> None:
@@ -167,16 +166,16 @@ def test_an_unexpected_refusal_and_a_failing_trial_are_reported() -> None:
     assert not as_expected([broken])
 
 
-(STEERED,) = family(
-    lambda _, value: scene_content(PAPER_CAR, [1.5, 0.1], value, stop=0.2, samples=2),
-    "rack travel, mm",
-    (1.0, 1e-3, 1e-6),
-    {OURS: RIGHT},
-    [PAPER],
-    name="steered",
-    why="It is made.",
-    group="0. Made",
-)
+CASES_MADE: list[Case] = []
+
+
+@family(CASES_MADE, "0. Made", "rack travel, mm", (1.0, 1e-3, 1e-6), {OURS: RIGHT}, [PAPER])
+def steered(_: Subject, value: float) -> dict[str, Any]:
+    """It is made."""
+    return scene_content(PAPER_CAR, [1.5, 0.1], value, stop=0.2, samples=2)
+
+
+(STEERED,) = CASES_MADE
 
 
 def test_a_wrong_number_of_the_map_is_neither_expected_nor_passed_over(

@@ -25,15 +25,15 @@ def case_of(name: str, answer: Answer | None, formulation: str = "absolute") -> 
             raise KeyboardInterrupt
         return answer
 
-    (case,) = family(
-        lambda *_: {},
-        *("a number", (1.0,), {formulation: RIGHT}, [PAPER]),
+    cases: list[Case] = []
+    made = family(
+        *(cases, "0. Made", "a number", (1.0,), {formulation: RIGHT}, [PAPER]),
         name=name,
         why="It is made.",
-        group="0. Made",
         judge=judge,
     )
-    return case
+    made(lambda *_: {})
+    return cases[0]
 
 
 @pytest.fixture

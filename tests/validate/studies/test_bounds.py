@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings, target
 from hypothesis import strategies as st
 
-from validate.cars.near_singular import NearPose, approach, near_pose
+from validate.cars.random_cars import NearPose, approach, near_pose
 from validate.exit_status import ExitStatus
 from validate.output.table import text_of
 from validate.strategies import cars

@@ -10,29 +10,28 @@ from __future__ import annotations
 from functools import partial
 
 from validate.hard.cars import PAPER_CAR, SQUARE, scene_content
-from validate.hard.case import family, values_of
+from validate.hard.case import Case, family, values_of
 from validate.hard.subjects import NAMED, PAPER, SUBJECTS, Content, Subject, hyphens
 
 VALUES = (1e-1, 1e-7, 0.0)
 RACK_RATE = 150.0  # mm/s, the paper's steering scene
 PLANE_ANGLE = 1.760964175417552  # rad, where omega comes to lie in the knuckle's plane while the arm turns on
+CASES: list[Case] = []
+_rates = partial(family, CASES, "Body rates")
 
 
+@_rates("rate of the arm while the rack is driven, rad/s; then the arm is held", VALUES, subjects=[PAPER])
 def arm_all_but_held(_: Subject, value: float) -> Content:
     """Two of the knuckle's points stand almost still while the rack moves: such a quotient is 0/0."""
     return scene_content(PAPER_CAR, [SQUARE, value], [0.0, RACK_RATE, 25.0], stop=0.4)
 
 
+@_rates(
+    "distance of the turning arm from the angle at which it does, rad; then at it", VALUES, subjects=[PAPER]
+)
 def omega_in_the_knuckle_plane(_: Subject, value: float) -> Content:
     """Omega lies in the plane of the knuckle's points: the divisor of such a quotient is zero."""
     return scene_content(PAPER_CAR, [PLANE_ANGLE + value, 1.0])
-
-
-def at_rest(subject: Subject, value: float) -> Content:
-    """All inputs rest, so every rate is zero: rounding must not make a motion of it."""
-    still = [value, 0.0, 0.0], [20.0 if subject.level else value, 0.0], 0.0 if subject.heaves else None
-    # The strut leans every way.
-    return subject.content(*still, car=NAMED["other"].car if subject is PAPER else None, stop=1.0)
 
 
 def hardly_moves(driven: str, subject: Subject, value: float) -> Content:
@@ -40,29 +39,20 @@ def hardly_moves(driven: str, subject: Subject, value: float) -> Content:
     return subject.absolute({**subject.home, driven: [subject.home[driven], value]})
 
 
-_rates = partial(family, group="Body rates")
-_paper = partial(_rates, values=VALUES, subjects=[PAPER])
+for name, unit in {name: unit for one in SUBJECTS for name, unit in one.units.items()}.items():
+    label = name.removesuffix("_angle")
+    _rates(
+        f"rate of the {label}, {unit}/s; then at rest",
+        lambda one: values_of(one, (1e-25, 1e-175, 0.0)),
+        subjects=[one for one in SUBJECTS if name in one.driven],
+        name=f"{hyphens(label)}-hardly-moves",
+        why=f"Only the {label} moves, slower and slower: rates keep their digits down to zero.",
+    )(partial(hardly_moves, name))
 
-CASES = (
-    *_paper(
-        arm_all_but_held, parameter="rate of the arm while the rack is driven, rad/s; then the arm is held"
-    ),
-    *_paper(
-        omega_in_the_knuckle_plane,
-        parameter="distance of the turning arm from the angle at which it does, rad; then at it",
-    ),
-    *(
-        case
-        for name, unit in {name: unit for one in SUBJECTS for name, unit in one.units.items()}.items()
-        for label in (name.removesuffix("_angle"),)
-        for case in _rates(
-            partial(hardly_moves, name),
-            f"rate of the {label}, {unit}/s; then at rest",
-            lambda one: values_of(one, (1e-25, 1e-175, 0.0)),
-            subjects=[one for one in SUBJECTS if name in one.kinds],
-            name=f"{hyphens(label)}-hardly-moves",
-            why=f"Only the {label} moves, slower and slower: rates keep their digits down to zero.",
-        )
-    ),
-    *_rates(at_rest, "arm angle from a right angle, rad; then at it", VALUES),
-)
+
+@_rates("arm angle from a right angle, rad; then at it", VALUES)
+def at_rest(subject: Subject, value: float) -> Content:
+    """All inputs rest, so every rate is zero: rounding must not make a motion of it."""
+    still = [value, 0.0, 0.0], [20.0 if subject.level else value, 0.0], 0.0 if subject.heaves else None
+    # The strut leans every way.
+    return subject.content(*still, car=NAMED["other"].car if subject is PAPER else None, stop=1.0)

@@ -18,20 +18,21 @@ from functools import partial
 
 import numpy as np
 
-from validate.cars.scene_content import Law, content_of
+from validate.cars.car import Law, content_of
 from validate.hard.cars import drawn_angle, scene_content
 from validate.hard.case import REFUSED, Case, decades, family, right_from
 from validate.hard.cases.points import assembled, upper_arm_flat
 from validate.hard.last_values import ends_of, last_value
-from validate.hard.subjects import OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
+from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
 
 # Arm angle, rad, and rack travel, mm, at which the two sides of the tie rod just meet: at less rack travel
 # the arm cannot pass this angle, at more it can. And half the motion through there, rad; a dead point is
 # 0.05 rad below it.
 MEETING = (0.6129246396239625, -0.00292320063271574, 0.05)
-
-
+APPROACH = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
 CLEAR = right_from(1e-6)
+CASES: list[Case] = []
+_branch = partial(family, CASES, "Branches")
 
 
 def through_the_meeting(side: float, subject: Subject, share: float) -> Content:
@@ -41,27 +42,16 @@ def through_the_meeting(side: float, subject: Subject, share: float) -> Content:
     return subject.absolute(inputs, stop=1.0, samples=5)
 
 
-def flat_car(share: float) -> dict[str, np.ndarray]:
-    """The tie rod's outer end near the plane of kingpin and rack, on its own side or on the other."""
-    p = assembled()
-    ball = p["lower_ball_joint"]
-    normal = np.cross(p["strut_lower"] - ball, p["tie_rod_inner"] - ball)
-    normal /= np.linalg.norm(normal)
-    height = float((p["tie_rod_outer"] - ball) @ normal)
-    return {**p, "tie_rod_outer": p["tie_rod_outer"] + (share - 1.0) * height * normal}
-
-
-def flat_drawing(side: float, subject: Subject, share: float) -> Content:
-    """From a drawing where the rack is all but locked it runs to where it is not.
-
-    Of a wishbone the arm does: its upper ball joint is drawn near the plane of its pivots and the lower one.
-    """
-    if subject is PAPER:
-        car, start = subject.car.drawn_as(flat_car(side * share)), subject.drawn["arm_angle"]
-        return scene_content(car, start, (0.0, 0.0, 20.0), stop=1.0, samples=3)
-    car = subject.car.drawn_as(upper_arm_flat(assembled(subject.name), side * share))
-    inputs: dict[str, Law] = {"arm_angle": (drawn_angle(car), 0.0, -0.02), "rack": 0.0}
-    return content_of(car, inputs, stop=1.0, samples=3)
+_branch(
+    *("rack travel beyond the meeting, in parts of 10 mm", (1.0, 1e-6, 1e-12), CLEAR, [PAPER]),
+    name="branches-nearly-meet",
+    why=f"{APPROACH}, and a step may end on the other one.",
+)(partial(through_the_meeting, 1.0))
+_branch(
+    *("rack travel short of the meeting, in parts of 10 mm", (1e-1, 1e-7, 1e-12), REFUSED, [PAPER]),
+    name="branches-met",
+    why=f"{APPROACH} and meet, so that there is a gap that a large step may leap.",
+)(partial(through_the_meeting, -1.0))
 
 
 def whole_range(driven: str, subject: Subject, share: float) -> Content:
@@ -70,67 +60,71 @@ def whole_range(driven: str, subject: Subject, share: float) -> Content:
     return subject.absolute({**subject.home, driven: (high, low - high)}, stop=1.0, samples=2)
 
 
-# Turn of the drawing, rad, at which branches cross, or beyond which there is none.
-BY_NATURE = {
-    "n_four_bar": (-0.5 * math.pi, "its branches cross."),
-    "bricard": (-math.pi / 6.0, "its ring goes no further."),
-}
+for subject in (PAPER, WISHBONE, *OTHERS):
+    for driven in subject.driven:
+        if {(driven, False), (driven, True)} <= set(ends_of(subject)):
+            _branch(
+                "distance of both instants from their ends, in parts of half the range",
+                (1e-8,) if subject is WISHBONE else (1e-4,),
+                subjects=[subject],
+                name=f"whole-range-{hyphens(driven).removesuffix('-angle')}",
+            )(partial(whole_range, driven))
 
 
-def to_the_line(beyond: bool, moving: bool, subject: Subject, value: float) -> Content:
+def flat_drawing(side: float, subject: Subject, share: float) -> Content:
+    """From a drawing where the rack is all but locked it runs to where it is not.
+
+    The tie rod's outer end is near the plane of kingpin and rack, on its own side or on the other. Of a
+    wishbone the arm does: its upper ball joint is drawn near the plane of its pivots and the lower one.
+    """
+    p = assembled(subject.name)
+    if subject is PAPER:
+        ball, outer = p["lower_ball_joint"], p["tie_rod_outer"]
+        normal = np.cross(p["strut_lower"] - ball, p["tie_rod_inner"] - ball)
+        normal /= np.linalg.norm(normal)
+        height = float((outer - ball) @ normal)
+        car = subject.car.drawn_as({**p, "tie_rod_outer": outer + (side * share - 1.0) * height * normal})
+        return scene_content(car, subject.drawn["arm_angle"], (0.0, 0.0, 20.0), stop=1.0, samples=3)
+    car = subject.car.drawn_as(upper_arm_flat(p, side * share))
+    inputs: dict[str, Law] = {"arm_angle": (drawn_angle(car), 0.0, -0.02), "rack": 0.0}
+    return content_of(car, inputs, stop=1.0, samples=3)
+
+
+for label, side in (("", 1.0), ("-mirrored", -1.0)):
+    _branch(
+        *("height over the plane, in parts of the car's", decades(), CLEAR, (PAPER, WISHBONE)),
+        name=f"flat-drawing{label}",
+        why="The tie rod's outer end, or a wishbone's upper ball joint, is drawn near the plane in which it "
+        "has a mirror image: rounding may choose.",
+    )(partial(flat_drawing, side))
+
+
+def to_the_line(turn: float, beyond: bool, moving: bool, subject: Subject, value: float) -> Content:
     """A share of the way from the drawing short of a turn, or beyond it: at rest there, or there in 1 s."""
-    (driven,) = subject.kinds
-    goal = BY_NATURE[subject.name][0] * (1.0 - (-value if beyond else value))
+    (driven,) = subject.driven
+    goal = turn * (1.0 - (-value if beyond else value))
     if moving:
         return subject.absolute({driven: [0.0, goal]}, stop=1.0, samples=3)
     return subject.absolute({driven: goal})
 
 
-APPROACH = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
-MEET = f"{APPROACH} and meet, so that there is a gap that a large step may leap."
-NEARLY_MEET = f"{APPROACH}, and a step may end on the other one."
-_branch = partial(family, group="Branches")
-
-CASES: list[Case] = []
-for name, why, side, where, expected, values in (
-    ("branches-nearly-meet", NEARLY_MEET, 1.0, "beyond", CLEAR, (1.0, 1e-6, 1e-12)),
-    ("branches-met", MEET, -1.0, "short of", REFUSED, (1e-1, 1e-7, 1e-12)),
+# Turn of the drawing, rad, at which branches cross, or beyond which there is none.
+for mechanism, turn, what in (
+    ("bricard", -math.pi / 6.0, "its ring goes no further."),
+    ("n_four_bar", -0.5 * math.pi, "its branches cross."),
 ):
-    parameter = f"rack travel {where} the meeting, in parts of 10 mm"
-    scene = partial(through_the_meeting, side)
-    CASES += _branch(scene, parameter, values, expected, [PAPER], name=name, why=why)
-for subject in (PAPER, WISHBONE, *OTHERS):
-    for driven in subject.kinds:
-        if {(driven, False), (driven, True)} <= set(ends_of(subject)):
-            CASES += _branch(
-                partial(whole_range, driven),
-                "distance of both instants from their ends, in parts of half the range",
-                (1e-8,) if subject is WISHBONE else (1e-4,),
-                subjects=[subject],
-                name=f"whole-range-{hyphens(driven).removesuffix('-angle')}",
-            )
-for label, side in (("", 1.0), ("-mirrored", -1.0)):
-    CASES += _branch(
-        *(partial(flat_drawing, side), "height over the plane, in parts of the car's", decades()),
-        *(CLEAR, (PAPER, WISHBONE)),
-        name=f"flat-drawing{label}",
-        why="The tie rod's outer end, or a wishbone's upper ball joint, is drawn near the plane in which it "
-        "has a mirror image: rounding may choose.",
-    )
-for subject in (one for one in OTHERS if one.name in BY_NATURE):
     for name, why, beyond, moving in (
         ("held-near-the-line", "It rests near the pose where", False, False),
         ("swept-near-the-line", "It moves from the drawing to near the pose where", False, True),
         ("held-beyond-the-line", "It is to be beyond the pose where", True, False),
         ("swept-through-the-line", "It is to move through the pose where", True, True),
     ):
-        CASES += family(
-            partial(to_the_line, beyond, moving),
+        family(
+            *(CASES, "Mechanisms that are hard by nature"),
             f"distance from it, in parts of the way from the drawing{', beyond' * beyond}",
             (1e-2,) if beyond else (1e-1, 1e-4),
             REFUSED if beyond else right_from(1e-3),
-            [subject],
+            [NAMED[mechanism]],
             name=name,
-            why=f"{why} {BY_NATURE[subject.name][1]}",
-            group="Mechanisms that are hard by nature",
-        )
+            why=f"{why} {what}",
+        )(partial(to_the_line, turn, beyond, moving))

@@ -7,11 +7,11 @@ what is driven beyond it, or is to be there at the first instant, is compared wi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 
 from validate.hard.case import Case, Values, family, right_from
-from validate.hard.cases.reach import End, Lock, driven_beyond
+from validate.hard.cases.reach import End, Lock
 from validate.hard.last_values import ends_of
 from validate.hard.subjects import NAMED, OTHERS, ROLLING, hyphens
 
@@ -29,28 +29,26 @@ from validate.hard.subjects import NAMED, OTHERS, ROLLING, hyphens
 # that is a few: some 1e-12, and ten times that is always reached.
 NEAR_END = dict.fromkeys(("pointcoord", "absolute", "relative"), right_from(1e-11))
 LAWS = {"held": "", "moving": "; the motion ends near it, with rates as the inverse root of the distance"}
+near_ends: list[Case] = []
+beyond_ends: list[Case] = []
 
 
-def _near(
-    end: End, name: str, added: str, group: str, values: Values, laws: Iterable[str] = LAWS
-) -> Iterator[Case]:
+def _near(end: End, name: str, added: str, group: str, values: Values, laws: Iterable[str] = LAWS) -> None:
     newton = {"pointcoord-newton": right_from(1e-11)} if group == UPPER else {}
     for law in laws if values else ():
-        yield from family(
-            replace(end, moving=law == "moving").near,
-            *("distance from the end, in parts of the input's range", values),
+        family(
+            *(near_ends, group, "distance from the end, in parts of the input's range", values),
             *(NEAR_END | newton, [end.subject]),
             name=f"{name}-{law}",
             suffix=added,
-            group=group,
             why=f"{end.where}{LAWS[law]}.",
-        )
+        )(replace(end, moving=law == "moving").near)
 
 
-def _beyond(end: End, name: str, moving: Values, start: Values) -> Iterator[Case]:
+def _beyond(end: End, name: str, moving: Values, start: Values) -> None:
     for moves, values in ((True, moving), (False, start)):
         if values:
-            yield from driven_beyond(replace(end, moving=moves), name, values)
+            replace(end, moving=moves).driven_beyond(beyond_ends, name, values)
 
 
 def _all_of(*links: str) -> Lock:
@@ -66,7 +64,6 @@ def tie_rod_within(first: int) -> Lock:
     )
 
 
-OF_ALL = "Inputs at their ends, of every mechanism"
 UPPER = "The knuckle's upper end out of reach"
 DEAD, IN_LINE = "The arm at its dead points", "Tie rod and steering arm in line"
 BALL_JOINT = "The ball joint is {} on its circle, where height says no more"
@@ -101,25 +98,21 @@ ARMS, RACKS = ("arm-highest", "arm-lowest"), ("rack-least", "rack-greatest")
 FULL, SPARSE = (1e-4, 1e-11, 1e-12), (1e-1, 1e-4, 1e-8, 1e-12)
 # Every refusal is a whole motion towards a fold, so few values must do.
 TWO = (1.0, 1e-12)
-# Ends, car, what the name adds; values near the end, of a motion beyond it, and of a first instant there.
-TABLE: tuple[tuple[Sequence[str], str, str, Values, Values, Values], ...] = (
-    (ARMS, "paper", "", FULL, TWO, TWO),
-    (ARMS, "short-arm", "-wishbone", SPARSE, TWO, ()),
-    (RACKS, "paper", "", FULL, TWO, TWO),
-    (RACKS, "wishbone", "-wishbone", SPARSE, TWO, ()),
-    (("slide-runs-out",), "wide", "", FULL, TWO, TWO),
-    (("upper-arm-locks",), "wishbone", "", (1e-1, 1e-5, 1e-9), TWO, TWO),
-    (("tie-rod-locks-the-arm",), "wishbone", "", (), TWO, TWO),
-)
-
-near_ends: list[Case] = []
-beyond_ends: list[Case] = []
-for names, car, added, near, moving, start in TABLE:
+# Ends, car, what the name adds; values near the end, and of a first instant beyond it.
+for names, car, added, near, start in (
+    (ARMS, "paper", "", FULL, TWO),
+    (ARMS, "short-arm", "-wishbone", SPARSE, ()),
+    (RACKS, "paper", "", FULL, TWO),
+    (RACKS, "wishbone", "-wishbone", SPARSE, ()),
+    (("slide-runs-out",), "wide", "", FULL, TWO),
+    (("upper-arm-locks",), "wishbone", "", (1e-1, 1e-5, 1e-9), TWO),
+    (("tie-rod-locks-the-arm",), "wishbone", "", (), TWO),
+):
     for name in names:
         group, driven, ahead, lock, where = ENDS[name]
         end = End(NAMED[car], driven, ahead, where, lock)
-        near_ends += _near(end, name, added, group, near)
-        beyond_ends += _beyond(end, name + added, moving, start)
+        _near(end, name, added, group, near)
+        _beyond(end, name + added, TWO, start)
 for subject in (*OTHERS, ROLLING):
     for driven, ahead in ends_of(subject):
         size = "greatest" if ahead else "least"
@@ -127,6 +120,7 @@ for subject in (*OTHERS, ROLLING):
         end = End(subject, driven, ahead, f"{driven} is at its {size}, the others as drawn")
         # An axle's right corner is its left one in a mirror; what each corner does is tried of the corner.
         if not driven.startswith("right"):
-            near_ends += _near(end, name, subject.suffix, OF_ALL, (1e-4,), ("moving",) if parts else LAWS)
-            beyond_ends += _beyond(end, name + subject.suffix, (1e-3,), () if parts else (1e-3,))
+            of_all = "Inputs at their ends, of every mechanism"
+            _near(end, name, subject.suffix, of_all, (1e-4,), ("moving",) if parts else LAWS)
+            _beyond(end, name + subject.suffix, (1e-3,), () if parts else (1e-3,))
 CASES = (*near_ends, *beyond_ends)

@@ -11,19 +11,15 @@ from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.numerics.rounding import EPS
-from validate.cars.car import moved, scaled
 from validate.formulations.protocol import Solution
-from validate.hard.answer import Answer
+from validate.hard.answer import Answer, Trial, solved
 from validate.hard.cars import SQUARE
-from validate.hard.case import RIGHT, decades, family, right_from
+from validate.hard.case import RIGHT, Case, decades, family, right_from
 from validate.hard.subjects import BESIDE, HEAVING, PAPER, ROLLING, SUBJECTS, Content, Subject
-from validate.hard.trial import Trial, solved
 
-Array = NDArray[np.float64]
 AWAY = (1.0, -1.0, 3.0)
 # A model subtracts an origin of its own that lies within a few sizes of the car, wherever the car is: its
 # own coordinates are up to 8 sizes instead of 1, and rounded so much more coarsely. A car at home may happen
@@ -33,16 +29,15 @@ LOOSER = 8.0 * 16.0
 RAD, MM = (1.5 - SQUARE, 0.25, 0.125), (0.0, 30.0, 10.0)
 # Beyond 1e9 mm a millimetre is less than one part in 1e9: a model may decline to take that for a drawing.
 NEARER = right_from(1e-9)
+FAR = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER}
+CARS = (PAPER, BESIDE, *SUBJECTS[1:], ROLLING)
+CASES: list[Case] = []
+_far = partial(family, CASES, "Far from the origin, and mixed sizes")
 
 
 def moved_car(subject: Subject, distance: float) -> Content:
     """A car in motion, its origin some whole millimetres away."""
-    return subject.content(RAD, MM, car=moved(subject.car, distance * np.array(AWAY)), stop=0.4)
-
-
-def far_from_the_origin(subject: Subject, value: float) -> Content:
-    """Far from the origin coordinates keep few digits of the car, and differences lose more."""
-    return moved_car(subject, 1.0 / value)
+    return subject.content(RAD, MM, car=subject.car.moved(distance * np.array(AWAY)), stop=0.4)
 
 
 @cache
@@ -74,44 +69,24 @@ def as_at_home(subject: Subject, _: float, trial: Trial, answer: Answer) -> Answ
     return answer
 
 
-def scaled_car(subject: Subject, scale: float) -> Content:
-    """Squares of small and large lengths differ by twice as many decades as the lengths, and every coordinate
-    is rounded anew.
-    """
-    there, lengths = scaled(subject.car, scale), tuple(scale * x for x in MM)
-    return subject.content(RAD, lengths, car=there, scale=scale, tolerance=1e-9 * scale, stop=0.4)
+@_far("1 mm over the distance along x; thrice as far along z", decades(), FAR, CARS, judge=as_at_home)
+def far_from_the_origin(subject: Subject, value: float) -> Content:
+    """Far from the origin coordinates keep few digits of the car, and differences lose more."""
+    return moved_car(subject, 1.0 / value)
 
 
+@_far("1 mm over the distance along up, which the heave cancels", decades(-9), RIGHT, HEAVING)
 def far_and_heaved_back(subject: Subject, value: float) -> Content:
     """Drawn far up and heaved back, a car comes to stand near the origin by two far coordinates."""
     distance = 1.0 / value
-    there = moved(subject.car, distance * np.array(subject.car.up))
+    there = subject.car.moved(distance * np.array(subject.car.up))
     return subject.content(RAD, MM, (-distance, 20.0), car=there, stop=0.4)
 
 
-CARS = (PAPER, BESIDE, *SUBJECTS[1:], ROLLING)
-_far = partial(family, group="Far from the origin, and mixed sizes")
-
-CASES = (
-    *_far(
-        far_from_the_origin,
-        "1 mm over the distance along x; thrice as far along z",
-        decades(),
-        {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
-        CARS,
-        judge=as_at_home,
-    ),
-    *_far(
-        far_and_heaved_back,
-        "1 mm over the distance along up, which the heave cancels",
-        decades(-9),
-        subjects=HEAVING,
-    ),
-    *_far(
-        scaled_car,
-        "size, in parts of a car of some 500 mm",
-        (1e4, 1e2, 1.0, 1e-1, 1e-4, 1e-6),
-        subjects=CARS,
-        name="sizes",
-    ),
-)
+@_far("size, in parts of a car of some 500 mm", (1e4, 1e2, 1.0, 1e-1, 1e-4, 1e-6), RIGHT, CARS)
+def sizes(subject: Subject, scale: float) -> Content:
+    """Squares of small and large lengths differ by twice as many decades as the lengths, and every coordinate
+    is rounded anew.
+    """
+    there, lengths = subject.car.scaled(scale), tuple(scale * x for x in MM)
+    return subject.content(RAD, lengths, car=there, scale=scale, tolerance=1e-9 * scale, stop=0.4)

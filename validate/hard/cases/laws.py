@@ -13,11 +13,10 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from validate.cars.scene_content import Law
-from validate.hard.answer import Answer
-from validate.hard.case import RIGHT, SOLVERS, decades, family, right_from
+from validate.cars.car import Law
+from validate.hard.answer import Answer, Trial
+from validate.hard.case import RIGHT, SOLVERS, Case, decades, family, right_from
 from validate.hard.subjects import HEAVING, PAPER, Content, Subject, moved_by
-from validate.hard.trial import Trial
 
 OURS = dict.fromkeys(SOLVERS, RIGHT)
 # Values of a table are rounded by 2e-16 rad, which within a jump of time h is an acceleration of 2e-16 / h^2.
@@ -26,6 +25,10 @@ OURS = dict.fromkeys(SOLVERS, RIGHT)
 # solving at its instants needs no steps.
 JUMP = OURS | {"pointcoord": right_from(1e-6)}
 TURN = 2.0 * math.pi
+# First, amid and last.
+RISING, FALLING, WITHIN = decades(0, 12)[::-2], decades(-12, 0)[::2], decades(-12, -1)[::2]
+CASES: list[Case] = []
+_laws = partial(family, CASES, "Laws of the inputs")
 
 
 def at_a_rate(subject: Subject, rate: float) -> Content:
@@ -33,19 +36,11 @@ def at_a_rate(subject: Subject, rate: float) -> Content:
     return subject.content([-0.1, rate], [0.0, 100.0 * rate], stop=0.2 / rate)
 
 
-def long_sine(subject: Subject, duration: float) -> Content:
-    """A swing a second for ever longer: a motion by series needs some segments for each swing."""
-    swing = {"amplitude": 0.2, "angular_frequency": TURN}
-    other = {"amplitude": 30.0, "angular_frequency": 1.5 * TURN, "phase": 0.3}
-    return subject.content({"sine": swing}, {"sine": other}, stop=duration, samples=4)
-
-
-def phase_of_many_turns(subject: Subject, turns: float) -> Content:
-    """Added to the angle, a large phase would swallow the digits of time."""
-    wave = {"amplitude": 0.2, "angular_frequency": TURN, "phase": TURN * turns + 0.3}
-    if "rad" in subject.units.values():
-        return subject.content({"sine": wave}, [0.0, 20.0], stop=0.5)
-    return subject.content(mm={"sine": wave | {"amplitude": 20.0}}, stop=0.5)
+for name, values, why in (
+    ("slow", FALLING, "The same way in ever longer time: rates lie far below the lengths."),
+    ("fast", RISING, "The same way in ever shorter time: rates and their squares lie far above the lengths."),
+):
+    _laws("rate of the arm, rad/s", values, name=f"{name}-inputs", why=why)(at_a_rate)
 
 
 def stopping(subject: Subject, start: float, stop: float, size: float = 1.0) -> Content:
@@ -54,16 +49,36 @@ def stopping(subject: Subject, start: float, stop: float, size: float = 1.0) -> 
     return subject.content(*laws, start=start, stop=stop)
 
 
+@_laws("time since the start, s", WITHIN)
 def start_from_rest(subject: Subject, value: float) -> Content:
     """The inputs start from rest: rates tend to zero, accelerations do not."""
     return stopping(subject, 0.0, value)
 
 
+@_laws("time to the end, s", WITHIN)
 def come_to_rest(subject: Subject, value: float) -> Content:
     """The inputs come to rest: rates tend to zero as a difference of large terms."""
     return stopping(subject, 1.0 - value, 1.0)
 
 
+@_laws("duration, s", lambda one: (1.0, 1e6) if one is PAPER else (1.0,))
+def long_sine(subject: Subject, duration: float) -> Content:
+    """A swing a second for ever longer: a motion by series needs some segments for each swing."""
+    swing = {"amplitude": 0.2, "angular_frequency": TURN}
+    other = {"amplitude": 30.0, "angular_frequency": 1.5 * TURN, "phase": 0.3}
+    return subject.content({"sine": swing}, {"sine": other}, stop=duration, samples=4)
+
+
+@_laws("turns in the phase of a sine", RISING)
+def phase_of_many_turns(subject: Subject, turns: float) -> Content:
+    """Added to the angle, a large phase would swallow the digits of time."""
+    wave = {"amplitude": 0.2, "angular_frequency": TURN, "phase": TURN * turns + 0.3}
+    if "rad" in subject.units.values():
+        return subject.content({"sine": wave}, [0.0, 20.0], stop=0.5)
+    return subject.content(mm={"sine": wave | {"amplitude": 20.0}}, stop=0.5)
+
+
+@_laws("size of the motion: 0.2 rad and 30 mm times this", FALLING)
 def seen_at_rest_only(subject: Subject, size: float) -> Content:
     """Every instant of the scene is one where the inputs rest for a moment, between which they move."""
     return stopping(subject, 0.0, 1.0, size)
@@ -73,6 +88,7 @@ def _table(times: Sequence[float], values: Sequence[float]) -> dict[str, Any]:
     return {"table": {"times": list(times), "values": list(values)}}
 
 
+@_laws("time before and after the kink, s", WITHIN)
 def kink_of_a_table(subject: Subject, value: float) -> Content:
     """The third derivative jumps at a time of a spline."""
     # Up, down and up again, with a sharp bend of the acceleration at each inner time.
@@ -81,6 +97,7 @@ def kink_of_a_table(subject: Subject, value: float) -> Content:
     return subject.content(*laws, start=0.4 - value, stop=0.4 + value)
 
 
+@_laws("distance of the times, s", WITHIN)
 def close_times_of_a_table(subject: Subject, value: float) -> Content:
     """Two times of a spline lie close together: rounding of their values is divided by their distance."""
     times = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0)
@@ -88,46 +105,66 @@ def close_times_of_a_table(subject: Subject, value: float) -> Content:
     return subject.content(*laws, stop=1.0, samples=5)
 
 
+def told_as_rough(subject: Subject, _: float, __: Trial, answer: Answer) -> Answer:
+    """A refusal is wrong that does not name the first input as what the series cannot follow.
+
+    The mechanism is nowhere near a singular pose, and must not be given as the reason.
+    """
+    rough = answer.reason.startswith(f"MotionTooRough: input '{subject.driven[0]}'")
+    if answer.outcome != "refused" or (rough and "singular" not in answer.reason):
+        return answer
+    return replace(answer, outcome="wrong", reason=f"refused for another reason: {answer.reason}")
+
+
+@_laws("time of the jump, s", WITHIN, JUMP, judge=told_as_rough)
 def jump_of_a_table(subject: Subject, value: float) -> Content:
     """An input moves within a very short time: accelerations grow as its inverse square."""
-    times, first = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0), next(iter(subject.units))
+    times, first = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0), subject.driven[0]
     step = 0.01 if subject.units[first] == "rad" else 1.0
     jump = moved_by(_table(times, [step if t > 0.5 else 0.0 for t in times]), subject.home[first])
     content = subject.content(0.0, [0.0, 20.0], start=0.5 - 0.5 * value, stop=0.5 + 1.5 * value, samples=5)
     return {**content, "inputs": {**content["inputs"], first: jump}}
 
 
-def told_as_rough(subject: Subject, _: float, __: Trial, answer: Answer) -> Answer:
-    """A refusal is wrong that does not name the first input as what the series cannot follow.
-
-    The mechanism is nowhere near a singular pose, and must not be given as the reason.
-    """
-    rough = answer.reason.startswith(f"MotionTooRough: input '{next(iter(subject.kinds))}'")
-    if answer.outcome != "refused" or (rough and "singular" not in answer.reason):
-        return answer
-    return replace(answer, outcome="wrong", reason=f"refused for another reason: {answer.reason}")
-
-
+@_laws("start of a second of a sine, s", RISING)
 def far_in_time(subject: Subject, start: float) -> Content:
     """Time itself has few digits left for the swing."""
     swings = ({"sine": {"amplitude": size, "angular_frequency": 1.0}} for size in (0.2, 20.0))
     return subject.content(*swings, start=start, stop=start + 1.0)
 
 
+@_laws("amplitude of the heave, 100 mm", (1.0, 1e-9, 0.0), RIGHT, HEAVING)
 def only_heave(subject: Subject, value: float) -> Content:
     """The whole car moves while arm and rack rest: the knuckle must not turn."""
     wave = {"amplitude": 100.0 * value, "angular_frequency": 3.0}
     return subject.content(heave={"sine": wave}, stop=1.0)
 
 
-def short_scene(start: float, subject: Subject, value: float) -> Content:
+@_laws("duration, s", (1.0, 1e-225, 5e-324))
+def short_scene(subject: Subject, value: float) -> Content:
     """Every instant must stay inside a scene however short."""
-    return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], start=start, stop=start + value, samples=4)
+    return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], stop=value, samples=4)
+
+
+@_laws("duration after t = 1 s, s", (1e-1, 1e-10, 2.0**-52))
+def short_scene_late(subject: Subject, value: float) -> Content:
+    """A scene of a few roundings of its time."""
+    return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], start=1.0, stop=1.0 + value, samples=4)
 
 
 def to_a_tolerance(subject: Subject, value: float) -> Content:
     """A motion to some tolerance."""
     return subject.content([-0.1, 0.5], [0.0, 40.0], stop=0.4, tolerance=value)
+
+
+for name, values, expected, why in (
+    ("fine", (1e-75, 1e-225, 1e-300), OURS, "A tolerance below what rounding allows."),
+    (
+        *("loose", (1.0, 1e150, 1e300), OURS | {"pointcoord-as-asked": RIGHT}),
+        "A tolerance above the size of the car.",
+    ),
+):
+    _laws("tolerance of the scene, mm", values, expected, name=f"{name}-tolerance", why=why)(to_a_tolerance)
 
 
 def _cancelling(value: float, wanted: float, rate: float) -> Law:
@@ -142,6 +179,7 @@ def _cancelling(value: float, wanted: float, rate: float) -> Law:
     return {"sine": wave}
 
 
+@_laws("1 rad or 1 mm over the amplitude", (1.0, 1e-6, 1e-9))
 def cancelling_sine(subject: Subject, value: float) -> Content:
     """A large swing is all but cancelled by its offset, and what is left drives every input."""
     length = _cancelling(value, 10.0, 20.0)
@@ -151,66 +189,22 @@ def cancelling_sine(subject: Subject, value: float) -> Content:
 POWER = 6
 # The sum of the seven terms is off by 4 7^2 u^2 of their magnitudes (Graillat, Langlois, Louvet), which add
 # up to 16 (2 start)^6: that stays below a rounding of 16 mm up to the start 2^6 s.
-LATE = right_from(2.0**-6)
+LATE = dict.fromkeys(("pointcoord", "pointcoord-newton"), right_from(2.0**-6))
 
 
+@_laws(
+    *("1 s over the start of a motion of 1 s", [2.0**-k for k in (6, 10, 20)]),
+    LATE | dict.fromkeys(("absolute", "relative"), RIGHT),
+    name=f"cancelling-polynomial-{POWER}",
+)
 def cancelling_polynomial(subject: Subject, value: float) -> Content:
     """16 (t - start)^6, multiplied out: terms up to 1e37 times their sum.
 
     The last input moves by 16 mm, or 1/8 rad, in the second after a late start. Doubles hold the coefficients
     exactly for a start that is a power of two.
     """
-    start, last = 1.0 / value, list(subject.kinds)[-1]
+    start, last = 1.0 / value, subject.driven[-1]
     size = 16.0 if subject.units[last] == "mm" else 0.125
     law = [size * math.comb(POWER, k) * (-start) ** (POWER - k) for k in range(POWER + 1)]
     inputs = {**subject.home, last: moved_by(law, subject.home[last])}
     return subject.absolute(inputs, start=start, stop=start + 1.0)
-
-
-_laws = partial(family, group="Laws of the inputs")
-# First, amid and last.
-RISING, FALLING, WITHIN = decades(0, 12)[::-2], decades(-12, 0)[::2], decades(-12, -1)[::2]
-RATE, TOLERANCE = "rate of the arm, rad/s", "tolerance of the scene, mm"
-SLOW = "The same way in ever longer time: rates lie far below the lengths."
-FAST = "The same way in ever shorter time: rates and their squares lie far above the lengths."
-
-CASES = (
-    *_laws(at_a_rate, RATE, FALLING, name="slow-inputs", why=SLOW),
-    *_laws(at_a_rate, RATE, RISING, name="fast-inputs", why=FAST),
-    *_laws(start_from_rest, "time since the start, s", WITHIN),
-    *_laws(come_to_rest, "time to the end, s", WITHIN),
-    *_laws(long_sine, "duration, s", lambda one: (1.0, 1e6) if one is PAPER else (1.0,)),
-    *_laws(phase_of_many_turns, "turns in the phase of a sine", RISING),
-    *_laws(seen_at_rest_only, "size of the motion: 0.2 rad and 30 mm times this", FALLING),
-    *_laws(kink_of_a_table, "time before and after the kink, s", WITHIN),
-    *_laws(close_times_of_a_table, "distance of the times, s", WITHIN),
-    *_laws(jump_of_a_table, "time of the jump, s", WITHIN, JUMP, judge=told_as_rough),
-    *_laws(far_in_time, "start of a second of a sine, s", RISING),
-    *_laws(only_heave, "amplitude of the heave, 100 mm", (1.0, 1e-9, 0.0), subjects=HEAVING),
-    *_laws(partial(short_scene, 0.0), "duration, s", (1.0, 1e-225, 5e-324)),
-    *_laws(
-        partial(short_scene, 1.0),
-        "duration after t = 1 s, s",
-        (1e-1, 1e-10, 2.0**-52),
-        name="short-scene-late",
-        why="A scene of a few roundings of its time.",
-    ),
-    *_laws(
-        *(to_a_tolerance, TOLERANCE, (1e-75, 1e-225, 1e-300)),
-        name="fine-tolerance",
-        why="A tolerance below what rounding allows.",
-    ),
-    *_laws(
-        *(to_a_tolerance, TOLERANCE, (1.0, 1e150, 1e300), OURS | {"pointcoord-as-asked": RIGHT}),
-        name="loose-tolerance",
-        why="A tolerance above the size of the car.",
-    ),
-    *_laws(cancelling_sine, "1 rad or 1 mm over the amplitude", (1.0, 1e-6, 1e-9)),
-    *_laws(
-        cancelling_polynomial,
-        "1 s over the start of a motion of 1 s",
-        [2.0**-k for k in (6, 10, 20)],
-        {"pointcoord": LATE, "pointcoord-newton": LATE, "absolute": RIGHT, "relative": RIGHT},
-        name=f"cancelling-polynomial-{POWER}",
-    ),
-)

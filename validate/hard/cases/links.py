@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 
 from pointcoord import Scene
-from validate.cars.car import Car, as_tuple
-from validate.cars.scene_content import content_of
+from validate.cars.car import Car, Point, as_tuple, content_of
 from validate.hard.answer import Answer
 from validate.hard.cars import drawn_at
 from validate.hard.case import (
@@ -42,15 +41,19 @@ AGAIN, PIVOT = "again", "second_pivot"
 Tables = dict[str, Any]
 Piece = tuple[str, ...]
 """A rod or a slide, or a point of a body: the keys of its tables."""
-Change = tuple[Content, frozenset[str], dict[str, str]]
+Changed = tuple[Content, frozenset[str], dict[str, str]]
 """A changed mechanism at rest, what an error has to name one of, and the change as facts."""
+Change = Callable[[Subject, float], Changed]
+CASES: list[Case] = []
+_links = partial(family, CASES, GROUP, given=False)
 
 
 def joints(plain: Mapping[str, Any]) -> dict[str, list[str]]:
     """Points of each moving body that another body, a rod or a slide has as well."""
+    slides = plain["slides"].values()
     users = [*plain["bodies"].values(), *plain["rods"].values()]
-    users += [(*slide["points"], slide["through"]) for slide in plain["slides"].values()]
-    lines = {slide["along"] for slide in plain["slides"].values()}
+    users += [(*slide["points"], slide["through"]) for slide in slides]
+    lines = {slide["along"] for slide in slides}
     return {
         body: [name for name in points if name in lines or sum(name in user for user in users) > 1]
         for body, points in plain["bodies"].items()
@@ -78,19 +81,14 @@ def pieces(plain: Mapping[str, Any]) -> dict[Piece, tuple[frozenset[str], int]]:
     return found
 
 
-def without(tables: Tables, piece: Piece) -> None:
-    """Take a piece out of some tables."""
+def without(tables: Tables, piece: Piece) -> str:
+    """Take a piece out of some tables; what it was, such as `rod tie_rod`, or `tie_rod_outer of knuckle`."""
     table, key, *point = piece
     if point:
         tables[table][key].remove(*point)
-    else:
-        del tables[table][key]
-
-
-def words(piece: Piece) -> str:
-    """Such as `rod tie_rod`, or `tie_rod_outer of knuckle`."""
-    table, key, *point = piece
-    return f"{point[0]} of {key}" if point else f"{table[:-1]} {key}"
+        return f"{point[0]} of {key}"
+    del tables[table][key]
+    return f"{table[:-1]} {key}"
 
 
 def held_apart(plain: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
@@ -110,18 +108,18 @@ def tables_of(subject: Subject) -> Tables:
 def closed(subject: Subject) -> Car:
     """The car with its drawing closed and every point in it, so that its tables can be changed."""
     car = subject.car if subject.car.closure == "drawn" else drawn_at(subject.car, subject.drawn)
-    scene = Scene.from_mapping(subject.absolute(dict.fromkeys(subject.kinds, 0.0), car))
+    scene = Scene.from_mapping(subject.absolute(dict.fromkeys(subject.driven, 0.0), car))
     points = scene.mechanism.plain(subject.driven)["points"]
-    return replace(car, points={name: tuple(place) for name, place in points.items()})
+    return replace(car, points={name: tuple(place) for name, place in points.items()}, closure="drawn")
 
 
 def changed(
-    subject: Subject, tables: Tables, inputs: Mapping[str, Any], more: Mapping[str, Any] | None = None
+    subject: Subject, tables: Tables, inputs: Mapping[str, Any] | None = None, **more: Point
 ) -> Content:
-    """The scene of a mechanism with other tables, its inputs, and more points."""
+    """The scene of a mechanism with other tables and more points, and its inputs, as drawn if not given."""
     car = closed(subject)
-    there = replace(car, points={**car.points, **(more or {})}, tables=tables, closure="drawn")
-    laws = {name: law for name, law in inputs.items() if name in tables["inputs"]}
+    there = replace(car, points={**car.points, **more}, tables=tables)
+    laws = {n: law for n, law in (inputs or subject.drawn).items() if n in tables["inputs"]}
     return content_of(there, laws, stop=0.1, samples=2, effects=("velocity",))
 
 
@@ -131,72 +129,83 @@ def named(answer: Answer, names: frozenset[str]) -> Answer:
         name in answer.reason for name in names
     ):
         return answer
-    return replace(
-        answer, outcome="wrong", reason=f"names none of {', '.join(sorted(names))}: {answer.reason}"
-    )
+    reason = f"names none of {', '.join(sorted(names))}: {answer.reason}"
+    return replace(answer, outcome="wrong", reason=reason)
 
 
-def exchangeable(subject: Subject) -> list[Piece]:
-    """The pieces without which there is another rod left."""
-    plain = subject.plain
-    return [piece for piece in pieces(plain) if set(plain["rods"]) - {piece[1]}]
+def _changes(
+    parameter: str, values: Values | Every, subjects: Sequence[Subject], expected: Expected = REFUSED
+) -> Callable[[Change], Change]:
+    """Changes of mechanisms, of which pointcoord has to name what is at fault."""
+
+    def rows(change: Change) -> Change:
+        _links(
+            *(parameter, values, dict.fromkeys(SOLVERS, expected), subjects),
+            name=hyphens(change.__name__),
+            why=reason_of(change),
+            judge=lambda subject, value, _, answer: named(answer, change(subject, value)[1]),
+            facts=lambda subject, value: change(subject, value)[2],
+        )(lambda subject, value: change(subject, value)[0])
+        return change
+
+    return rows
 
 
-def link_missing(subject: Subject, number: float) -> Change:
+PIECE = "number of the piece"
+PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
+WITH_RODS = [subject for subject in ALL if subject.plain["rods"]]
+
+
+@_changes(PIECE, every(lambda subject: list(pieces(subject.plain))), ALL)
+def link_missing(subject: Subject, number: float) -> Changed:
     """A point, or a body, is free to move although all inputs are held."""
-    tables, found = tables_of(subject), pieces(subject.plain)
-    piece = list(found)[int(number) - 1]
-    without(tables, piece)
-    return changed(subject, tables, subject.drawn), found[piece][0], {"missing": words(piece)}
+    tables = tables_of(subject)
+    piece, (names, _) = list(pieces(subject.plain).items())[int(number) - 1]
+    missing = without(tables, piece)
+    return changed(subject, tables), names, {"missing": missing}
 
 
-def link_twice(subject: Subject, number: float) -> Change:
+@_changes(
+    "number of the pair of points that are held apart",
+    every(lambda subject: held_apart(subject.plain)),
+    *(ALL, IF_ANY),
+)
+def link_twice(subject: Subject, number: float) -> Changed:
     """There are more rows than unknowns, and two of them say the same.
 
     Two points that are held apart are held by a rod once more.
     """
     pair, tables = held_apart(subject.plain)[int(number) - 1], tables_of(subject)
     tables["rods"][AGAIN] = list(pair)
-    names = frozenset((AGAIN, *pair, *subject.kinds))
-    return changed(subject, tables, subject.drawn), names, {"twice": " - ".join(pair)}
+    return changed(subject, tables), frozenset((AGAIN, *pair, *subject.driven)), {"twice": " - ".join(pair)}
 
 
-def link_twice_for_another(subject: Subject, number: float) -> Change:
+def exchangeable(subject: Subject) -> list[Piece]:
+    """The pieces without which there is another rod left."""
+    return [piece for piece in pieces(subject.plain) if set(subject.plain["rods"]) - {piece[1]}]
+
+
+@_changes(PIECE, every(exchangeable), [one for one in ALL if exchangeable(one)])
+def link_twice_for_another(subject: Subject, number: float) -> Changed:
     """There are as many rows as unknowns, but some say nothing new and some are missing.
 
     A rod is there as often again as makes up for a piece that is missing.
     """
     tables, piece = tables_of(subject), exchangeable(subject)[int(number) - 1]
     names, rows = pieces(subject.plain)[piece]
-    rod = next(name for name in tables["rods"] if name != piece[1])
-    ends = tables["rods"][rod]
-    without(tables, piece)
+    rod, ends = next((name, ends) for name, ends in tables["rods"].items() if name != piece[1])
+    facts = {"twice": rod, "missing": without(tables, piece)}
     tables["rods"] |= {f"{AGAIN}_{k}": list(ends) for k in range(rows)}
-    facts = {"twice": rod, "missing": words(piece)}
-    return changed(subject, tables, subject.drawn), names | {rod, AGAIN}, facts
+    return changed(subject, tables), names | {rod, AGAIN}, facts
 
 
-def input_twice(subject: Subject, gap: float) -> Change:
+@_changes("difference of their values, rad or mm", (*decades(), 0.0), WITH_RODS)
+def input_twice(subject: Subject, gap: float) -> Changed:
     """Two inputs drive one coordinate and contradict each other by less and less; at last they agree."""
-    tables, first = tables_of(subject), next(iter(subject.kinds))
+    tables, first = tables_of(subject), subject.driven[0]
     tables["inputs"][AGAIN] = dict(tables["inputs"][first])
     inputs = {**subject.drawn, AGAIN: subject.drawn[first] + gap}
     return changed(subject, tables, inputs), frozenset((AGAIN, first)), {}
-
-
-def contradictory_links(subject: Subject, share: float) -> Change:
-    """A further link agrees with the others as drawn and nowhere else."""
-    rates = {"rad": 0.5, "mm": 50.0}
-    inputs = {name: [value, rates[subject.units[name]]] for name, value in subject.drawn.items()}
-    tables, pivot = _with_third_link(subject, share)
-    return changed(subject, tables, inputs, pivot), frozenset((AGAIN, PIVOT, *subject.kinds)), {}
-
-
-def arm_held_by_a_third_link(subject: Subject, share: float) -> Content:
-    """A further link in place of an input holds the mechanism, by less and less; at last it is a copy."""
-    tables, pivot = _with_third_link(subject, share)
-    del tables["inputs"][next(iter(subject.kinds))]
-    return changed(subject, tables, subject.drawn, pivot)
 
 
 def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, Any]]:
@@ -222,56 +231,28 @@ def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, 
     return tables, {PIVOT: as_tuple(pivot)}
 
 
-_links = partial(family, group=GROUP)
+# Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is nearer
+# to another than this is that one again, as in `link_twice`.
+@_changes(PIVOT_AT, decades(low=-11), WITH_RODS)
+def contradictory_links(subject: Subject, share: float) -> Changed:
+    """A further link agrees with the others as drawn and nowhere else."""
+    rates = {"rad": 0.5, "mm": 50.0}
+    inputs = {name: [value, rates[subject.units[name]]] for name, value in subject.drawn.items()}
+    tables, pivot = _with_third_link(subject, share)
+    return changed(subject, tables, inputs, **pivot), frozenset((AGAIN, PIVOT, *subject.driven)), {}
 
 
-def _changes(
-    change: Callable[[Subject, float], Change],
-    parameter: str,
-    values: Values | Every,
-    subjects: Sequence[Subject],
-    expected: Expected = REFUSED,
-) -> tuple[Case, ...]:
-    """Changes of mechanisms, of which pointcoord has to name what is at fault."""
-    return _links(
-        lambda subject, value: change(subject, value)[0],
-        parameter,
-        values,
-        dict.fromkeys(SOLVERS, expected),
-        subjects,
-        name=hyphens(change.__name__),
-        why=reason_of(change),
-        judge=lambda subject, value, _, answer: named(answer, change(subject, value)[1]),
-        facts=lambda subject, value: change(subject, value)[2],
-        given=False,
-    )
-
-
-PIECE = "number of the piece"
-PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
-WITH_RODS = [subject for subject in ALL if subject.plain["rods"]]
-PIECES = every(lambda subject: list(pieces(subject.plain)))
-PAIRS = every(lambda subject: held_apart(subject.plain))
-
-CASES = (
-    *_changes(link_missing, PIECE, PIECES, ALL),
-    *_changes(link_twice, "number of the pair of points that are held apart", PAIRS, ALL, IF_ANY),
-    *_changes(
-        *(link_twice_for_another, PIECE, every(exchangeable)), [one for one in ALL if exchangeable(one)]
-    ),
-    *_changes(input_twice, "difference of their values, rad or mm", (*decades(), 0.0), WITH_RODS),
-    # Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is
-    # nearer to another than this is that one again, as in `link_twice`.
-    *_changes(contradictory_links, PIVOT_AT, decades(low=-11), WITH_RODS),
-    # Two links that are nearly one differ by the distance of their pivots, and the condition number grows as
-    # its inverse from some 30 on: at 1e-6 half of the digits are left.
-    *_links(
-        arm_held_by_a_third_link,
-        f"{PIVOT_AT}; then a copy of it",
-        (*decades(), 0.0),
-        dict.fromkeys(SOLVERS, right_from(1e-6)),
-        # What is held by a link in place of its only input is driven by none.
-        [one for one in WITH_RODS if len(one.kinds) > 1],
-        given=False,
-    ),
+# Two links that are nearly one differ by the distance of their pivots, and the condition number grows as its
+# inverse from some 30 on: at 1e-6 half of the digits are left.
+@_links(
+    f"{PIVOT_AT}; then a copy of it",
+    (*decades(), 0.0),
+    dict.fromkeys(SOLVERS, right_from(1e-6)),
+    # What is held by a link in place of its only input is driven by none.
+    [one for one in WITH_RODS if len(one.driven) > 1],
 )
+def arm_held_by_a_third_link(subject: Subject, share: float) -> Content:
+    """A further link in place of an input holds the mechanism, by less and less; at last it is a copy."""
+    tables, pivot = _with_third_link(subject, share)
+    del tables["inputs"][subject.driven[0]]
+    return changed(subject, tables, **pivot)

@@ -16,69 +16,16 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import Any
 
-from validate.hard.case import IF_ANY, REFUSED, RIGHT_OR_REFUSED, Case, Every, Expected, every, family
+from validate.hard.case import IF_ANY, REFUSED, RIGHT_OR_REFUSED, Case, Expected, every, family
 from validate.hard.cases.links import GROUP, held_apart
 from validate.hard.subjects import Content, Subject
 
-Cases = tuple[Case, ...]
 Place = tuple[str | int, ...]
 Pairs = list[tuple[str, str]]
 SINE = {"sine": {"amplitude": 5.0, "angular_frequency": 2.0, "phase": 0.3, "offset": 1.0}}
 TABLE = {"table": {"times": [0.0, 0.1, 0.2, 0.3], "values": [0.0, 1.0, 3.0, 2.0]}}
 OF_HEAVE = (SINE, {"polynomial": [10.0, 20.0, 30.0]}, {"constant": 10.0})
-# Name, the number, what has to come of it, why; the step between places: scenes with a number that is mostly
-# solved take time.
-NUMBERS: tuple[tuple[str, object, Expected, str, int], ...] = (
-    ("not-a-number", math.nan, REFUSED, "A NaN spreads through everything that it meets.", 1),
-    ("minus-infinity", -math.inf, REFUSED, "It passes every check for too large.", 1),
-    ("huge", 1e308, RIGHT_OR_REFUSED, "The square of 1e308 overflows.", 3),
-    ("tiny", 1e-308, RIGHT_OR_REFUSED, "The square of 1e-308 is 0.", 3),
-    ("whole-number-too-large", 10**400, REFUSED, "401 digits fit no floating-point number.", 1),
-)
-
-
-def content(subject: Subject, heave: Content = TABLE) -> Content:
-    """A short motion of a car with a law of every kind, in which every number has a place."""
-    law = heave if subject.heaves else None
-    return deepcopy(subject.content((0.0, 0.1, 0.05), SINE, law, stop=0.2, samples=2))
-
-
-def _places(part: Any, here: Place = ()) -> list[Place]:
-    if isinstance(part, dict | list):
-        inner = part.items() if isinstance(part, dict) else enumerate(part)
-        return [place for key, value in inner for place in _places(value, (*here, key))]
-    return [here] if isinstance(part, float | int) and not isinstance(part, bool) else []
-
-
-@cache
-def places(subject: Subject) -> list[tuple[Content, Place]]:
-    """Every place of the scene that holds a number, and of every other law of heave, with that law."""
-    of_heave = [law for law in OF_HEAVE if subject.heaves]
-    return [
-        *((TABLE, place) for place in _places(content(subject))),
-        *(
-            (law, p)
-            for law in of_heave
-            for p in _places(content(subject, law))
-            if p[:2] == ("inputs", "heave")
-        ),
-    ]
-
-
-def with_number(number: object, subject: Subject, value: float) -> Content:
-    """A scene with another number at one place."""
-    heave, place = places(subject)[int(value) - 1]
-    whole = content(subject, heave)
-    part: Any = whole
-    for key in place[:-1]:
-        part = part[key]
-    part[place[-1]] = number
-    return whole
-
-
-def place_of(subject: Subject, value: float) -> dict[str, str]:
-    """A place in words, such as mechanism.points.strut_top.2."""
-    return {"place": ".".join(str(key) for key in places(subject)[int(value) - 1][1])}
+CASES: list[Case] = []
 
 
 def apart(subject: Subject) -> Pairs:
@@ -101,45 +48,83 @@ def in_one_place(pairs: Callable[[Subject], Pairs], subject: Subject, value: flo
     return subject.absolute(inputs, replace(subject.car, points=points))
 
 
-def _pairs(name: str, why: str, pairs: Callable[[Subject], Pairs], values: Every, **more: Any) -> Cases:
-    return family(
-        *(partial(in_one_place, pairs), "number of the pair of points", values),
-        name=name,
-        why=why,
-        group=GROUP,
+def _pairs(pairs: Callable[[Subject], Pairs], step: int = 1, **more: Any) -> None:
+    family(
+        *(CASES, GROUP, "number of the pair of points", every(pairs, step)),
         facts=lambda one, value: {"place": "{1} on {0}".format(*pairs(one)[int(value) - 1])},
         **more,
-    )
+    )(partial(in_one_place, pairs))
 
 
-CASES = (
-    *_pairs(
-        "link-without-length",
-        "Two points that a link or an axis holds apart are drawn in one place.",
-        *(apart, every(apart)),
-        # Elsewhere two rods may meet in one point of a body, and a crank have no length.
-        expected=lambda one: REFUSED if one.level else IF_ANY,
-        given=False,
-    ),
-    *_pairs(
-        "points-in-one-place",
-        "Two points without a link are drawn in one place, which may be a mechanism or not.",
-        *(loose, every(loose, step=3)),
-        expected=RIGHT_OR_REFUSED,
-    ),
-    *(
-        case
-        for name, number, expected, why, step in NUMBERS
-        for case in family(
-            *(partial(with_number, number), "number of the place in the scene"),
-            every(places, step),
-            expected,
-            name=name,
-            why=why,
-            group=GROUP,
-            facts=place_of,
-            # What has to be refused is no scene, and cannot be given to a solver.
-            given=expected != REFUSED,
-        )
-    ),
+_pairs(
+    apart,
+    # Elsewhere two rods may meet in one point of a body, and a crank have no length.
+    expected=lambda one: REFUSED if one.level else IF_ANY,
+    given=False,
+    name="link-without-length",
+    why="Two points that a link or an axis holds apart are drawn in one place.",
 )
+_pairs(
+    loose,
+    step=3,
+    expected=RIGHT_OR_REFUSED,
+    name="points-in-one-place",
+    why="Two points without a link are drawn in one place, which may be a mechanism or not.",
+)
+
+
+def content(subject: Subject, heave: Content = TABLE) -> Content:
+    """A short motion of a car with a law of every kind, in which every number has a place."""
+    law = heave if subject.heaves else None
+    return deepcopy(subject.content((0.0, 0.1, 0.05), SINE, law, stop=0.2, samples=2))
+
+
+def _places(part: Any, here: Place = ()) -> list[Place]:
+    if isinstance(part, dict | list):
+        inner = part.items() if isinstance(part, dict) else enumerate(part)
+        return [place for key, value in inner for place in _places(value, (*here, key))]
+    return [here] if isinstance(part, float | int) and not isinstance(part, bool) else []
+
+
+@cache
+def places(subject: Subject) -> list[tuple[Content, Place]]:
+    """Every place of the scene that holds a number, and of every other law of heave, with that law."""
+    of_heave = [
+        (law, place)
+        for law in (OF_HEAVE if subject.heaves else ())
+        for place in _places(content(subject, law))
+        if place[:2] == ("inputs", "heave")
+    ]
+    return [*((TABLE, place) for place in _places(content(subject))), *of_heave]
+
+
+def with_number(number: object, subject: Subject, value: float) -> Content:
+    """A scene with another number at one place."""
+    heave, place = places(subject)[int(value) - 1]
+    whole = content(subject, heave)
+    part: Any = whole
+    for key in place[:-1]:
+        part = part[key]
+    part[place[-1]] = number
+    return whole
+
+
+def place_of(subject: Subject, value: float) -> dict[str, str]:
+    """A place in words, such as mechanism.points.strut_top.2."""
+    return {"place": ".".join(str(key) for key in places(subject)[int(value) - 1][1])}
+
+
+# Name, the number, what has to come of it, why; the step between places: scenes with a number that is mostly
+# solved take time.
+NUMBERS: tuple[tuple[str, object, Expected, str, int], ...] = (
+    ("not-a-number", math.nan, REFUSED, "A NaN spreads through everything that it meets.", 1),
+    ("minus-infinity", -math.inf, REFUSED, "It passes every check for too large.", 1),
+    ("huge", 1e308, RIGHT_OR_REFUSED, "The square of 1e308 overflows.", 3),
+    ("tiny", 1e-308, RIGHT_OR_REFUSED, "The square of 1e-308 is 0.", 3),
+    ("whole-number-too-large", 10**400, REFUSED, "401 digits fit no floating-point number.", 1),
+)
+for name, number, expected, why, step in NUMBERS:
+    # What has to be refused is no scene, and cannot be given to a solver.
+    more: dict[str, Any] = {"name": name, "why": why, "facts": place_of, "given": expected != REFUSED}
+    numbered = CASES, GROUP, "number of the place in the scene", every(places, step), expected
+    family(*numbered, **more)(partial(with_number, number))

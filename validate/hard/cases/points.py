@@ -27,7 +27,6 @@ from validate.hard.subjects import NAMED, Content, Subject
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
-OFF = 37.0  # mm: how far the axis is from the ball joint in the car beside
 BALL, OUTER, INNER = "lower_ball_joint", "tie_rod_outer", "tie_rod_inner"
 LOWER, TOP, ROD_END = "strut_lower", "strut_top", "strut_rod_end"
 
@@ -62,9 +61,8 @@ def thin_knuckle(p: Points, value: float, *, upper: str) -> Points:
 
 def upper_arm_flat(p: Points, value: float) -> Points:
     """The upper ball joint near the plane of its pivots and the lower one."""
-    front = p["upper_arm_front"]
+    front, upper = p["upper_arm_front"], p["upper_ball_joint"]
     normal = unit(np.cross(p["upper_arm_rear"] - front, p[BALL] - front))
-    upper = p["upper_ball_joint"]
     return {**p, "upper_ball_joint": upper - (1.0 - value) * float((upper - front) @ normal) * normal}
 
 
@@ -74,22 +72,20 @@ def tie_rod_short(p: Points, value: float) -> Points:
     return {**p, INNER: inner, "rack_centre": inner}
 
 
-def _with_axis(p: Points, lower: Array) -> Points:
-    """The strut's axis through another place of strut_lower, its rod end on it."""
-    return {**p, LOWER: lower, ROD_END: p[TOP] + 0.4 * (lower - p[TOP])}
-
-
-def _ways(p: Points) -> dict[str, Array]:
-    """From the ball joint to strut_lower, of that what is off the line to the top, and off the plane."""
-    foot, along = p[LOWER] - p[BALL], unit(p[TOP] - p[BALL])
-    upright = unit(np.cross(p[TOP] - p[BALL], p[OUTER] - p[BALL]))
-    return {"foot": foot, "inboard": unit(foot - (foot @ along) * along), "upright": upright}
-
-
 def axis(p: Points, value: float, *, weights: Mapping[str, float], off: float, way: str) -> Points:
-    """The axis through a weighed mean of points, and `off` mm along a way from it at the value 1."""
+    """The axis through a weighed mean of points, and `off` mm along a way from it at the value 1.
+
+    Ways are from the ball joint to strut_lower, of that what is off the line to the top, and off the plane.
+    """
     mean: Array = np.add.reduce([share * p[name] for name, share in weights.items()])
-    return _with_axis(p, mean + value * off * _ways(p)[way])
+    foot, along = p[LOWER] - p[BALL], unit(p[TOP] - p[BALL])
+    ways = {
+        "foot": foot,
+        "inboard": unit(foot - (foot @ along) * along),
+        "upright": unit(np.cross(p[TOP] - p[BALL], p[OUTER] - p[BALL])),
+    }
+    lower = mean + value * off * ways[way]
+    return {**p, LOWER: lower, ROD_END: p[TOP] + 0.4 * (lower - p[TOP])}
 
 
 def slide_run_out(p: Points, value: float) -> Points:
@@ -107,21 +103,21 @@ def in_motion(row: Mapping[str, Any], subject: Subject, value: float) -> Content
     """The car of a row, driven from no rack travel."""
     ((draw, given),) = row["draw"].items()
     there = subject.car.drawn_as(DRAWS[draw](assembled(subject.name), value, **given))
-    size = value if row.get("shrinks") else 1.0
-    if row["motion"] == "near":
-        angle = subject.drawn["arm_angle"] if subject.name == "paper" else drawn_angle(there)
-        arm, rack = 0.05 * size, 10.0 * size
-        return scene_content(there, (angle, arm, arm), (0.0, rack, rack), stop=1.0)
-    law = (subject.drawn["arm_angle"], 0.1 * size, 0.05 * size)
-    return scene_content(there, law, (0.0, 10.0 * size, 5.0 * size), stop=1.0)
+    size, angle = value if row.get("shrinks") else 1.0, subject.drawn["arm_angle"]
+    if row["motion"] == "mixed":
+        law = (angle, 0.1 * size, 0.05 * size)
+        return scene_content(there, law, (0.0, 10.0 * size, 5.0 * size), stop=1.0)
+    angle = angle if subject.name == "paper" else drawn_angle(there)
+    arm, rack = 0.05 * size, 10.0 * size
+    return scene_content(there, (angle, arm, arm), (0.0, rack, rack), stop=1.0)
 
 
-def _case(row: Mapping[str, Any]) -> tuple[Case, ...]:
-    least = row["right_from"]
-    given = {key: row[key] for key in ("name", "why", "group", "suffix") if key in row}
-    expected, subjects = right_from(least) if least else RIGHT, [NAMED[row["car"]]]
-    return family(partial(in_motion, row), row["parameter"], row["values"], expected, subjects, **given)
-
-
+CASES: list[Case] = []
 TABLE = tomllib.loads(files("validate.hard.cases").joinpath("points.toml").read_text(encoding="utf-8"))
-CASES = [case for group in TABLE["group"] for row in group["row"] for case in _case(group | row)]
+for row in (group | row for group in TABLE["group"] for row in group["row"]):
+    family(
+        *(CASES, row["group"], row["parameter"], row["values"]),
+        right_from(row["right_from"]) if row["right_from"] else RIGHT,
+        [NAMED[row["car"]]],
+        **{key: row[key] for key in ("name", "why", "suffix") if key in row},
+    )(partial(in_motion, row))

@@ -1,4 +1,4 @@
-"""Inputs driven beyond their last values: each refusal is held to the true end.
+"""Inputs driven to their last values and beyond: each refusal is held to the true end.
 
 Nothing is assembled beyond the end, so a formulation is `right` here when it refuses the motion and says what
 it must: the last value to 1e-9 of the input's range, which input and value were asked for, the motion up to
@@ -16,20 +16,17 @@ import numpy as np
 
 from pointcoord import AssemblyError, Scene
 from pointcoord.numerics.rounding import EPS
-from validate.cars.scene_content import Law
+from validate.cars.car import Law
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
 from validate.formulations.reference_solution import inputs_at, reference_instant
-from validate.hard.answer import Answer
+from validate.hard.answer import Answer, Trial
 from validate.hard.case import Case, Values, family
 from validate.hard.last_values import LastValue, last_value
 from validate.hard.subjects import Content, Subject
-from validate.hard.trial import Trial
 from validate.reference import NoReferenceError
 
 SHARE = 1e-9  # of the range, or of the way: how exactly its end must be found
-GROUP = "Reachable range"
-WHOLE = {"angle": "the way from the end to the upright arm", "turn": "its range"}
 Inputs = Mapping[str, float]
 Lock = Callable[[tuple[str, ...]], bool]
 """Whether the links that limit a motion, the strongest first, are those that lie in line."""
@@ -75,7 +72,7 @@ class End:
         """The scene that asks for an overshoot, in parts of the range, or as far as angles have a meaning."""
         last, start = self.last, self.start[self.driven]
         goal = last.beyond(overshoot)
-        if self.subject.kinds[self.driven] == "angle":
+        if self.subject.is_a("arm", self.driven):
             room = float(abs(Fraction(np.pi if self.ahead else 0.0) - last.value))
             # All of the room ends at 0 or pi but for a rounding, which must not lead beyond.
             goal = min(max(last.beyond(overshoot * room / last.reach), 0.0), np.pi)
@@ -91,31 +88,43 @@ class End:
         lost = "the overshoot was lost in rounding: there is a pose"
         return replace(answer, outcome="unjudged", reason=lost) if answer.outcome == "right" else answer
 
-
-def _held(refusal: FormulationError, faults: list[str], **sizes: float) -> Answer:
-    """A refusal that is right if nothing is wrong with it."""
-    reason = refusal.reason
-    said, condition = "; ".join(faults) or " ".join(str(reason).split()), getattr(reason, "condition", None)
-    return Answer(refusal.formulation, "wrong" if faults else "right", said, condition=condition, **sizes)
+    def driven_beyond(self, cases: list[Case], name: str, values: Values) -> None:
+        """Add the case of an input driven beyond its end, or there at the first instant."""
+        subject, driven = self.subject, self.driven
+        whole = "its range" if subject.is_a("turn", driven) else f"the range of {driven}"
+        whole = "the way from the end to the upright arm" if subject.is_a("arm", driven) else whole
+        first = "" if self.moving else ", and the first instant lies beyond"
+        family(
+            *(cases, "Reachable range", f"overshoot beyond the last value, in parts of {whole}", values),
+            subjects=[subject],
+            name=f"{'reach' if self.moving else 'start-beyond'}-{name}",
+            suffix="",
+            why=f"{self.where}{first}; beyond it there is no pose, and at it two assemblies meet.",
+            judge=self.judge,
+            facts=lambda *_: {"end [mm or rad]": float(self.last.value)},
+            unit=subject.units[driven],
+            beyond=True,
+        )(self.beyond)
 
 
 def refusal_held(refusal: FormulationError, scene: Scene, end: End) -> Answer:
-    """A refusal held to the true end."""
-    reached: Inputs = getattr(refusal.reason, "reached", {})
-    if end.driven not in reached:
-        reason = refusal.reason
-        return _held(refusal, [f"does not say how far it came: {type(reason).__name__}: {reason}"])
-    last = end.last
-    error, bound = float(abs(Fraction(reached[end.driven]) - last.value)), SHARE * last.reach
-    faults = (
-        [f"stops at {end.driven} = {reached[end.driven]!r}, not {float(last.value)!r}"]
-        if error > bound
-        else []
-    )
-    faults += _faults_of_words(refusal.reason, reached, end)
-    if end.moving and (fault := fault_of_kept(refusal, scene, float(last.value), end.driven)):
-        faults.append(fault)
-    return _held(refusal, faults, error=error, bound=bound, share=error / bound)
+    """A refusal held to the true end: right if nothing is wrong with it."""
+    reason: Any = refusal.reason
+    reached: Inputs = getattr(reason, "reached", {})
+    sizes = dict[str, float]()
+    if end.driven in reached:
+        last = end.last
+        error, bound = float(abs(Fraction(reached[end.driven]) - last.value)), SHARE * last.reach
+        sizes = {"error": error, "bound": bound, "share": error / bound}
+        stops = f"stops at {end.driven} = {reached[end.driven]!r}, not {float(last.value)!r}"
+        kept = fault_of_kept(refusal, scene, float(last.value), end.driven) if end.moving else ""
+        faults = (
+            [stops] * (error > bound) + list(_faults_of_words(reason, reached, end)) + [kept] * bool(kept)
+        )
+    else:
+        faults = [f"does not say how far it came: {type(reason).__name__}: {reason}"]
+    told, condition = "; ".join(faults) or " ".join(str(reason).split()), getattr(reason, "condition", None)
+    return Answer(refusal.formulation, "wrong" if faults else "right", told, condition=condition, **sizes)
 
 
 def _faults_of_words(reason: Any, reached: Inputs, end: End) -> Iterator[str]:
@@ -152,7 +161,6 @@ def fault_of_kept(refusal: FormulationError, scene: Scene, end: float, driven: s
         return "the motion up to there is not kept" if len(before) else ""
     if len(kept.times) != len(before):
         return f"{len(kept.times)} instants are kept, and {len(before)} lie before the end"
-    claims = kept.accuracy.claims["position"]
     for index, time in enumerate(before.tolist()):
         try:
             reference = reference_instant(scene, inputs_at(scene, time))
@@ -161,26 +169,6 @@ def fault_of_kept(refusal: FormulationError, scene: Scene, end: float, driven: s
         for name, places in kept.position.items():
             true = reference.position_as_float(name)
             off = np.abs(places[index] - true)
-            if not (off <= claims[name][index] + EPS * np.abs(true)).all():
+            if not (off <= kept.accuracy.claims["position"][name][index] + EPS * np.abs(true)).all():
                 return f"{name} of the kept instant {index} is off by {off.max():.3g} mm"
     return ""
-
-
-def driven_beyond(end: End, name: str, values: Values) -> tuple[Case, ...]:
-    """The case of an input driven beyond its end, or there at the first instant."""
-    kind = end.subject.kinds[end.driven]
-    first = "" if end.moving else ", and the first instant lies beyond"
-    return family(
-        end.beyond,
-        f"overshoot beyond the last value, in parts of {WHOLE.get(kind, f'the range of {end.driven}')}",
-        values,
-        subjects=[end.subject],
-        name=f"{'reach' if end.moving else 'start-beyond'}-{name}",
-        suffix="",
-        why=f"{end.where}{first}; beyond it there is no pose, and at it two assemblies meet.",
-        group=GROUP,
-        judge=end.judge,
-        facts=lambda *_: {"end [mm or rad]": float(end.last.value)},
-        unit=end.subject.units[end.driven],
-        beyond=True,
-    )

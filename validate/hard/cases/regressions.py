@@ -4,17 +4,27 @@ from __future__ import annotations
 
 from functools import partial
 
-from validate.cars.car import RIGHT, UP, Car
+from validate.cars.car import Car
 from validate.hard.cars import PAPER_CAR, SQUARE, drawn_angle, scene_content
-from validate.hard.case import RIGHT_OR_REFUSED, family, right_from
+from validate.hard.case import RIGHT_OR_REFUSED, Case, family, right_from
 from validate.hard.cases.ends import FULL
 from validate.hard.last_values import last_value
 from validate.hard.subjects import NAMED, PAPER, Content, Subject
 
 SEARCHED = NAMED["searched"]
 HELD = 27.68275866007217  # mm, where its rack was held
+BY_ANGLE = {"absolute": RIGHT_OR_REFUSED, "relative": RIGHT_OR_REFUSED}
+# The branch is kept at any tolerance: the sign of the Jacobian's determinant is followed.
+AT_A_TURN = dict.fromkeys(("pointcoord", "pointcoord-as-asked", "pointcoord-newton"), right_from(1e-12))
+CASES: list[Case] = []
+_found = partial(family, CASES, "Found by searches", subjects=[PAPER])
 
 
+@_found(
+    "distance of the arm from its end, in parts of its range",
+    FULL,
+    {"pointcoord": right_from(1e-11), **BY_ANGLE},
+)
 def error_all_but_its_bound(_: Subject, value: float) -> Content:
     """A search for the largest error / bound came here: the last step of Newton's method is nearly all of
     the error, and the bound measures it, so that nothing is left to spare.
@@ -23,6 +33,11 @@ def error_all_but_its_bound(_: Subject, value: float) -> Content:
     return SEARCHED.absolute({"arm_angle": last.beyond(-value), "rack": HELD})
 
 
+@_found(
+    "distance of the turn from the end, in parts of half the range",
+    (1e-1, 1e-7, 1e-12),
+    AT_A_TURN | BY_ANGLE,
+)
 def turn_at_a_coarse_tolerance(_: Subject, value: float) -> Content:
     """The rack turns just before its end: a series too coarse to see the other branch, which comes within
     the root of the distance, runs smoothly over to it and every residual stays zero.
@@ -35,38 +50,14 @@ def turn_at_a_coarse_tolerance(_: Subject, value: float) -> Content:
     return scene_content(PAPER_CAR, SQUARE, swing, stop=3.0, samples=4, tolerance=1e9)
 
 
+@_found(
+    "distance of the rod end behind the top, in parts of the strut",
+    (1.0, 1e-2, 1e-6, 1e-12),  # near the top a refusal takes a second
+    {"pointcoord": right_from(1e-2), **BY_ANGLE},
+)
 def strut_drawn_folded(_: Subject, value: float) -> Content:
     """Random scenes drew the rod end behind the strut's top: their line points the other way."""
     top, lower = PAPER_CAR.points["strut_top"], PAPER_CAR.points["strut_lower"]
     x, y, z = (t + value * (t - p) for t, p in zip(top, lower, strict=True))
     points = {**PAPER_CAR.points, "strut_rod_end": (x, y, z)}
-    return scene_content(Car(points, "left", UP, RIGHT, "collinear"), [1.4, 0.2], stop=1.0)
-
-
-_found = partial(family, group="Found by searches")
-BY_ANGLE = {"absolute": RIGHT_OR_REFUSED, "relative": RIGHT_OR_REFUSED}
-CASES = (
-    *_found(
-        error_all_but_its_bound,
-        "distance of the arm from its end, in parts of its range",
-        FULL,
-        {"pointcoord": right_from(1e-11), **BY_ANGLE},
-        [PAPER],
-    ),
-    *_found(
-        turn_at_a_coarse_tolerance,
-        "distance of the turn from the end, in parts of half the range",
-        (1e-1, 1e-7, 1e-12),
-        # The branch is kept at any tolerance: the sign of the Jacobian's determinant is followed.
-        dict.fromkeys(("pointcoord", "pointcoord-as-asked", "pointcoord-newton"), right_from(1e-12))
-        | BY_ANGLE,
-        [PAPER],
-    ),
-    *_found(
-        strut_drawn_folded,
-        "distance of the rod end behind the top, in parts of the strut",
-        (1.0, 1e-2, 1e-6, 1e-12),  # near the top a refusal takes a second
-        {"pointcoord": right_from(1e-2), **BY_ANGLE},
-        [PAPER],
-    ),
-)
+    return scene_content(Car(points, closure="collinear"), [1.4, 0.2], stop=1.0)

@@ -13,14 +13,13 @@ import pointcoord.solve.taylor
 from pointcoord import Scene
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.answer import Answer
+from validate.hard.answer import Answer, Trial, try_scene
 from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.case import Case
 from validate.hard.cases import laws, links
 from validate.hard.catalogue import CASES
 from validate.hard.run import examine
 from validate.hard.subjects import PAPER
-from validate.hard.trial import Trial, try_scene
 
 BY_NAME = {case.name: case for case in CASES}
 OURS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
