@@ -23,7 +23,6 @@ from typing import TypeVar
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.numerics.rounding import EPS
@@ -36,7 +35,6 @@ from validate.output.table import Part, Table
 from validate.reference import InfeasibleError, Instant, NoReferenceError
 from validate.studies.study import Findings, Row, Study, Task
 
-Array = NDArray[np.float64]
 Answer = TypeVar("Answer")
 
 DIGITS = 40  # of the reference: its error is 1e-20 of any error in double precision
@@ -56,10 +54,9 @@ COLUMNS: Mapping[str, str] = {
 
 def bounds(poses: int = 2000, seed: int = 0) -> Study:
     """Poses held close to the end of an input."""
-    tasks, examine = [Task(PART, number) for number in range(poses)], partial(examined, seed=seed)
-    return Study(
-        "bounds", "pose", {"seed": seed}, COLUMNS, tasks, examine, partial(found, seed=seed), chunk=8
-    )
+    tasks = [Task(PART, number) for number in range(poses)]
+    examine, summary = partial(examined, seed=seed), partial(found, seed=seed)
+    return Study("bounds", "pose", {"seed": seed}, COLUMNS, tasks, examine, summary, chunk=8)
 
 
 def examined(task: Task, seed: int) -> list[Row]:
@@ -82,17 +79,16 @@ def held_pose(pose: NearPose) -> Row:
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
         return {**where, "refusal": "pointcoord: no finite bound"}
-
-    def error(names: set[str]) -> float:
-        """The largest component of the distance of any of these points from the true one, mm."""
-        # Where the reference has no such assembly, nothing bounds the error.
-        if not isinstance(reference, Instant):
-            return math.inf
-        pairs = ((motion.position[name][0], reference.position[name]) for name in names)
-        return max(off_by(ours, exact) for pair in pairs for ours, exact in zip(*pair, strict=True))
-
-    names = set(scene.mechanism.topology.carried)
-    solved = error(set(motion.position) - names)
+    # The largest component of the distance of a point from the true one, mm; where the reference has no such
+    # assembly, nothing bounds it.
+    errors = dict.fromkeys(motion.position, math.inf)
+    if isinstance(reference, Instant):
+        for name, places in motion.position.items():
+            pairs = zip(places[0], reference.position[name], strict=True)
+            errors[name] = max(off_by(ours, exact) for ours, exact in pairs)
+    others = set(scene.mechanism.topology.carried)
+    solved = max(error for name, error in errors.items() if name not in others)
+    shares = [solved / bound, *(errors[name] / carried for name in others)]
     return {
         **where,
         "driven": pose.driven,
@@ -101,7 +97,7 @@ def held_pose(pose: NearPose) -> Row:
         "far": max(float(np.abs(place).max()) for place in motion.position.values()),
         "error": solved,
         "bound": bound,
-        "share": max(solved / bound, error(names) / carried) if names else solved / bound,
+        "share": max(shares),
     }
 
 
@@ -161,24 +157,28 @@ def _summary(checks: pd.DataFrame, refused: Mapping[str, int]) -> Table:
     for words in (variant.words for variant in variants()):
         here = checks[checks["suspension"] == words]
         counts = (len(here), refused[words], int((~(here["share"] <= 1.0)).sum()))
-        ends = here["share"].max(skipna=False), here["loose"].median()
-        shown = ("-", "-") if here.empty else (f"{ends[0]:.7g}", f"{ends[1]:.3g}")
-        rows.append((words, *map(str, counts), *shown))
+        ends = f"{here['share'].max(skipna=False):.7g}", f"{here['loose'].median():.3g}"
+        rows.append((words, *map(str, counts), *(("-", "-") if here.empty else ends)))
     head = ("suspension", "poses held", "refused", "bounds below the error")
     return Table((*head, "largest error / bound", "median bound / error"), tuple(rows))
 
 
 def _by_distance(checks: pd.DataFrame) -> Table:
     """A row for each decade of the distance from the end."""
+    checks = checks.assign(of_size=checks["error"] / checks["size"], most=checks["loss"])
+    columns = {
+        "condition": ".1e",
+        "of_size": ".1e",
+        "loss": ".2g",
+        "most": ".2g",
+        "loose": ".3g",
+        "share": ".2g",
+    }
+    largest = ("most", "share")
     rows = (
         (
-            f"1e{decade:.0f} to 1e{decade + 1:.0f}",
-            str(len(part)),
-            f"{part['condition'].median():.1e}",
-            f"{(part['error'] / part['size']).median():.1e}",
-            *(f"{of(part['loss']):.2g}" for of in (pd.Series.median, pd.Series.max)),
-            f"{part['loose'].median():.3g}",
-            f"{part['share'].max():.2g}",
+            *(f"1e{decade:.0f} to 1e{decade + 1:.0f}", str(len(part))),
+            *(f"{part[n].max() if n in largest else part[n].median():{form}}" for n, form in columns.items()),
         )
         for decade, part in checks.groupby(np.floor(np.log10(checks["distance"])))
     )
