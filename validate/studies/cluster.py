@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import signal
 import time
 import warnings
@@ -51,27 +50,25 @@ def run(
     """
     distributed, size = quiet_dask(), max(study.chunk, -(-len(tasks) // MOST))
     chunks = [tuple(tasks[i : i + size]) for i in range(0, len(tasks), size)]
-    # Each run has keys of its own: a scheduler gives what it still has of another one's otherwise.
-    run = os.urandom(4).hex()
-    keys = [f"{study.name}-{run}-{first.part}-{first.number}" for first, *_ in chunks]
-    work = partial(_work_out, study.examine, made_by())
     held: list[Row] = []
-    file, done, last = store.next_file(), 0, time.monotonic()
+    done, last = 0, time.monotonic()
 
     def record() -> None:
-        nonlocal held, file, last
+        nonlocal held, last
         if held:
             # Ctrl-C may come between any two steps: the same rows are then written again to the same file.
-            store.write(file, held)
-            held, file, last = [], store.next_file(), time.monotonic()
+            store.write(held)
+            held, last = [], time.monotonic()
         told(done)
 
+    # Not pure: a scheduler gives what it still has of another run otherwise.
+    futures = client.map(partial(_work_out, study.examine, made_by()), chunks, pure=False)
     try:
-        for future in distributed.as_completed(client.map(work, chunks, key=keys), loop=client.loop):
-            count, rows = _result(future)
+        for future in distributed.as_completed(futures, loop=client.loop):
+            rows = _result(future)
             # What is handed over is not to be worked out again when the worker that still has it dies.
             future.release()
-            held, done = [*held, *rows], done + count
+            held, done = [*held, *rows], done + len({(row["part"], row["number"]) for row in rows})
             if time.monotonic() - last >= WRITTEN:
                 record()
     finally:
@@ -80,8 +77,8 @@ def run(
 
 def _work_out(
     examine: Callable[[Task], list[Row]], program: Mapping[str, str], tasks: Sequence[Task]
-) -> tuple[int, list[Row]]:
-    """How many tasks there are, and their rows, worked out in the process of a worker by one thread."""
+) -> list[Row]:
+    """The rows of some tasks, worked out in the process of a worker by one thread."""
     worker = import_module("distributed").get_worker()
     if told := differences(made_by(), program):
         raise UsageError(f"the worker {worker.address} runs something else: {told}; install the same there")
@@ -91,7 +88,7 @@ def _work_out(
             f"the worker {worker.address} takes {worker.state.nthreads} tasks at once, a study takes workers "
             "of one; start it with --nthreads 1"
         )
-    return len(tasks), [row for task in tasks for row in rows_of(examine, task, worker.address)]
+    return [row for task in tasks for row in rows_of(examine, task, worker.address)]
 
 
 def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> list[Row]:
@@ -113,11 +110,10 @@ def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> li
     return [{**every, **row} for row in rows]
 
 
-def _result(future: Any) -> tuple[int, list[Row]]:
+def _result(future: Any) -> list[Row]:
     """What came of a future that is finished; it is worked out again if its worker has died since."""
     try:
-        result: tuple[int, list[Row]] = future.result()
-        return result
+        return list(future.result())
     except (UsageError, StudyStopped):
         raise
     # Whatever Dask says: of a scheduler that is gone, a task that ended its workers one after the other, or a
@@ -140,13 +136,13 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
         MissingPackage: Dask is not there.
         UsageError: nothing answers, or there is no worker.
     """
-    distributed = quiet_dask()
+    distributed, cluster = quiet_dask(), address
     with ExitStack() as stack:
-        if address != LOCAL:
-            _require_scheduler(distributed, address)
-        cluster: Any = address if address != LOCAL else _local(distributed, workers)
         if address == LOCAL:
+            cluster = _local(distributed, workers)
             stack.callback(_quietly, cluster.close)
+        else:
+            _require_scheduler(distributed, address)
         with warnings.catch_warnings():
             # Of other versions; those that matter are refused.
             warnings.simplefilter("ignore")
@@ -210,11 +206,8 @@ def _require_scheduler(distributed: Any, address: str) -> None:
         async with distributed.rpc(address, timeout=ANSWER, connection_args=how) as scheduler:
             return await scheduler.identity(n_workers=0)  # a worker knows no such argument
 
-    async def answer() -> Any:
-        return await asyncio.wait_for(identity(), ANSWER)
-
     try:
-        asyncio.run(answer())
+        asyncio.run(asyncio.wait_for(identity(), ANSWER))
     except Exception as error:  # also of what another program says, taken for the size of an answer
         problem = one_line(str(error)) or f"no answer in {ANSWER:g} s"
         raise UsageError(

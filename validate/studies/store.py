@@ -15,9 +15,8 @@ from __future__ import annotations
 
 import json
 import os
-import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from validate.errors import UsageError
@@ -36,15 +35,20 @@ class Store:
     """A folder of records.
 
     Attributes:
-        columns: of every row, with their types. head: what the rows depend on beside their task.
+        run: who writes, so that two runs never write the same file.
     """
 
     folder: Path
-    columns: Mapping[str, str]
-    head: Mapping[str, str | int]
+    study: Study
+    run: str = field(default_factory=lambda: os.urandom(4).hex())
+
+    @property
+    def head(self) -> Mapping[str, str | int]:
+        """What the rows depend on beside their task."""
+        return {"study": self.study.name, **self.study.settings, **made_by()}
 
     def files(self) -> list[Path]:
-        """What holds rows, in the order in which it was written."""
+        """What holds rows."""
         return sorted(path for path in self.folder.glob("*.parquet") if path.name[0] not in "_.")
 
     def rows(self) -> dict[Task, list[Row]]:
@@ -54,44 +58,44 @@ class Store:
             UsageError: a file cannot be read.
         """
         found: dict[Task, list[Row]] = {}
-        parquet = needed("study", "pyarrow.parquet", "cluster")
+        parquet, columns = needed("study", "pyarrow.parquet", "cluster"), [*EVERY, *self.study.columns]
         for file in self.files():
             here: dict[Task, list[Row]] = {}
             try:
-                rows = parquet.read_table(file, columns=list(self.columns), partitioning=None).to_pylist()
-                for row in rows:
+                for row in parquet.read_table(file, columns=columns, partitioning=None).to_pylist():
                     here.setdefault(Task(row["part"], row["number"]), []).append(row)
             except (OSError, ValueError, KeyError) as error:
                 told = " ".join(str(error).split())
-                raise _unusable(
-                    self.folder,
+                raise self.unusable(
                     f"{file.name} cannot be read as what this study records ({told}); delete this file to "
-                    "work out its tasks again",
+                    "work out its tasks again"
                 ) from None
             # Two runs may have worked out the same task: it counts once.
             found = here | found
         return found
 
-    def next_file(self) -> Path:
-        """A file for what is worked out next, which no other run has."""
-        return self.folder / f"{time.time_ns():020d}-{os.getpid()}.parquet"
-
-    def write(self, file: Path, rows: Sequence[Row]) -> None:
-        """Write a file: all rows of some tasks. Whoever was interrupted may write the same one again.
+    def write(self, rows: Sequence[Row]) -> None:
+        """Write a file: all rows of some tasks; who was interrupted writes the same again, to the same file.
 
         Raises:
             OutputError: it cannot be written.
         """
         pa, parquet = (needed("study", name, "cluster") for name in ("pyarrow", "pyarrow.parquet"))
-        schema = pa.schema([(name, getattr(pa, kind)()) for name, kind in self.columns.items()])
+        columns = {**EVERY, **self.study.columns}
+        schema = pa.schema([(name, getattr(pa, kind)()) for name, kind in columns.items()])
         table = pa.Table.from_pylist(list(rows), schema=schema)
         if not self.files():
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)
             except OSError as error:
                 raise unwritable(str(self.folder), error) from None
-            write_content(str(self.folder / HEAD), json.dumps(dict(self.head), indent=1) + "\n")
-        write_whole(str(file), lambda stream: parquet.write_table(table, stream))
+            write_content(str(self.folder / HEAD), json.dumps(self.head, indent=1) + "\n")
+        name = f"{rows[0]['part']}-{rows[0]['number']}-{self.run}.parquet"
+        write_whole(str(self.folder / name), lambda stream: parquet.write_table(table, stream))
+
+    def unusable(self, problem: str) -> UsageError:
+        """The error of a folder that records cannot be in."""
+        return UsageError(f"--records {shown(str(self.folder))}: {problem}")
 
 
 def records(folder: Path, study: Study) -> Store:
@@ -101,23 +105,19 @@ def records(folder: Path, study: Study) -> Store:
         UsageError: they are of something else, or there is no room.
     """
     needed("study", "pyarrow.parquet", "cluster")
-    store = Store(folder, {**EVERY, **study.columns}, {"study": study.name, **study.settings, **made_by()})
+    store = Store(folder, study)
     try:
         if folder.exists() and not folder.is_dir():
-            raise _unusable(folder, "is a file, and records take a folder; give another name")
+            raise store.unusable("is a file, and records take a folder; give another name")
         # A run that ended before anything was recorded left nothing to be held to.
         if not store.files():
             if folder.is_dir() and set(os.listdir(folder)) - {HEAD}:
-                raise _unusable(folder, "holds something else than records of a study; give another folder")
+                raise store.unusable("holds something else than records of a study; give another folder")
             return store
         there = json.loads((folder / HEAD).read_text(encoding="utf-8"))
         told = differences(there, store.head)
     except (OSError, ValueError, TypeError) as error:
-        raise _unusable(folder, f"{HEAD} does not say what the records are of ({error}); {ANOTHER}") from None
+        raise store.unusable(f"{HEAD} does not say what the records are of ({error}); {ANOTHER}") from None
     if told:
-        raise _unusable(folder, f"was begun with something else: {told}; {ANOTHER}")
+        raise store.unusable(f"was begun with something else: {told}; {ANOTHER}")
     return store
-
-
-def _unusable(folder: Path, problem: str) -> UsageError:
-    return UsageError(f"--records {shown(str(folder))}: {problem}")

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -10,8 +11,7 @@ import pytest
 from validate.cli import main
 from validate.hard import catalogue
 from validate.hard.answer import Answer
-from validate.hard.case import RIGHT, Case, family
-from validate.hard.subjects import PAPER
+from validate.hard.case import RIGHT, Case
 from validate.output.document import schema_text
 
 SCHEMA = json.loads(schema_text())
@@ -25,15 +25,9 @@ def case_of(name: str, answer: Answer | None, formulation: str = "absolute") -> 
             raise KeyboardInterrupt
         return answer
 
-    cases: list[Case] = []
-    made = family(
-        *(cases, "0. Made", "a number", (1.0,), {formulation: RIGHT}, [PAPER]),
-        name=name,
-        why="It is made.",
-        judge=judge,
-    )
-    made(lambda *_: {})
-    return cases[0]
+    (one,) = catalogue.chosen(["arm-hardly-moves"])
+    made: dict[str, Any] = {"expected": {formulation: RIGHT}, "values": (1.0,), "group": "0. Made"}
+    return replace(one, name=name, scene=lambda *_: {}, judge=judge, **made)
 
 
 @pytest.fixture

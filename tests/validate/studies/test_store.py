@@ -24,7 +24,7 @@ def recorded(folder: Path, *numbers: Sequence[int], study: Study = BOUNDS) -> St
     """A folder with a file for each group of numbers."""
     there = records(folder, study)
     for group in numbers:
-        there.write(there.next_file(), [row(number) for number in group])
+        there.write([row(number) for number in group])
     return there
 
 
@@ -43,7 +43,7 @@ def test_what_is_added_is_there_and_what_was_there_stays_as_it_is(tmp_path: Path
 def test_numbers_come_back_to_the_last_bit_and_none_as_none(tmp_path: Path) -> None:
     values = [0.1 + 0.2, 5e-324, float("inf"), -0.0, 1.7976931348623157e308, None]
     there = records(tmp_path, BOUNDS)
-    there.write(there.next_file(), [row(i, bound=value) for i, value in enumerate(values)])
+    there.write([row(i, bound=value) for i, value in enumerate(values)])
     assert [repr(one["bound"]) for (one,) in there.rows().values()] == [repr(value) for value in values]
 
 
