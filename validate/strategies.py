@@ -31,7 +31,8 @@ same draws are the same example.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,6 @@ from validate.cars.random_cars import (
     HALVED,
     SHARE,
     Moves,
-    NearPose,
     approach,
     drawn_back,
     is_accepted,
@@ -151,9 +151,9 @@ def near_singular(
         nearest, farthest: limits of the distance from the end, in parts of the input's range; 1e-12 < nearest
             <= farthest <= 0.1.
     """
-    there = variants_of(suspension, closure)
-    first_of = draw(st.integers(0, len(there) - 1))
-    chosen = next((one for one in there[first_of:] + there[:first_of] if one.ending_sets), None)
+    known = variants_of(suspension, closure)
+    first_of = draw(st.integers(0, len(known) - 1))
+    chosen = next((one for one in known[first_of:] + known[:first_of] if one.ending_sets), None)
     if chosen is None:
         raise ValueError(f"no input of suspension={suspension!r} has an end")
     car, variant = draw(_cars_of(chosen, reach, turns))
@@ -163,13 +163,18 @@ def near_singular(
     decades = draw(st.integers(0, 16)) / 16.0 * math.log10(farthest / nearest)
     steps = {name: draw(st.integers(-50, 50)) for name in names}
     distance = farthest * 10.0**-decades
-    for pose in _near(car, variant, names, first, aside, distance):
-        rates = {n: steps.get(n, 0) * _step(pose.car, n) for n in pose.home if n in names}
-        scene = Scene.from_mapping(
-            content_of(pose.car, {n: [pose.inputs[n], rate] for n, rate in rates.items()})
-        )
-        if _is_solved(scene):
-            return scene
+    others = ((driven, ahead) for driven in reversed(names) for ahead in (False, True))
+    # Near the end that is asked for, then near others of the car, then of its base car.
+    ways = product((car, variant.base), dict.fromkeys((first, *others)), dict.fromkeys((aside, 0.0)))
+    for there, (driven, ahead), beside in ways:
+        for share in (distance, 0.1):
+            pose = approach(there, variant, names, driven=driven, forward=ahead, aside=beside, distance=share)
+            if pose is None:
+                break  # there is no such end, at whatever distance
+            laws = {n: [pose.inputs[n], steps[n] * _step(there, n)] for n in pose.home if n in names}
+            scene = Scene.from_mapping(content_of(there, laws))
+            if _is_solved(scene):
+                return scene
     raise AssertionError("the base car has no open way to an end of an input")  # it has, see the tests
 
 
@@ -191,18 +196,12 @@ def _cars_of(draw: st.DrawFn, variant: Variant, reach: int | None, turns: bool) 
     own = with_every_point(base).points.keys() - variant.base.points.keys()
     far = round(SHARE * base.size) if reach is None else reach
     whole = st.integers(-far, far)
-    moves = (
-        Moves()
-        if variant.holds_its_shape
-        else Moves(
-            points={
-                name: np.array(draw(st.tuples(whole, whole, whole)), dtype=float) for name in base.points
-            },
-            slid={name: draw(st.integers(-5, 5)) / 5.0 for name in sliding(base)},
-            without=frozenset(name for name in sorted(own) if not draw(st.booleans())),
-            whole=True,
-        )
-    )
+    moves = Moves()
+    if not variant.holds_its_shape:
+        places = {name: np.array(draw(st.tuples(whole, whole, whole)), dtype=float) for name in base.points}
+        slid = {name: draw(st.integers(-5, 5)) / 5.0 for name in sliding(base)}
+        without = frozenset(name for name in sorted(own) if not draw(st.booleans()))
+        moves = Moves(points=places, slid=slid, without=without, whole=True)
     turn = rotation(*map(int, draw(st.sampled_from(TURNS)))) if turns else np.eye(3)
     mirror = draw(st.booleans()) and not variant.of_parts
 
@@ -230,20 +229,16 @@ def _driven(draw: st.DrawFn, car: Car, sets: Sequence[Sequence[str]]) -> Sequenc
 @st.composite
 def _laws(draw: st.DrawFn, car: Car, names: Sequence[str], stop: float) -> dict[str, Any]:
     home, known = drawn_inputs(car, names), car.structure.inputs
-    drawn = {name: draw(_shapes(*WITHIN[known[name].unit])) for name in names}
-    chassis = {
-        name: draw(st.none() | _shapes(*CHASSIS[one.unit]))
-        for name, one in known.items()
-        if one.moves_the_chassis
-    }
+    shapes = {name: draw(_shapes(*WITHIN[known[name].unit])) for name in names}
+    for name, one in known.items():
+        # A wheel on the ground may not reach as far as the chassis goes.
+        if one.moves_the_chassis and (shape := draw(st.none() | _shapes(*CHASSIS[one.unit]))) is not None:
+            shapes[name], home[name] = shape, 0.0
     for halved in range(HALVED + 1):
         share = 0.5**halved if halved < HALVED else 0.0
         # The least digits that can be read, but for the drawing itself.
         at = {name: round(value, 6) if share else value for name, value in home.items()}
-        laws = {n: _law(shape, at[n], share * _step(car, n)) for n, shape in drawn.items()}
-        # A wheel on the ground may not reach as far as the chassis goes.
-        beside = {n: shape for n, shape in chassis.items() if shape is not None}
-        laws |= {n: _law(shape, 0.0, share * _step(car, n)) for n, shape in beside.items()}
+        laws = {n: _law(shape, at[n], share * _step(car, n)) for n, shape in shapes.items()}
         if _is_solved(Scene.from_mapping(content_of(car, laws, stop=stop, samples=5))):
             return laws
     raise AssertionError("an accepted car cannot rest at its drawing")  # it is accepted because it can
@@ -267,21 +262,3 @@ def _law(shape: tuple[Sequence[int], int], middle: float, unit: float) -> dict[s
         return {"polynomial": [middle + unit * offset, unit * first, unit * second]}
     wave = {"amplitude": unit * first / frequency, "angular_frequency": float(frequency)}
     return {"sine": {**wave, "phase": second * STEP, "offset": middle + unit * offset}}
-
-
-def _near(
-    car: Car, variant: Variant, names: Sequence[str], first: tuple[str, bool], aside: float, distance: float
-) -> Iterator[NearPose]:
-    """The pose near the end that is asked for, then near others of the car, then of its base car."""
-    others = ((driven, ahead) for driven in reversed(names) for ahead in (False, True))
-    ends = dict.fromkeys((first, *others))
-    for there in (car, variant.base):
-        for driven, ahead in ends:
-            for beside in dict.fromkeys((aside, 0.0)):
-                for share in (distance, 0.1):
-                    pose = approach(
-                        there, variant, names, driven=driven, forward=ahead, aside=beside, distance=share
-                    )
-                    if pose is None:
-                        break  # there is no such end, at whatever distance
-                    yield pose

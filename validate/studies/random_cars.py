@@ -57,27 +57,29 @@ def scene_row(task: Task) -> list[Row]:
 
 def examined(car: RandomScene) -> Row:
     """Solve one scene by both models and say what came of it: the outcome and what there is to say of it."""
-    answers: list[Solution | FormulationError] = []
+    answers: list[Solution] = []
+    refusals: list[FormulationError] = []
     for name in (OURS, OTHER):
         try:
             answers.append(_solved(name, car))
         except FormulationError as error:
-            answers.append(error)
+            refusals.append(error)
         # Any other error is a defect of a model: it is counted and written down, and the run goes on.
         except Exception as error:
             return _kept(car, f"{name} fails: {type(error).__name__}", " ".join(str(error).split()))
-    first, second = answers
-    if isinstance(first, Solution) and isinstance(second, Solution):
-        return _compared(car, first, second)
-    if isinstance(first, FormulationError) and isinstance(second, FormulationError):
-        reasons = why_refused(first), why_refused(second)
-        shown = reasons[0] if reasons[0] == reasons[1] else " | ".join(reasons)
-        alike = "same reason" if same_reason(*reasons) else "different reasons"
-        why, told = unanswered(car.scene), " ".join(str(first.reason).split())
-        outcome = f"both refuse, {alike}: {shown}: {why}"
-        # A refusal that nothing explains is worth a look, even if both models agree in it.
-        return _kept(car, outcome, told) if why == NO_OBSTACLE else {"outcome": outcome, "reason": told}
-    return _one_sided(car, answers)
+    if not refusals:
+        return _compared(car, *answers)
+    told, reasons = " ".join(str(refusals[0].reason).split()), [why_refused(one) for one in refusals]
+    if answers:
+        # Of what stands alone the positions count: they say which of the two is right.
+        verdict = judged(car.scene.model_copy(update={"effects": ()}), *answers)
+        if verdict == NONE_WRONG:
+            verdict = f"answer right, {obstacle(car.scene)}"
+        return _kept(car, f"only {refusals[0].formulation} refuses, {reasons[0]}: {verdict}", told)
+    alike, why = "same reason" if same_reason(*reasons) else "different reasons", unanswered(car.scene)
+    outcome = f"both refuse, {alike}: {' | '.join(dict.fromkeys(reasons))}: {why}"
+    # A refusal that nothing explains is worth a look, even if both models agree in it.
+    return _kept(car, outcome, told) if why == NO_OBSTACLE else {"outcome": outcome, "reason": told}
 
 
 def _kept(car: RandomScene, outcome: str, reason: str | None = None) -> Row:
@@ -114,17 +116,6 @@ def _compared(car: RandomScene, first: Solution, second: Solution) -> Row:
     return _kept(car, f"disagreed in {worst.quantity}: {judged(car.scene, first, second)}", reason)
 
 
-def _one_sided(car: RandomScene, answers: Sequence[Solution | FormulationError]) -> Row:
-    (error,) = (a for a in answers if isinstance(a, FormulationError))
-    (answer,) = (a for a in answers if isinstance(a, Solution))
-    # Of what stands alone the positions count: they say which of the two is right.
-    verdict = judged(car.scene.model_copy(update={"effects": ()}), answer)
-    if verdict == NONE_WRONG:
-        verdict = f"answer right, {obstacle(car.scene)}"
-    outcome = f"only {error.formulation} refuses, {why_refused(error)}: {verdict}"
-    return _kept(car, outcome, " ".join(str(error.reason).split()))
-
-
 def _shares(outcome: Outcome) -> str:
     """Largest share of each quantity, and of each number of the car, whichever wheel it is of.
 
@@ -142,15 +133,13 @@ def _shares(outcome: Outcome) -> str:
 def found(rows: Sequence[Row]) -> Findings:
     """Every outcome counted, and the largest share of each tolerance."""
     table = pd.DataFrame(rows, columns=["number", "seconds", *COLUMNS])
-    kept = table[table["scene"].notna()]
+    kept = [row for row in rows if row.get("scene") is not None]
     counts = table.groupby(["suspension", "kind", "outcome"]).size().reset_index(name="scenes")
     largest: dict[str, tuple[float, int]] = {}
-    for number, shares in table.loc[table["shares"].notna(), ["number", "shares"]].itertuples(index=False):
-        for name, share in json.loads(shares).items():
-            largest[name] = max(largest.get(name, (0.0, 0)), (share, int(number)))
-    names = ["number", "suspension", "kind", "outcome", "reason"]
-    written = kept[names].astype(object).where(kept[names].notna(), None).to_dict("records")
-    scenes = ({"scene": json.loads(scene)} for scene in kept["scene"])
+    for row in rows:
+        for name, share in json.loads(row.get("shares") or "{}").items():
+            largest[name] = max(largest.get(name, (0.0, 0)), (share, row["number"]))
+    names = ("number", "suspension", "kind", "outcome", "reason")
     data = {
         "seed": SEED,
         "scenes": len(table),
@@ -158,7 +147,9 @@ def found(rows: Sequence[Row]) -> Findings:
         "largest_shares": [
             {"quantity": name, "share": share, "scene": scene} for name, (share, scene) in largest.items()
         ],
-        "written_down": [{**one, **scene} for one, scene in zip(written, scenes, strict=True)],
+        "written_down": [
+            {**{name: row.get(name) for name in names}, "scene": json.loads(row["scene"])} for row in kept
+        ],
     }
     parts: list[Part] = [_summary(table), "", _outcomes(table)]
     if largest:
