@@ -24,7 +24,6 @@ from pointcoord.errors import (
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.needed_part import needed_mechanism
 from pointcoord.method import AUTO, MAP, SERIES, Method, method_of
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
@@ -211,7 +210,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     """
     whole = scene_mechanism(scene, method)
     plan = plan_effects(scene.effects, method.effects, scene.unreported_points)
-    mechanism = needed_mechanism(whole, plan.derivatives(whole.topology))
+    mechanism = whole.part(plan.derivatives(whole.topology))
     laws, instants = scene.functions, scene.instants
     readout = Readout(
         mechanism=mechanism,

@@ -40,7 +40,7 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.certified_poses import CertifiedPoses
 from pointcoord.linkage.car_axes import CarAxes
-from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
+from pointcoord.linkage.constraints.in_body import carrier_weights
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import Way
 from pointcoord.numerics.double_double import PAIRS, two_sum
@@ -233,7 +233,6 @@ def _normals(edges: Sequence[Edges]) -> list[Enclosed]:
 
 def exact_weights(mechanism: Mechanism, name: str) -> Enclosed:
     """The weights that give the drawn point exactly, (3,)."""
-    body = Normal("", *mechanism.topology.carried[name])
-    values, lacks, doubt = carrier_weights(mechanism.drawing, name, body)
+    values, lacks, doubt = carrier_weights(mechanism.drawing, name, mechanism.topology.carried[name])
     # The doubt is PAIRS of magnitudes that plain doubles round some four times.
     return Enclosed.of(values, lacks, doubt, 4.0 * UNIT_ROUNDOFF / PAIRS * doubt)

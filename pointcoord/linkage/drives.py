@@ -7,17 +7,16 @@ mechanism.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from math import comb
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
-from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.on_line import Line
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import Pair, pair_product, pair_quotient
 from pointcoord.numerics.enclosure import TURN, Enclosed, within_a_turn
@@ -29,6 +28,7 @@ Array = NDArray[np.float64]
 SIDEWAYS = {"right": "to the right", "left": "to the left"}
 EXTREME = 8.0
 """Sizes of the mechanism: no rod that is drawn within one size reaches as far."""
+NO_LIMITS = -np.inf, np.inf
 # Of a computed cosine, in units of rounding: 1 unit in the last place, at worst. Of a term of its series by
 # so many more than of the one before: of the recursion only half / k times that is left, a product and a
 # quotient.
@@ -36,48 +36,46 @@ ROUNDED, OF_A_TERM = 2.0, 2.0
 
 
 @dataclass(frozen=True)
-class Drive(ABC):
-    """One driven coordinate and the input that drives it.
+class Drive:
+    """One driven coordinate and the input that drives it; its kinds are made by the functions below.
 
     Attributes:
         coordinate: name of the known coordinate. input: name of the input.
         unit: of the input, rad or mm.
+        sign: where the input is positive, in words.
+        scale: s as high and low, shape (...).
+        drawn: the coordinate at which the drawing itself stands.
         exact: whether s is a power of two, so that a product with it rounds nothing.
-        of_slide: whether it is the travel of a slide, by which a car is steered.
         quarter: None where the coordinate is proportional to the input.
+        limits, allowed: the smallest and the largest value that have a meaning, and these in words.
+        of_slide: whether it is the travel of a slide, by which a car is steered.
+        pushed: the point that slides so along a direction of the car, if one does.
+        by_travel: what drives the coordinate by a travel, mm, where the input stands for one.
     """
 
     coordinate: str
     input: str
-
-    unit: ClassVar[str] = "mm"
-    exact: ClassVar[bool] = True
-
-    @property
-    def of_slide(self) -> bool:
-        return False
-
-    @property
-    def quarter(self) -> int | None:
-        return None
+    unit: str
+    sign: str
+    scale: Callable[[Drawing], Pair] = field(compare=False)
+    drawn: Callable[[Drawing], Array] = field(compare=False)
+    exact: bool = True
+    quarter: int | None = None
+    limits: tuple[float, float] = NO_LIMITS
+    allowed: str = ""
+    of_slide: bool = False
+    pushed: str = ""
+    by_travel: Drive | None = None
 
     @property
     def travel(self) -> Drive:
-        """What drives the coordinate by a travel, mm, where the input stands for one; else this itself."""
-        return self
+        """What drives the coordinate by a travel, or else this itself."""
+        return self.by_travel or self
 
     @property
-    @abstractmethod
-    def sign(self) -> str:
-        """Where the input is positive, in words."""
-
-    @abstractmethod
-    def scale(self, drawing: Drawing) -> Pair:
-        """s as high and low, shape (...)."""
-
-    @abstractmethod
-    def drawn(self, drawing: Drawing) -> Array:
-        """The coordinate at which the drawing itself stands."""
+    def is_turn(self) -> bool:
+        """Whether the input is a turn of any size, which has two coordinates."""
+        return self.quarter is not None and not self.allowed
 
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The coordinate's series from the input's.
@@ -85,9 +83,20 @@ class Drive(ABC):
         Raises:
             InputOutOfRange: a value that has no meaning for this kind.
         """
+        if self.allowed:
+            first = np.ravel(value[..., 0])
+            outside = first[~((first >= self.limits[0]) & (first <= self.limits[1]))]
+            if len(outside):
+                raise InputOutOfRange(self.input, float(outside[0]), self._allowed(float(outside[0])))
         with np.errstate(over="ignore", invalid="ignore"):
             own = value if self.quarter is None else cosine_and_sine(value)[self.quarter]
         return np.asarray(self.scale(drawing)[0][..., None] * own)
+
+    def _allowed(self, worst: float) -> str:
+        if self.unit == "rad" and 2.0 * np.pi < worst <= 180.0:
+            in_degrees = f"if {worst:.10g} is meant in degrees, it is {np.radians(worst):.10g} rad"
+            return f"{self.allowed} ({in_degrees})"
+        return self.allowed
 
     def series_over(
         self, middle: Array, half: Array, order: int, drawing: Drawing
@@ -164,8 +173,9 @@ class Drive(ABC):
 
     def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
         """Two values of the coordinate beyond which no input makes sense, each of shape (...)."""
-        farthest = self.scale(drawing)[0] * (EXTREME * drawing.unit if self.quarter is None else 1.0)
-        return -farthest, farthest
+        travel = self.travel
+        farthest = travel.scale(drawing)[0] * (EXTREME * drawing.unit if self.quarter is None else 1.0)
+        return (0.0 if self.quarter is None and self.allowed else -1.0) * farthest, farthest
 
 
 def _cosine(law: Sequence[Enclosed], quarter: int) -> list[Enclosed]:
@@ -191,193 +201,107 @@ def _units(count: Array | float) -> Array:
     return np.where(np.asarray(count) > 0.0, np.asarray(count) + 0.01, 0.0) * UNIT_ROUNDOFF
 
 
-def _exactly(scale: Array) -> Pair:
-    return np.asarray(scale), np.zeros_like(scale)
-
-
-@dataclass(frozen=True)
-class ArmAngle(Drive):
+def arm_angle(coordinate: str, input: str, pivot: str, point: str, direction: str) -> Drive:
     """rise = d cos(angle), d the drawn length from pivot to point (paper eq. 12); angle in rad.
 
     The cosine tells angles apart between 0 and pi only, so only these are allowed.
     """
-
-    pivot: str
-    point: str
-    direction: str
-
-    unit = "rad"
-    quarter = 0
-    exact = False
-
-    @property
-    def sign(self) -> str:
-        return f"from the arm pointing {self.direction}"
-
-    def scale(self, drawing: Drawing) -> Pair:
-        return drawing.length(self.pivot, self.point)
-
-    def drawn(self, drawing: Drawing) -> Array:
-        return drawing.along(self.pivot, self.point, self.direction)
-
-    def series(self, value: Array, drawing: Drawing) -> Array:
-        angle = value[..., 0]
-        inside = (angle >= 0.0) & (angle <= np.pi)
-        if not inside.all():
-            worst = float(np.atleast_1d(angle[~inside])[0])
-            line = "the upward vertical" if self.direction == "up" else f"the direction {self.direction}"
-            allowed = f"0 to pi rad, measured from {line}"
-            if 2.0 * np.pi < worst <= 180.0:
-                allowed += f" (if {worst:.10g} is meant in degrees, it is {np.radians(worst):.10g} rad)"
-            raise InputOutOfRange(self.input, worst, allowed)
-        return super().series(value, drawing)
+    line = "the upward vertical" if direction == "up" else f"the direction {direction}"
+    return Drive(
+        coordinate,
+        input,
+        "rad",
+        f"from the arm pointing {direction}",
+        partial(_length, pivot, point),
+        partial(_along, pivot, point, direction),
+        exact=False,
+        quarter=0,
+        limits=(0.0, np.pi),
+        allowed=f"0 to pi rad, measured from {line}",
+    )
 
 
-@dataclass(frozen=True)
-class Travel(Drive):
+def travel(
+    coordinate: str, input: str, origin: str, point: str, direction: str, *, slides: bool = True
+) -> Drive:
     """A displacement of a point from an origin along a direction of the car; mm.
 
-    Attributes:
+    Args:
         origin: where it counts from; the point itself where that is its own drawn place.
         slides: whether the point is pushed along a line, inboard of what is linked to it.
     """
-
-    origin: str
-    point: str
-    direction: str
-    slides: bool = True
-
-    @property
-    def sign(self) -> str:
-        """Along the direction."""
-        return SIDEWAYS.get(self.direction, self.direction)
-
-    @property
-    def of_slide(self) -> bool:
-        return self.slides
-
-    def scale(self, drawing: Drawing) -> Pair:
-        """1 / unit."""
-        return _exactly(1.0 / drawing.unit)
-
-    def drawn(self, drawing: Drawing) -> Array:
-        """The travel at which the drawn point stands."""
-        return drawing.along(self.origin, self.point, self.direction)
+    sign, drawn = SIDEWAYS.get(direction, direction), partial(_along, origin, point, direction)
+    pushed = point if slides else ""
+    return Drive(coordinate, input, "mm", sign, _size, drawn, of_slide=slides, pushed=pushed)
 
 
-@dataclass(frozen=True)
-class TravelAlong(Drive):
+def travel_along(coordinate: str, input: str, line: Line, point: str) -> Drive:
     """A displacement of a point along a line that is drawn between two others; mm.
 
     The coordinate is the place along a vector d of the line, travel / |d|, whose length is a constant.
     """
-
-    line: OnLine
-
-    exact = False
-    of_slide = True
-
-    @property
-    def sign(self) -> str:
-        return f"along the {self.line.line}"
-
-    def scale(self, drawing: Drawing) -> Pair:
-        """1 / (unit |d|)."""
-        return pair_quotient(_exactly(1.0 / drawing.unit), self.line.length(drawing))
-
-    def drawn(self, drawing: Drawing) -> Array:
-        return self.line.foot(drawing)
+    sign, drawn = f"along the {line.name}", partial(line.foot, point)
+    return Drive(coordinate, input, "mm", sign, partial(_by_length, line), drawn, exact=False, of_slide=True)
 
 
-@dataclass(frozen=True)
-class Steered(Drive):
+def steered(of: Drive, per_turn: float) -> Drive:
     """The turn of a steering wheel whose pinion makes a travel, per_turn / 2 pi of it; rad.
 
-    Attributes:
-        of: the travel. per_turn: mm of it for a whole turn.
+    Args:
+        of: the travel. per_turn: mm of it for a whole turn; where it is negative the other way.
     """
-
-    of: Travel | TravelAlong
-    per_turn: float
-
-    unit = "rad"
-    exact = False
-    of_slide = True
-
-    @property
-    def travel(self) -> Drive:
-        return self.of
-
-    @property
-    def sign(self) -> str:
-        """As that of its travel, unless that is per turn the other way."""
-        return f"{'' if self.per_turn > 0.0 else 'against '}{self.of.sign}"
-
-    def scale(self, drawing: Drawing) -> Pair:
-        """The travel's, times per_turn / 2 pi."""
-        turn = np.asarray(TURN[0]), np.asarray(TURN[1])
-        ratio = pair_quotient(_exactly(np.asarray(self.per_turn)), turn)
-        return pair_product(ratio, self.of.scale(drawing))
-
-    def drawn(self, drawing: Drawing) -> Array:
-        return self.of.drawn(drawing)
-
-    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
-        """The travel's."""
-        return self.of.extremes(drawing)
+    scale, sign = partial(_per_turn, per_turn, of), f"{'' if per_turn > 0.0 else 'against '}{of.sign}"
+    return replace(of, unit="rad", sign=sign, scale=scale, exact=False, by_travel=of)
 
 
-@dataclass(frozen=True)
-class DistanceOf(Drive):
+def distance_of(coordinate: str, input: str, start: str, end: str) -> Drive:
     """The distance of two points; mm."""
-
-    start: str
-    end: str
-
-    @property
-    def sign(self) -> str:
-        return "apart"
-
-    def scale(self, drawing: Drawing) -> Pair:
-        """1 / unit."""
-        return _exactly(1.0 / drawing.unit)
-
-    def drawn(self, drawing: Drawing) -> Array:
-        return drawing.distance(self.start, self.end)
-
-    def series(self, value: Array, drawing: Drawing) -> Array:
-        if not (value[..., 0] > 0.0).all():
-            worst = float(np.atleast_1d(value[..., 0][~(value[..., 0] > 0.0)])[0])
-            raise InputOutOfRange(self.input, worst, "a distance above 0 mm")
-        return super().series(value, drawing)
-
-    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
-        _, farthest = super().extremes(drawing)
-        return 0.0 * farthest, farthest
+    above_zero, drawn = (float(np.nextafter(0.0, 1.0)), np.inf), partial(_distance, start, end)
+    allowed = "a distance above 0 mm"
+    return Drive(coordinate, input, "mm", "apart", _size, drawn, limits=above_zero, allowed=allowed)
 
 
-@dataclass(frozen=True)
-class TurnedBy(Drive):
-    """A turn from the drawing on; one of its coordinates is the cosine, another the sine; rad.
+def turned_by(coordinate: str, input: str, part: int) -> Drive:
+    """A turn from the drawing on; one of its coordinates is the cosine, part 0, another the sine, 1; rad."""
+    sign = "right-handed about the hinge"
+    return Drive(coordinate, input, "rad", sign, _one, partial(_turned, part), quarter=part)
 
-    Attributes:
-        part: 0 for the cosine, 1 for the sine.
-    """
 
-    part: int
+def _exactly(scale: Array) -> Pair:
+    return np.asarray(scale), np.zeros_like(scale)
 
-    unit = "rad"
 
-    @property
-    def quarter(self) -> int:
-        return self.part
+def _one(drawing: Drawing) -> Pair:
+    return _exactly(np.ones_like(drawing.unit))
 
-    @property
-    def sign(self) -> str:
-        return "right-handed about the hinge"
 
-    def scale(self, drawing: Drawing) -> Pair:
-        return _exactly(np.ones_like(drawing.unit))
+def _size(drawing: Drawing) -> Pair:
+    """1 / unit."""
+    return _exactly(1.0 / drawing.unit)
 
-    def drawn(self, drawing: Drawing) -> Array:
-        return (1.0 - self.part) * np.ones_like(drawing.unit)
+
+def _by_length(line: Line, drawing: Drawing) -> Pair:
+    """1 / (unit |d|)."""
+    return pair_quotient(_size(drawing), line.length(drawing))
+
+
+def _per_turn(per_turn: float, of: Drive, drawing: Drawing) -> Pair:
+    """The travel's, times per_turn / 2 pi."""
+    turn = np.asarray(TURN[0]), np.asarray(TURN[1])
+    return pair_product(pair_quotient(_exactly(np.asarray(per_turn)), turn), of.scale(drawing))
+
+
+def _length(start: str, end: str, drawing: Drawing) -> Pair:
+    return drawing.length(start, end)
+
+
+def _distance(start: str, end: str, drawing: Drawing) -> Array:
+    return drawing.distance(start, end)
+
+
+def _along(start: str, end: str, direction: str, drawing: Drawing) -> Array:
+    return drawing.along(start, end, direction)
+
+
+def _turned(part: int, drawing: Drawing) -> Array:
+    return (1.0 - part) * np.ones_like(drawing.unit)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.errors import MechanismError, UnknownName
-from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
+from pointcoord.linkage.constraints.in_body import carrier_weights
 from pointcoord.linkage.directions import car_directions, direction_of
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
@@ -114,10 +114,7 @@ def hardpoints_moved(mechanism: Mechanism, moves: Mapping[str, Array]) -> Mechan
 
 def _carrier_weights(topology: Topology, drawing: Drawing) -> dict[str, Array]:
     """Of every carried point."""
-    return {
-        name: carrier_weights(drawing, name, Normal("", *carriers))[0]
-        for name, carriers in topology.carried.items()
-    }
+    return {name: carrier_weights(drawing, name, carriers)[0] for name, carriers in topology.carried.items()}
 
 
 def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:

@@ -27,7 +27,7 @@ class Layout:
 
     @cached_property
     def unknowns(self) -> int:
-        """How many coordinates are unknown."""
+        """How many coordinates are unknown; the index of the constant 0, which comes after them."""
         return 3 * (len(self.moving) + len(self.vectors)) + len(self.ratios)
 
     @property
@@ -44,20 +44,18 @@ class Layout:
     def _places(self) -> tuple[dict[str, slice], dict[str, int], int]:
         """By name the places of vectors and of scalars, and how many coordinates there are in all."""
         vectors, scalars, first = dict[str, slice](), dict[str, int](), 0
-        for name in (*self.moving, *self.vectors):
-            vectors[name] = slice(first, first + 3)
-            first += 3
-        for name in self.ratios:
-            scalars[name] = first
-            first += 1
-        first += 2
-        for name in (*self.chassis, *self.directions):
-            vectors[name] = slice(first, first + 3)
-            first += 3
-        for name in (*self.driven, *self.constants):
-            scalars[name] = first
-            first += 1
-        return vectors, scalars, first
+        for triples, singles in (
+            ((*self.moving, *self.vectors), self.ratios),
+            ((*self.chassis, *self.directions), (*self.driven, *self.constants)),
+        ):
+            for name in triples:
+                vectors[name] = slice(first, first + 3)
+                first += 3
+            for name in singles:
+                scalars[name] = first
+                first += 1
+            first += 2 if first == self.unknowns else 0
+        return vectors, scalars, max(first, self.one + 1)
 
     @property
     def size(self) -> int:
@@ -69,23 +67,18 @@ class Layout:
         return self._places[0][name]
 
     def vector(self, name: str) -> Triple:
-        """The same three as indices; of no name those of a vector that is zero."""
+        """The same three as indices, also of three constants that make a vector; of no name those of zero."""
         if not name:
             return self.zero, self.zero, self.zero
-        first = self.span(name).start
-        return first, first + 1, first + 2
-
-    def edge(self, head: str, tail: str = "") -> tuple[Triple, Triple]:
-        """The two vectors whose difference an edge is."""
-        return self.vector(head), self.vector(tail)
+        if name in self._places[0]:
+            first = self.span(name).start
+            return first, first + 1, first + 2
+        x, y, z = (self.scalar(component) for component in per_axis(name))
+        return x, y, z
 
     def scalar(self, name: str) -> int:
         """Index of a slide's place, of a driven coordinate or of a constant of the drawing."""
         return self._places[1][name]
-
-    def number(self, name: str = "") -> tuple[int, int]:
-        """The same, or the constant 1, as the difference of two coordinates."""
-        return (self.scalar(name) if name else self.one), self.zero
 
     def place(self, name: str) -> slice | int:
         """Where a vector or a scalar is."""
@@ -109,3 +102,8 @@ class Layout:
         if index < 3 * len(vectors):
             return f"{'xyz'[index % 3]} of {vectors[index // 3]}"
         return self.ratios[index - 3 * len(vectors)]
+
+
+def per_axis(name: str) -> tuple[str, ...]:
+    """A name for each of three components."""
+    return tuple(f"{name} ({axis})" for axis in "xyz")

@@ -7,7 +7,7 @@ power of two changes no bit of a result.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
-from pointcoord.linkage.carried_points import carried_gain, carried_place
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Piece, Topology
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.partial_map import PartialMap, moving_part
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.vectors import cross
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -78,9 +78,36 @@ class Mechanism:
 
     @cached_property
     def carried_gain(self) -> float:
-        """How many times as far as a solved point a carried one may be off (see `carried_points`)."""
-        carried = self.topology.carried.items()
-        return max((carried_gain(self.carrier_weights[n], self.drawing, c) for n, c in carried), default=1.0)
+        """How many times as far as the coordinates of its carriers those of a carried point may be off.
+
+        |dp| <= |1 - a - b| |dp_0| + |a| |dp_1| + |b| |dp_2| + |c| |d(e1 x e2)|. An edge is off by twice as
+        much as its ends, and a component of the cross product by that times the edges' other components. It
+        is the largest of all points, of a batch too.
+        """
+        gains = [1.0] * (not self.topology.carried)
+        for name, carriers in self.topology.carried.items():
+            base, first, second = (self.drawing.vectors[point] for point in carriers)
+            sides = np.abs(first - base) + np.abs(second - base)
+            others = (sides.sum(axis=-1, keepdims=True) - sides).max(axis=-1)
+            a, b, c = np.moveaxis(self.carrier_weights[name], -1, 0)
+            gain = np.abs(1.0 - a - b) + np.abs(a) + np.abs(b) + 2.0 * np.abs(c) * others
+            gains.append(float(np.max(gain)))
+        return max(gains)
+
+    def part(self, points: Collection[str]) -> Mechanism:
+        """The part that some points hang on (see `Topology.part`), with the same origin and unit."""
+        topology = self.topology.part(points)
+        if topology is self.topology:
+            return self
+        places = topology.layout.places_in(self.layout)
+        return replace(
+            self,
+            topology=topology,
+            drawn=self.drawn[..., places],
+            drawn_lacks=self.drawn_lacks[..., places],
+            drawn_doubt=self.drawn_doubt[..., places],
+            carrier_weights={name: self.carrier_weights[name] for name in topology.carried},
+        )
 
     def taken(self, members: NDArray[np.intp] | int) -> Mechanism:
         """Some members of a batch of one dimension, by number, or one car of it."""
@@ -104,8 +131,7 @@ class Mechanism:
         topology = self.topology
         found = {name: y[..., self.layout.span(name)] for name in (*topology.chassis, *topology.moving)}
         for name, carriers in topology.carried.items():
-            places = (found[carrier] for carrier in carriers)
-            found[name] = carried_place(self.carrier_weights[name], *places)
+            found[name] = carried_place(self.carrier_weights[name], *(found[one] for one in carriers))
         return found
 
     def turned_over(self, y: Array) -> tuple[NDArray[np.bool_], tuple[Piece, Piece] | None]:
@@ -192,3 +218,25 @@ class Mechanism:
                 y[..., place], self.drawing, 0.0 if laws is None else laws[drive.input]
             )
         return lacking, uncertainty
+
+
+def carried_place(
+    weights: Array,
+    base: Array,
+    first: Array,
+    second: Array,
+    *,
+    product: Callable[[Array, Array], Array] = cross,
+) -> Array:
+    """A point that rides on a body, p = p_0 + a e1 + b e2 + c e1 x e2, shape (..., 3).
+
+    The weights come from the drawing (see `constraints.in_body`) and stay, so that it needs no equation.
+
+    Args:
+        weights: (a, b, c), shape (..., 3).
+        base, first, second: places of its three carriers, shape (..., 3).
+        product: of two vectors.
+    """
+    e1, e2 = first - base, second - base
+    a, b, c = (weights[..., i, None] for i in range(3))
+    return np.asarray(base + a * e1 + b * e2 + c * product(e1, e2))

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.linkage.carried_points import carried_series
-from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.mechanism import Mechanism, carried_place
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import implicit_rate
+from pointcoord.numerics.power_series import cross_series
 
 Array = NDArray[np.float64]
 
@@ -188,5 +188,6 @@ def point_series(mechanism: Mechanism, series: Array) -> dict[str, Array]:
     layout, topology = mechanism.layout, mechanism.topology
     found = {name: series[..., list(layout.vector(name))] for name in (*topology.chassis, *topology.moving)}
     for name, carriers in topology.carried.items():
-        found[name] = carried_series(mechanism.carrier_weights[name], *(found[c] for c in carriers))
+        weights, places = mechanism.carrier_weights[name][..., None, :], (found[one] for one in carriers)
+        found[name] = carried_place(weights, *places, product=cross_series)
     return {name: each * mechanism.unit[..., None, None] for name, each in found.items()}

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from collections.abc import Collection, Hashable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.drives import Drive, TurnedBy
+from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.block_order import rows_too_many
 from pointcoord.numerics.quadratic import QuadraticMap, quadratic_map
@@ -97,33 +97,29 @@ class Topology:
         return tuple(name for name in self.points if name not in self.stand_ins)
 
     def role(self, name: str) -> tuple[str, ...]:
-        """The points of a role; empty without such a role."""
+        """The points of a role; empty without such a role. Those named below are of one without parts."""
         return self.roles.get(name, ())
 
     @property
     def wheel_axis(self) -> tuple[str, ...]:
-        """That role, of a mechanism without parts."""
         return self.role("wheel_axis")
 
     @property
     def steering_axis(self) -> tuple[str, ...]:
-        """That role, of a mechanism without parts."""
         return self.role("steering_axis")
 
     @property
     def front_and_rear(self) -> tuple[str, ...]:
-        """That role, of a mechanism without parts."""
         return self.role("front_and_rear")
 
     @property
     def inboard(self) -> str:
-        """That role, of a mechanism without parts."""
         return "".join(self.role("inboard"))
 
     @property
     def wheel_centre(self) -> str:
         """The outer point of the wheel's axis; empty without one."""
-        return self.wheel_axis[1] if self.wheel_axis else ""
+        return "".join(self.wheel_axis[1:])
 
     def driven_along(self, way: str, part: str = "") -> tuple[str, ...]:
         """The driven inputs that are the travel of a slide, `by_rack`, those that are not, `by_travel`, or
@@ -158,7 +154,7 @@ class Topology:
     @cached_property
     def turning(self) -> tuple[str, ...]:
         """The inputs that are turns of any size from the drawing on, each with two coordinates."""
-        return tuple(dict.fromkeys(drive.input for drive in self.drives if isinstance(drive, TurnedBy)))
+        return tuple(dict.fromkeys(drive.input for drive in self.drives if drive.is_turn))
 
     @cached_property
     def driven(self) -> tuple[int, ...]:
@@ -181,29 +177,28 @@ class Topology:
         driven = {drive.input: drive.unit for drive in self.drives}
         return driven | dict.fromkeys(self.chassis_motion, "mm") | dict.fromkeys(self.chassis_turns, "rad")
 
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """A name for each row of the map."""
-        return tuple(label for row, label in enumerate(self._every_label) if row not in self.left_out)
-
-    @property
-    def left_labels(self) -> tuple[str, ...]:
-        """A name for each row that is left out."""
-        return tuple(self._every_label[row] for row in self.left_out)
-
-    @property
+    @cached_property
     def _every_label(self) -> tuple[str, ...]:
         return tuple(label for constraint in self.constraints for label in constraint.labels)
 
     @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """A name for each row of the map."""
+        return tuple(label for row, label in enumerate(self._every_label) if row not in self.left_out)
+
+    @cached_property
+    def left_labels(self) -> tuple[str, ...]:
+        """A name for each row that is left out."""
+        return tuple(self._every_label[row] for row in self.left_out)
+
+    @cached_property
     def rows_of(self) -> tuple[tuple[int, ...], ...]:
         """By constraint, the numbers of its rows in the map; less than it has where some are left out."""
-        found, first, number = [], 0, 0
+        found, every, number = [], iter(range(len(self._every_label))), 0
         for constraint in self.constraints:
-            last = first + len(constraint.labels)
-            kept = sum(row not in self.left_out for row in range(first, last))
+            kept = sum(next(every) not in self.left_out for _ in constraint.labels)
             found.append(tuple(range(number, number + kept)))
-            first, number = last, number + kept
+            number += kept
         return tuple(found)
 
     def strongest(self, forces: Array) -> tuple[str, ...]:
@@ -259,14 +254,89 @@ class Topology:
         return tuple(pairs), np.array(places, dtype=np.intp).reshape(-1, 2, 2, 3)
 
     @cached_property
+    def _maps(self) -> tuple[QuadraticMap, QuadraticMap]:
+        """Of the rows that are taken, and of those that are left out."""
+        layout = self.layout
+        rows = [row for constraint in self.constraints for row in constraint.rows(layout)]
+        taken = [row for number, row in enumerate(rows) if number not in self.left_out]
+        left = [rows[number] for number in self.left_out]
+        return (
+            quadratic_map(taken, layout.unknowns, layout.size),
+            quadratic_map(left, layout.unknowns, layout.size),
+        )
+
+    @property
     def map(self) -> QuadraticMap:
         """All constraints as one quadratic map; the same for every car of this topology."""
-        return _maps(self.constraints, self.left_out, self.layout)[0]
+        return self._maps[0]
 
-    @cached_property
+    @property
     def left_map(self) -> QuadraticMap:
         """The rows that are left out, as a map of the same coordinates."""
-        return _maps(self.constraints, self.left_out, self.layout)[1]
+        return self._maps[1]
+
+    def without(self, rows: tuple[int, ...]) -> Topology:
+        """The same with rows left out that follow from the others, made once."""
+        if rows not in self._others:
+            self._others[rows] = replace(self, left_out=rows)
+        return self._others[rows]
+
+    def part(self, points: Collection[str]) -> Topology:
+        """The part that some of its points hang on, made once; all of it if no input moves them.
+
+        The blocks of the map that give the points, and those that these read, are kept with all that they are
+        made of: a constraint with all its rows and its own coordinates, a point and a vector with all three
+        coordinates. So what is left is a linkage like any other. Where its points are does not depend on what
+        is left out, nor on whether that can be assembled.
+        """
+        wanted = frozenset(points)
+        if wanted.issuperset(self.points) or self.left_out:
+            return self
+        if wanted not in self._others:
+            self._others[wanted] = self._part(wanted)
+        return self._others[wanted]
+
+    @cached_property
+    def _others(self) -> dict[Hashable, Topology]:
+        return {}
+
+    def _part(self, wanted: frozenset[str]) -> Topology:
+        layout = self.layout
+        carriers = {name for point in wanted & self.carried.keys() for name in self.carried[point]}
+        moving = (wanted | carriers).intersection(self.moving)
+        chosen, read = self._kept({i for name in moving for i in layout.vector(name)})
+        drives = tuple(drive for drive in self.drives if layout.scalar(drive.coordinate) in read)
+        if not drives:
+            return self
+        names = tuple(name for name in self.moving if not read.isdisjoint(layout.vector(name)))
+        there = {*names, *self.chassis}
+        carried = {n: by for n, by in self.carried.items() if n in wanted and there.issuperset(by)}
+        there |= carried.keys()
+        bodies = {body: ends for body, ends in self.bodies.items() if there.issuperset(ends)}
+        return replace(self, moving=names, bodies=bodies, carried=carried, constraints=chosen, drives=drives)
+
+    def _kept(self, unknowns: set[int]) -> tuple[tuple[Constraint, ...], set[int]]:
+        """The constraints that some unknowns hang on, and all coordinates that they read."""
+        system, layout, order = self.map, self.layout, self.map.block_order
+        own = [_own(constraint, layout) for constraint in self.constraints]
+        block_of = {row: block for block in order.blocks for row in block.rows}
+        triples = [layout.vector(name) for name in (*layout.moving, *layout.vectors)]
+        wanted, read, kept = set(unknowns), set[int](), set[int]()
+        while True:
+            solved = {row for number in order.needed(wanted) for row in order.blocks[number].rows}
+            more = {
+                number
+                for number, rows in enumerate(self.rows_of)
+                if not (solved.isdisjoint(rows) and own[number].isdisjoint(read | wanted))
+            }
+            read = wanted.union(*(system.reads[row] for number in more for row in self.rows_of[number]))
+            whole = {i for triple in triples if not read.isdisjoint(triple) for i in triple}
+            # Rows of a constraint that is kept may belong to blocks that were not asked for.
+            theirs = {i for number in more for row in self.rows_of[number] for i in block_of[row].unknowns}
+            found = whole | theirs | {i for i in read if i < system.unknowns}
+            if more == kept and found <= wanted:
+                return tuple(self.constraints[number] for number in sorted(kept)), read
+            wanted, kept = wanted | found, more
 
     @cached_property
     def fighting(self) -> tuple[str, ...]:
@@ -277,15 +347,7 @@ class Topology:
         return tuple(dict.fromkeys(named))
 
 
-@lru_cache(maxsize=64)
-def _maps(
-    constraints: tuple[Constraint, ...], left_out: tuple[int, ...], layout: Layout
-) -> tuple[QuadraticMap, QuadraticMap]:
-    """Of the rows that are taken, and of those that are left out."""
-    rows = [row for constraint in constraints for row in constraint.rows(layout)]
-    taken = [row for number, row in enumerate(rows) if number not in left_out]
-    left = [rows[number] for number in left_out]
-    return (
-        quadratic_map(taken, layout.unknowns, layout.size),
-        quadratic_map(left, layout.unknowns, layout.size),
-    )
+def _own(constraint: Constraint, layout: Layout) -> set[int]:
+    """The coordinates that belong to a constraint alone."""
+    vectors = {i for name in constraint.vectors for i in layout.vector(name)}
+    return vectors | {layout.scalar(name) for name in (*constraint.slides, *constraint.constants)}

@@ -42,7 +42,7 @@ def _bodies(structure: Structure) -> None:
     if not structure.bodies.get(CHASSIS):
         problem = f"there is no body {CHASSIS!r}, the ground, with points"
         raise TableFault(("bodies",), problem, f"a body {CHASSIS!r}")
-    for body, points in structure.moving_bodies():
+    for body, points in structure.moving_bodies.items():
         if len(points) < 3:
             hint = "; write it in [rods]" if len(points) == 2 else ""
             raise TableFault(
@@ -60,7 +60,7 @@ def _bodies(structure: Structure) -> None:
             )
     held = {end for ends in structure.rods.values() for end in ends}
     held |= {name for slide in structure.slides.values() for name in (*slide.points, slide.through)}
-    for body, points in structure.moving_bodies():
+    for body, points in structure.moving_bodies.items():
         shared = (name for name in points if len(structure.bodies_of(name)) > 1)
         if held.isdisjoint(points) and not any(shared):
             raise TableFault(

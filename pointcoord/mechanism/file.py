@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, StrictBool, Val
 from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
-from pointcoord.mechanism.compiled import Place, choices_of, compiled
+from pointcoord.mechanism.compiled import Compiler, Place
 from pointcoord.mechanism.faults import TableFault, faults_of, known_keys, no_such
 from pointcoord.mechanism.freedoms import Freedoms, settled
 from pointcoord.mechanism.inputs import CHASSIS, Name
@@ -28,6 +28,8 @@ OTHERS = ("closures", "parts")
 ENDING = ".toml"
 BY_ORDER: Place = (0.0, 0.0, 0.0)
 """Where all points are if only their order counts."""
+AXES: Mapping[str, Place] = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+"""Of a car that says nothing of them."""
 
 
 @lru_cache(maxsize=1)
@@ -100,34 +102,41 @@ class MechanismFile:
             axes: `up` and `right` of the car.
             lengths: what inputs may need beside the points, by name, mm.
         """
-        whole = self.structures[closure]
-        structure = whole if points is None else whole.drawn_with(points)
-        there = dict.fromkeys(structure.points, BY_ORDER) if points is None else points
-        along, given = axes or {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}, lengths or {}
+        known, along, given = self.structures[closure].inputs, axes or AXES, lengths or {}
         if driven is None:
-            driven = self._first_driven(structure, closure, there, along, given)
-        own = tuple(name for name in structure.inputs if name in driven)
-        choices = choices_of(structure, own, there, along)
-        needed = {structure.inputs[name].length for name in own}
-        given = {name: length for name, length in given.items() if name in needed}
-        key = closure, own, tuple(structure.points), choices.key, tuple(given.items())
-        if key not in self._compiled:
-            named = f"{self.name}, {closure}" if closure != AS_DRAWN else self.name
-            topology = compiled(structure, own, choices, given, closure != AS_DRAWN)
-            # What a drawing may leave out stays known by name: messages say what stands in for what.
-            self._compiled[key] = replace(topology, name=named, stand_ins=whole.stand_ins)
-        topology = self._compiled[key]
+            driven = self._first_driven(closure, points, along, given)
+        own = tuple(name for name in known if name in driven)
+        topology = self._linkage(closure, own, points, along, given)
         if points is None or len(topology.labels) <= topology.layout.unknowns:
             return topology
-        holding = sum(not structure.inputs[name].moves_the_chassis for name in own)
+        holding = sum(not known[name].moves_the_chassis for name in own)
         too_many = holding > self.freedoms(closure, points, along)
         return topology if too_many else settled(topology, points, along)
 
+    def _linkage(
+        self,
+        closure: str,
+        driven: tuple[str, ...],
+        points: Mapping[str, Place] | None,
+        axes: Mapping[str, Place],
+        lengths: Mapping[str, float],
+    ) -> Topology:
+        """The linkage with all its rows."""
+        whole = self.structures[closure]
+        structure = whole if points is None else whole.drawn_with(points)
+        there = dict.fromkeys(structure.points, BY_ORDER) if points is None else points
+        compiler = Compiler(structure, driven, there, axes, lengths)
+        key = closure, compiler.key
+        if key not in self._compiled:
+            named = f"{self.name}, {closure}" if closure != AS_DRAWN else self.name
+            # What a drawing may leave out stays known by name: messages say what stands in for what.
+            self._compiled[key] = compiler.topology(named, whole.stand_ins, closure != AS_DRAWN)
+        return self._compiled[key]
+
     def _first_driven(
         self,
-        structure: Structure,
         closure: str,
-        points: Mapping[str, Place],
+        points: Mapping[str, Place] | None,
         axes: Mapping[str, Place],
         lengths: Mapping[str, float],
     ) -> tuple[str, ...]:
@@ -137,21 +146,19 @@ class MechanismFile:
         """
         holding = [
             name
-            for name, one in structure.inputs.items()
+            for name, one in self.structures[closure].inputs.items()
             if not one.moves_the_chassis and (not one.length or one.length in lengths)
         ]
         if self.freedoms(closure) <= 0:
-            drawn = len({*points.values()}) > 1
-            return tuple(holding[: max(self.freedoms(closure, points, axes), 0)]) if drawn else ()
+            return tuple(holding[: max(self.freedoms(closure, points, axes), 0)]) if points else ()
         taken: tuple[str, ...] = ()
         for name in holding:
-            tried = (*taken, name)
-            topology = compiled(structure, tried, choices_of(structure, tried, points, axes), lengths)
+            topology = self._linkage(closure, (*taken, name), points, axes, lengths)
             free = topology.layout.unknowns - len(topology.labels)
             if free >= 0 and not topology.fighting:
-                taken = tried
-            if free == 0 and taken == tried:
-                break
+                taken = (*taken, name)
+                if free == 0:
+                    break
         return taken
 
     def freedoms(
@@ -165,14 +172,11 @@ class MechanismFile:
         Args:
             points: as drawn, mm. Without them no equation is taken for redundant.
         """
-        structure = self.structures[closure]
-        along = axes or {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
-        drawn = points or dict.fromkeys(structure.points, BY_ORDER)
-        held = structure.drawn_with(drawn)
-        topology = compiled(held, (), choices_of(held, (), drawn, along))
+        along = axes or AXES
+        topology = self._linkage(closure, (), points, along, {})
         if points is None:
             return topology.layout.unknowns - len(topology.labels)
-        return Freedoms.of(topology, drawn, along).count
+        return Freedoms.of(topology, points, along).count
 
     @cached_property
     def _compiled(self) -> dict[Hashable, Topology]:

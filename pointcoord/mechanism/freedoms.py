@@ -8,7 +8,7 @@ one is violated there, the mechanism is locked, and no compromise between its ro
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -155,7 +155,7 @@ def settled(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, 
     fighting = not set(lost).isdisjoint(_rows_of_inputs(topology))
     if found.count or fighting:
         raise MechanismError(_words(topology, found, fighting), found.free or found.redundant)
-    return replace(topology, left_out=tuple(lost))
+    return topology.without(tuple(lost))
 
 
 def _words(topology: Topology, found: Freedoms, fighting: bool) -> str:

@@ -1,21 +1,16 @@
-"""What can be driven: a kind of input knows its keys, what they may name, its rows and its drives."""
+"""What can be driven: a kind of input knows its keys and what they may name.
+
+Its rows and drives are made in `compiled`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from pointcoord.linkage import drives
-from pointcoord.linkage.constraints import turn
-from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.constraints.contact_height import CHASSIS_ITSELF, ContactHeight, Ground
-from pointcoord.linkage.constraints.in_body import Normal
-from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.directions import DIRECTIONS
-from pointcoord.linkage.drives import Drive
 from pointcoord.mechanism.faults import TableFault, known_keys, no_such
 from pointcoord.wording import shown
 
@@ -63,27 +58,6 @@ Direction = Annotated[Name, AfterValidator(_direction)]
 Chassis = Literal["chassis"]
 
 Bodies = Mapping[str, Sequence[str]]
-Made = tuple[list[Constraint], list[Drive]]
-
-
-class Compiler(Protocol):
-    """What an input is made with."""
-
-    def length(self, name: str, input: str) -> float:
-        """A length that the scene says beside its points and that an input needs, mm."""
-
-    @property
-    def ground(self) -> tuple[Ground, list[Drive]]:
-        """The ground as the driven chassis sees it, and what drives it."""
-
-    def shared(self, body: str, other: str) -> tuple[str, ...]:
-        """Points of two bodies, as the first lists them."""
-
-    def normal(self, body: str) -> Normal:
-        """The triangle that stands for a body, with its normal."""
-
-    def driven_line(self, slide: str) -> OnLine:
-        """The line of a slide's first point."""
 
 
 class Entry(BaseModel):
@@ -141,10 +115,6 @@ class Input(Entry):
             TableFault: they make no input; its place is below the input's own.
         """
 
-    def made(self, name: str, of: Compiler) -> Made:
-        """Rows and drives of the input where it is driven; none of one that moves the chassis."""
-        return [], []
-
 
 class Arm(Input):
     """The angle of an arm of a body from a direction."""
@@ -168,11 +138,6 @@ class Arm(Input):
             if point not in bodies[self.angle]:
                 raise no_such(f"point of {self.angle}", point, bodies[self.angle], (key,))
 
-    def made(self, name: str, of: Compiler) -> Made:
-        value, edge = f"{name} rise", (self.of, self.about)
-        rise = ScalarProduct(f"rise of {self.of} over {self.about}", edge, (self.from_, ""), "", value)
-        return [rise], [drives.ArmAngle(value, name, self.about, self.of, self.from_)]
-
 
 class Turn(Input):
     """The turn of a body about a hinge from the drawing."""
@@ -189,24 +154,11 @@ class Turn(Input):
             problem = f"{self.angle} and {self.on} share {points}, which is no hinge"
             raise TableFault((), problem, "two bodies that share two points")
 
-    def made(self, name: str, of: Compiler) -> Made:
-        triangle = of.normal(self.angle)
-        tail, head = of.shared(self.angle, self.on)
-        corners = (triangle.base, triangle.first, triangle.second)
-        point = next(corner for corner in corners if corner not in (tail, head))
-        cosine, sine = f"cosine of {name}", f"sine of {name}"
-        carrier = None if self.on == CHASSIS else of.normal(self.on)
-        rows = turn.Turn(f"turn of {self.angle} by {name}", point, tail, head, cosine, sine, carrier)
-        return [rows], [drives.TurnedBy(cosine, name, 0), drives.TurnedBy(sine, name, 1)]
-
 
 class Travel(Input):
     """The travel of slides."""
 
     travel: SlideNames
-
-    def made(self, name: str, of: Compiler) -> Made:
-        return [], [*_travels(name, self.travel, of)]
 
 
 class Steers(Input):
@@ -215,22 +167,6 @@ class Steers(Input):
     unit = "rad"
     length = "rack_per_turn"
     steers: SlideNames
-
-    def made(self, name: str, of: Compiler) -> Made:
-        per_turn = of.length(self.length, name)
-        travels = _travels(name, self.steers, of)
-        return [], [drives.Steered(one.coordinate, name, one, per_turn) for one in travels]
-
-
-def _travels(name: str, slides: Names, of: Compiler) -> list[drives.Travel | drives.TravelAlong]:
-    found: dict[str, drives.Travel | drives.TravelAlong] = {}
-    for line in map(of.driven_line, slides):
-        if line.head in DIRECTIONS:
-            along = drives.Travel(line.place, name, line.origin, line.point, line.head)
-            found.setdefault(line.place, along)  # several along one direction of the car have one travel
-        else:
-            found.setdefault(line.place, drives.TravelAlong(line.place, name, line))
-    return list(found.values())
 
 
 class Height(Input):
@@ -242,12 +178,6 @@ class Height(Input):
     @property
     def directions(self) -> tuple[str, ...]:
         return (self.along,)
-
-    def made(self, name: str, of: Compiler) -> Made:
-        value, point = f"value of {name}", self.height
-        drawn = f"drawn height of {point} {self.along}"
-        rows = ScalarProduct(f"height of {point}", (point, ""), (self.along, ""), drawn, value)
-        return [rows], [drives.Travel(value, name, point, point, self.along, False)]
 
 
 class Contact(Input):
@@ -266,22 +196,11 @@ class Contact(Input):
             problem = f"{' and '.join(self.contact)} are of no one body, so they are not the axis of a wheel"
             raise TableFault((), problem, "two points of one body")
 
-    def made(self, name: str, of: Compiler) -> Made:
-        value, (inner, centre) = f"value of {name}", self.contact
-        ground, moves = of.ground if self.over == "ground" else (CHASSIS_ITSELF, [])
-        rows = ContactHeight(inner, centre, value, of.length(self.length, name), ground)
-        return [*ground.constraints, rows], [drives.Travel(value, name, centre, centre, "up", False), *moves]
-
 
 class Distance(Input):
     """The distance of two points."""
 
     distance: Pair
-
-    def made(self, name: str, of: Compiler) -> Made:
-        value, (start, end) = f"value of {name}", self.distance
-        rows = ScalarProduct(f"distance of {start} and {end}", self.distance, self.distance, "", value)
-        return [rows], [drives.DistanceOf(value, name, start, end)]
 
 
 class Moves(Input):

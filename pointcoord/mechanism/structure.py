@@ -162,6 +162,7 @@ class Structure:
                 found[shared] = () if holding == CHASSIS else beside
         return found
 
+    @cached_property
     def sliding(self) -> dict[str, tuple[str, bool]]:
         """The points on one turning slide, each with the slide and whether the line's body is held.
 
@@ -244,8 +245,9 @@ class Structure:
         tables["bodies"][CHASSIS] = tuple(dict.fromkeys(both))
         return replace(self, **tables)
 
-    def moving_bodies(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        return ((body, points) for body, points in self.bodies.items() if body != CHASSIS)
+    @cached_property
+    def moving_bodies(self) -> dict[str, tuple[str, ...]]:
+        return {body: points for body, points in self.bodies.items() if body != CHASSIS}
 
     def plain(self, driven: Collection[str]) -> dict[str, Any]:
         """Bodies, rods, slides, driven inputs, roles and the sides of parts as plain data."""
@@ -301,4 +303,4 @@ def _end(structure: Structure, point: str) -> str:
 
 def bodies_in_words(structure: Structure) -> Iterator[str]:
     """Every moving body with its points."""
-    return (f"{body}: {', '.join(points)}" for body, points in structure.bodies.items() if body != CHASSIS)
+    return (f"{body}: {', '.join(points)}" for body, points in structure.moving_bodies.items())

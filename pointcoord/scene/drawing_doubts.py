@@ -15,7 +15,6 @@ from pointcoord.effects.corner import wheels_of
 from pointcoord.effects.effect import Doubt
 from pointcoord.effects.registry import ANGLES
 from pointcoord.linkage.car_axes import CarAxes
-from pointcoord.linkage.drives import Travel
 from pointcoord.linkage.topology import Topology
 
 Array = NDArray[np.float64]
@@ -84,8 +83,7 @@ def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAx
 
     Both across the middle of the car, they are another wheel's.
     """
-    travels = (drive.travel for drive in topology.drives if drive.of_slide)
-    pushed = {travel.point for travel in travels if isinstance(travel, Travel)}
+    pushed = {drive.pushed for drive in topology.drives}
     links = (ends for constraint in topology.constraints for ends in constraint.squared_lengths)
     for inner, outer in ((one, two) for a, b in links for one, two in ((a, b), (b, a)) if one in pushed):
         one, other = (axes.component(points[name], "outboard") for name in (inner, outer))

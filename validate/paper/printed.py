@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, BodyRates, Edges, States
-from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.constraint import Constraint, Equation, Term
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file
 from pointcoord.method import Method
-from pointcoord.numerics.quadratic import Product, QuadraticMap, Row
+from pointcoord.numerics.quadratic import QuadraticMap, Row
 from pointcoord.solve.pointwise import square_velocity_term
 
 Array = NDArray[np.float64]
@@ -39,15 +39,11 @@ class PrintedParallel(Constraint):
     axis. The rows lose rank where the line tail - head is horizontal. Two rows.
     """
 
-    start: str
-    end: str
-    tail: str
-    head: str
-
-    @property
-    def name(self) -> str:
-        """Both lines."""
-        return f"{self.start} - {self.end} parallel to {self.tail} - {self.head}"
+    @classmethod
+    def of(cls, start: str, end: str, tail: str, head: str) -> PrintedParallel:
+        """The line from start to end, and that from tail to head."""
+        name = f"{start} - {end} parallel to {tail} - {head}"
+        return cls(name, (Equation(name, (Term(1.0, (end, start), (head, tail), cross=True),)),))
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -55,17 +51,15 @@ class PrintedParallel(Constraint):
         return tuple(f"{self.name} ({plane})" for plane in ("yz", "xz"))
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """(y_e - y_s)(z_h - z_t) - (z_e - z_s)(y_h - y_t), then the same with x for y."""
-        s, e, t, h = (layout.vector(name) for name in (self.start, self.end, self.tail, self.head))
-        return tuple(
-            (Product(1.0, (e[i], s[i]), (h[2], t[2])), Product(-1.0, (e[2], s[2]), (h[i], t[i])))
-            for i in (1, 0)
-        )
+        """(y_e - y_s)(z_h - z_t) - (z_e - z_s)(y_h - y_t), then the same with x for y: -1 times theirs."""
+        x, (first, second), _ = super().rows(layout)
+        y = tuple(replace(product, coefficient=-product.coefficient) for product in (second, first))
+        return x, y
 
 
 _ROWS = (
-    PrintedParallel("lower_ball_joint", "strut_lower", "strut_top", "strut_rod_end"),  # (8), (9)
-    PrintedParallel("strut_top", "strut_lower", "strut_top", "strut_rod_end"),  # (10), (11)
+    PrintedParallel.of("lower_ball_joint", "strut_lower", "strut_top", "strut_rod_end"),  # (8), (9)
+    PrintedParallel.of("strut_top", "strut_lower", "strut_top", "strut_rod_end"),  # (10), (11)
 )
 
 

@@ -1,117 +1,136 @@
-r"""What every kind of constraint can say of itself; each kind has a file of its own beside this one.
+r"""A constraint: named equations between points, directions and coordinates of y, as data.
 
-A constraint is data: the names of the points, directions and coordinates that it ties together. Its rows
-hold no numbers of a particular car; those are in y. p_a is the position of point a. What a kind needs in y
-beside points, and how it reads that off a drawing, it knows itself: nobody else asks what kind it is.
+Its equations hold no numbers of a particular car; those are in y. What it needs in y beside points, and how
+that is read off a drawing, it has with it: nobody else asks what kind it is. Each kind is a function in a
+file of its own beside this one, which makes a `Constraint`.
+
+An equation is a sum of terms that is zero. A term is a product of two numbers, of a number and a vector, or
+the scalar or vector product of two vectors; a vector is an edge, p_head - p_tail.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from pointcoord.linkage.drawing import Drawing, Placed
-from pointcoord.linkage.layout import Layout, Triple
+from pointcoord.linkage.layout import Layout, Triple, per_axis
 from pointcoord.numerics.quadratic import Product, Row
 
+Edge = tuple[str, str]
+Names = tuple[str, ...]
+Factor = str | Edge
+Reading = Callable[[Drawing], Mapping[str, Placed]]
+ONE = ""
+"""The name of the number 1."""
 
-class Constraint(ABC):
-    """Named rows over a layout, and the coordinates of y that belong to them alone.
+
+class Term(NamedTuple):
+    """A product of two factors, each the name of a number or an edge.
 
     Attributes:
+        coefficient: 1 or -1. cross: whether it is the vector product of two edges.
+        less: a number that is taken off the first factor, which is a number too.
+    """
+
+    coefficient: float
+    one: Factor
+    other: Factor
+    cross: bool = False
+    less: str = ""
+
+    def rows(self, layout: Layout) -> tuple[Row, ...]:
+        """The products of its components: one row of a number, three of a vector."""
+        c = self.coefficient
+        (a, b), (d, e) = _components(layout, self.one, self.less), _components(layout, self.other)
+        if self.cross:
+            return tuple(
+                (Product(c, (a[j], b[j]), (d[k], e[k])), Product(-c, (a[k], b[k]), (d[j], e[j])))
+                for j, k in ((1, 2), (2, 0), (0, 1))
+            )
+        products = tuple(Product(c, (a[i], b[i]), (d[i], e[i])) for i in range(3))
+        if isinstance(self.one, str) and isinstance(self.other, str):
+            return (products[:1],)
+        if isinstance(self.one, str) or isinstance(self.other, str):
+            return tuple((product,) for product in products)
+        return (products,)
+
+
+def _components(layout: Layout, factor: Factor, less: str = "") -> tuple[Triple, Triple]:
+    """The coordinates whose differences are a vector's components; a number is that of each."""
+    if isinstance(factor, tuple):
+        return layout.vector(factor[0]), layout.vector(factor[1])
+    place = layout.scalar(factor) if factor else layout.one
+    zero = layout.scalar(less) if less else layout.zero
+    return (place, place, place), (zero, zero, zero)
+
+
+class Equation(NamedTuple):
+    """A sum of terms that is zero.
+
+    Attributes:
+        label: what messages call it; of a vector with its components behind.
+    """
+
+    label: str
+    terms: tuple[Term, ...]
+
+    @property
+    def labels(self) -> Names:
+        """A name for each row."""
+        first = self.terms[0]
+        numbers = isinstance(first.one, str) + isinstance(first.other, str)
+        return per_axis(self.label) if numbers == 1 else (self.label,)
+
+    def rows(self, layout: Layout) -> tuple[Row, ...]:
+        terms = (term.rows(layout) for term in self.terms)
+        return tuple(tuple(p for row in rows for p in row) for rows in zip(*terms, strict=True))
+
+
+def nothing(drawing: Drawing) -> Mapping[str, Placed]:
+    """What a constraint without coordinates of its own reads off a drawing."""
+    return {}
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """Equations with a name, and the coordinates of y that belong to them alone.
+
+    Attributes:
+        name: what messages call it.
+        placed: its own coordinates as drawn, by name; a MechanismError where the drawing gives them no value.
         vectors, slides: unknown vectors and unknown numbers that it brings along.
-        constants: numbers of the drawing that its rows need.
+        constants: numbers of the drawing that its equations need.
         squared_lengths: pairs of points that it keeps at their drawn distance.
         aligned: points that it puts on one line although they may be drawn beside it: two of the line and a
             third.
         segments: pairs of points that a picture of the linkage joins.
-        pivots: points that its rows read as what the chassis turns about, and not as joined to anything.
-        along_axes: whether its rows are the three components of one equation between vectors.
+        pivots: points that it reads as what the chassis turns about, and not as joined to anything.
         may_lock: whether it can be what a motion ends at.
         holds_a_body: whether it only says how a body is made, and joins it to nothing.
         is_length: whether its rows at the drawing are the components of a distance that the drawing misses.
     """
 
-    along_axes = False
-    holds_a_body = False
-    is_length = False
+    name: str
+    equations: tuple[Equation, ...]
+    placed: Reading = field(default=nothing, compare=False)
+    vectors: Names = ()
+    slides: Names = ()
+    constants: Names = ()
+    squared_lengths: tuple[Edge, ...] = ()
+    aligned: tuple[()] | tuple[str, str, str] = ()
+    segments: tuple[Edge, ...] = ()
+    pivots: Names = ()
+    may_lock: bool = False
+    holds_a_body: bool = False
+    is_length: bool = False
 
     @property
-    def vectors(self) -> tuple[str, ...]:
-        return ()
-
-    @property
-    def slides(self) -> tuple[str, ...]:
-        return ()
-
-    @property
-    def constants(self) -> tuple[str, ...]:
-        return ()
-
-    @property
-    def squared_lengths(self) -> tuple[tuple[str, str], ...]:
-        return ()
-
-    @property
-    def aligned(self) -> tuple[()] | tuple[str, str, str]:
-        return ()
-
-    @property
-    def segments(self) -> tuple[tuple[str, str], ...]:
-        return ()
-
-    @property
-    def pivots(self) -> tuple[str, ...]:
-        return ()
-
-    @property
-    def may_lock(self) -> bool:
-        return False
-
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """What messages call it."""
-
-    @property
-    def labels(self) -> tuple[str, ...]:
+    def labels(self) -> Names:
         """A name for each row."""
-        return per_axis(self.name) if self.along_axes else (self.name,)
+        return tuple(label for equation in self.equations for label in equation.labels)
 
-    @abstractmethod
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """The rows, in the order of the labels."""
-
-    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
-        """Its own coordinates as drawn, by name.
-
-        Raises:
-            MechanismError: the drawing gives them no value.
-        """
-        return {}
-
-
-def per_axis(name: str) -> tuple[str, ...]:
-    """A name for each of three rows."""
-    return tuple(f"{name} ({axis})" for axis in "xyz")
-
-
-def crossed(
-    layout: Layout, c: Triple, one: tuple[Triple, Triple], other: tuple[Triple, Triple]
-) -> tuple[Row, ...]:
-    """The rows c - (y_a - y_b) x (y_d - y_e) = 0, for vectors given by their indices."""
-    (a, b), (d, e) = one, other
-    return tuple(
-        (
-            Product(1.0, (c[i], layout.zero), layout.number()),
-            Product(-1.0, (a[j], b[j]), (d[k], e[k])),
-            Product(1.0, (a[k], b[k]), (d[j], e[j])),
-        )
-        for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-    )
-
-
-def dot(one: tuple[Triple, Triple], other: tuple[Triple, Triple]) -> Row:
-    """(y_a - y_b) . (y_c - y_d) as products, for vectors given by their indices."""
-    (a, b), (c, d) = one, other
-    return tuple(Product(1.0, (a[i], b[i]), (c[i], d[i])) for i in range(3))
+        return tuple(row for equation in self.equations for row in equation.rows(layout))

@@ -11,14 +11,14 @@ after the turns 1 to m and a displacement d.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.constraint import Constraint, crossed, dot, per_axis
+from pointcoord.linkage.constraints.constraint import ONE, Constraint, Edge, Equation, Names, Term
 from pointcoord.linkage.drawing import Drawing, Placed
-from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.double_double import (
     PAIRS,
     exact_square,
@@ -30,142 +30,67 @@ from pointcoord.numerics.double_double import (
     pair_sum,
     two_product,
 )
-from pointcoord.numerics.quadratic import Product, Row
 from pointcoord.numerics.vectors import cross
 
-
-@dataclass(frozen=True)
-class TurnedBack(Constraint):
-    r"""A direction e turned back by the angle a of a turn about the unit vector k: u. Nine rows.
-
-        t - e x k = 0,    w - k x t = 0,    u - e - sin(a) t + (1 - cos(a)) w = 0,
-
-    since w is the part of e square to k. Cosine and sine are driven.
-
-    Attributes:
-        before: e, which is up at the drawing. about: P, a point of the chassis.
-    """
-
-    turn: str
-    before: str
-    axis: str
-    about: str
-    cosine: str
-    sine: str
-
-    @property
-    def name(self) -> str:
-        return f"up before {self.turn}"
-
-    @property
-    def labels(self) -> tuple[str, ...]:
-        return tuple(label for vector in self.vectors for label in per_axis(vector))
-
-    @property
-    def vectors(self) -> tuple[str, ...]:
-        """t, w and u."""
-        return f"across {self.turn}", f"aside of {self.turn}", self.name
-
-    def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the direction and the axis, and in the driven pair and what they make."""
-        e, k = layout.edge(self.before), layout.edge(self.axis)
-        (t, zero), (w, _), (u, _) = map(layout.edge, self.vectors)
-        versine = layout.one, layout.scalar(self.cosine)
-        turned = tuple(
-            (
-                Product(1.0, (u[i], e[0][i]), layout.number()),
-                Product(-1.0, layout.number(self.sine), (t[i], zero[i])),
-                Product(1.0, versine, (w[i], zero[i])),
-            )
-            for i in range(3)
-        )
-        return (*crossed(layout, t, e, k), *crossed(layout, w, k, (t, zero)), *turned)
-
-    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
-        """As drawn, before any turn."""
-        up, k = drawing.vectors["up"], drawing.vectors[self.axis]
-        across = cross(up, k)
-        vectors = across, cross(k, across), up
-        return {name: Placed(vector) for name, vector in zip(self.vectors, vectors, strict=True)}
-
-    def lifts(self, layout: Layout) -> Row:
-        """P . (e - u), what the turn lifts by where its line is."""
-        return dot(layout.edge(self.about), layout.edge(self.before, self.name))
+UP: Edge = ("up", "")
 
 
-@dataclass(frozen=True)
-class Displaced(Constraint):
-    """The displacement of the chassis, d - sum_i h_i e_i = 0. Three rows.
-
-    Attributes:
-        along: the driven coordinates, each with its direction.
-    """
-
-    along: tuple[tuple[str, str], ...]
-
-    along_axes = True
-
-    @property
-    def name(self) -> str:
-        return "displacement of the chassis"
-
-    @property
-    def vectors(self) -> tuple[str, ...]:
-        return (self.name,)
-
-    def rows(self, layout: Layout) -> tuple[Row, ...]:
-        zero, d = layout.zero, layout.vector(self.name)
-        ways = [(layout.number(value), layout.vector(direction)) for value, direction in self.along]
-        return tuple(
-            (
-                Product(1.0, (d[i], zero), layout.number()),
-                *(Product(-1.0, h, (e[i], zero)) for h, e in ways),
-            )
-            for i in range(3)
-        )
-
-    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
-        """None, as drawn."""
-        return {self.name: Placed(0.0 * drawing.vectors["up"])}
-
-    def lifts(self, layout: Layout) -> Row:
-        """Up . d."""
-        return dot(layout.edge("up"), layout.edge(self.name))
-
-
-@dataclass(frozen=True)
-class Ground:
+class Ground(NamedTuple):
     """What heights over the ground are made of; of a chassis that stands still there is none.
 
     Attributes:
-        turns: of the chassis, the last first.
+        up: the direction that is up, in the chassis' frame.
+        lifts: by how much places are higher over the ground than along its up from the mechanism's origin.
+        pivots: what the chassis turns about. constraints: what makes these vectors.
     """
 
-    turns: tuple[TurnedBack, ...] = ()
-    moved: tuple[Displaced, ...] = ()
+    up: str = "up"
+    lifts: tuple[Term, ...] = ()
+    pivots: Names = ()
+    constraints: tuple[Constraint, ...] = ()
 
-    @property
-    def up(self) -> str:
-        """The direction that is up, in the chassis' frame."""
-        return self.turns[-1].name if self.turns else "up"
+    def turned_back(self, turn: str, axis: str, about: str, cosine: str, sine: str) -> Ground:
+        r"""The ground before a turn of the chassis by the angle a about the unit vector k. Nine rows.
 
-    @property
-    def constraints(self) -> tuple[Constraint, ...]:
-        """What makes these vectors."""
-        return (*self.turns, *self.moved)
+            t - e x k = 0,    w - k x t = 0,    u - e - sin(a) t + (1 - cos(a)) w = 0,
 
-    def lifts(self, layout: Layout) -> Row:
-        """By how much places are higher over the ground than along its up from the mechanism's origin."""
-        parts = (*(one.lifts(layout) for one in self.turns), *(one.lifts(layout) for one in self.moved))
-        return tuple(product for row in parts for product in row)
+        with the direction e that is up after it, and u before it, since w is the part of e square to k.
+        Cosine and sine are driven. Bilinear in the direction and the axis, and in the driven pair and what
+        they make.
+
+        Args:
+            about: P, a point of the chassis.
+        """
+        across, aside, before = f"across {turn}", f"aside of {turn}", f"up before {turn}"
+        t, w, e, k = ((name, "") for name in (across, aside, self.up, axis))
+        equations = (
+            Equation(across, (Term(1.0, t, ONE), Term(-1.0, e, k, cross=True))),
+            Equation(aside, (Term(1.0, w, ONE), Term(-1.0, k, t, cross=True))),
+            Equation(
+                before,
+                (Term(1.0, (before, self.up), ONE), Term(-1.0, sine, t), Term(1.0, ONE, w, less=cosine)),
+            ),
+        )
+        names = across, aside, before
+        made = Constraint(before, equations, partial(_turned_back, names, axis), vectors=names)
+        lift = Term(1.0, (about, ""), (self.up, before))
+        return Ground(before, (*self.lifts, lift), (*self.pivots, about), (*self.constraints, made))
+
+    def displaced(self, along: tuple[tuple[str, str], ...]) -> Ground:
+        """With the displacement of the chassis, d - sum_i h_i e_i = 0. Three rows; it lifts by up . d.
+
+        Args:
+            along: the driven coordinates, each with its direction.
+        """
+        name = "displacement of the chassis"
+        ways = (Term(-1.0, value, (direction, "")) for value, direction in along)
+        equation = Equation(name, (Term(1.0, (name, ""), ONE), *ways))
+        made = Constraint(name, (equation,), partial(_displaced, name), vectors=(name,))
+        lift = Term(1.0, UP, (name, ""))
+        return Ground(self.up, (*self.lifts, lift), self.pivots, (*self.constraints, made))
 
 
-CHASSIS_ITSELF = Ground()
-"""What heights over a chassis that stands still are over."""
-
-
-@dataclass(frozen=True)
-class ContactHeight(Constraint):
+def contact_height(inner: str, centre: str, rise: str, radius: float, ground: Ground) -> Constraint:
     r"""The lowest point of a thin disc of radius r about the axis from `inner` to `centre`. Three rows.
 
     With the axis w = p_centre - p_inner of drawn length L, a = w . e and q the part of w square to e,
@@ -175,80 +100,75 @@ class ContactHeight(Constraint):
     since the lowest point lies r q / L below the centre. k is the height of the drawing's. Over the ground e
     is its up, and the last row has what lifts the chassis besides.
 
-    Attributes:
-        radius: mm.
-        ground: that the height is over; the chassis' own up unless given.
+    Args:
+        rise: the driven coordinate. radius: mm.
+        ground: that the height is over; of a chassis that stands still the chassis' own up.
     """
+    lean, reach = f"rise of the axis to {centre}", f"reach of the axis to {centre}"
+    what = ("squared length of the axis", "radius by the length of the axis", "drawn contact height")
+    constants = tuple(f"{each} of {centre}" for each in what)
+    square, share, drawn = constants
+    up, name = (ground.up, ""), f"height of the contact point of {centre}"
+    height = Term(1.0, (centre, ""), up), *ground.lifts, Term(-1.0, share, reach)
+    return Constraint(
+        name,
+        (
+            Equation(f"lean of {centre}", (Term(1.0, (inner, centre), up), Term(1.0, lean, ONE))),
+            Equation(
+                f"length of the axis to {centre}",
+                (Term(1.0, lean, lean), Term(1.0, reach, reach), Term(-1.0, square, ONE)),
+            ),
+            Equation(name, (*height, Term(-1.0, drawn, ONE), Term(-1.0, rise, ONE))),
+        ),
+        partial(_contact, inner, centre, radius, (lean, reach, *constants)),
+        slides=(lean, reach),
+        constants=constants,
+        pivots=ground.pivots,
+    )
 
-    inner: str
-    centre: str
-    rise: str
-    radius: float
-    ground: Ground = CHASSIS_ITSELF
 
-    @property
-    def name(self) -> str:
-        return f"height of the contact point of {self.centre}"
+def _turned_back(names: Names, axis: str, drawing: Drawing) -> Mapping[str, Placed]:
+    """As drawn, before any turn."""
+    up, k = drawing.vectors["up"], drawing.vectors[axis]
+    across = cross(up, k)
+    vectors = across, cross(k, across), up
+    return {name: Placed(vector) for name, vector in zip(names, vectors, strict=True)}
 
-    @property
-    def labels(self) -> tuple[str, ...]:
-        return (f"lean of {self.centre}", f"length of the axis to {self.centre}", self.name)
 
-    @property
-    def slides(self) -> tuple[str, ...]:
-        return (f"rise of the axis to {self.centre}", f"reach of the axis to {self.centre}")
+def _displaced(name: str, drawing: Drawing) -> Mapping[str, Placed]:
+    return {name: Placed(0.0 * drawing.vectors["up"])}
 
-    @property
-    def constants(self) -> tuple[str, ...]:
-        """L^2, r / L and k."""
-        what = ("squared length of the axis", "radius by the length of the axis", "drawn contact height")
-        return tuple(f"{each} of {self.centre}" for each in what)
 
-    @property
-    def pivots(self) -> tuple[str, ...]:
-        return tuple(turn.about for turn in self.ground.turns)
+def _contact(inner: str, centre: str, radius: float, names: Names, drawing: Drawing) -> Mapping[str, Placed]:
+    """The drawn lean and the constants, with what they lack by rounding.
 
-    def rows(self, layout: Layout) -> tuple[Row, ...]:
-        one, up = layout.number(), layout.edge(self.ground.up)
-        names = (*self.slides, *self.constants, self.rise)
-        a, q, square, share, drawn, rise = map(layout.number, names)
-        height = (*dot(layout.edge(self.centre), up), *self.ground.lifts(layout), Product(-1.0, share, q))
-        return (
-            (*dot(layout.edge(self.inner, self.centre), up), Product(1.0, a, one)),
-            (Product(1.0, a, a), Product(1.0, q, q), Product(-1.0, square, one)),
-            (*height, Product(-1.0, drawn, one), Product(-1.0, rise, one)),
+    Raises:
+        MechanismError: the axis has no length, or is drawn upright.
+    """
+    place, e = drawing.vectors[centre], drawing.edge(*UP)
+    square = exact_square(place, drawing.vectors[inner])
+    lean = pair_dot(drawing.edge(centre, inner), e)
+    reach2 = pair_sum(square, minus_pair(pair_product(lean, lean)))
+    if not (reach2[0] > 1e-12 * square[0]).all() or not (square[0] > 0.0).all():
+        raise MechanismError(
+            f"the wheel's axis from {inner} to {centre} has no length or is drawn upright, so "
+            "the wheel has no lowest point; draw it across the car",
+            (inner, centre),
         )
-
-    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
-        """The drawn lean and the constants, with what they lack by rounding.
-
-        Raises:
-            MechanismError: the axis has no length, or is drawn upright.
-        """
-        centre, e = drawing.vectors[self.centre], drawing.edge("up")
-        square = exact_square(centre, drawing.vectors[self.inner])
-        lean = pair_dot(drawing.edge(self.centre, self.inner), e)
-        reach2 = pair_sum(square, minus_pair(pair_product(lean, lean)))
-        if not (reach2[0] > 1e-12 * square[0]).all() or not (square[0] > 0.0).all():
-            names = (self.inner, self.centre)
-            raise MechanismError(
-                f"the wheel's axis from {self.inner} to {self.centre} has no length or is drawn upright, so "
-                "the wheel has no lowest point; draw it across the car",
-                names,
-            )
-        reach = pair_root(reach2)
-        radius = two_product(np.asarray(self.radius / drawing.unit), np.ones_like(square[0]))
-        share = pair_quotient(radius, pair_root(square))
-        drop = pair_product(share, reach)
-        drawn = pair_sum(pair_dot((centre, np.zeros_like(centre)), e), minus_pair(drop))
-        # The root loses what the difference under it cancels to; roots, quotients and products round a few
-        # times as often as one product of pairs.
-        lost = 8.0 * PAIRS * (1.0 + square[0] / reach2[0])
-        size = np.sum(np.abs(centre * e[0]), axis=-1) + np.abs(drop[0])
-        constants = (
-            Placed(*square, PAIRS * square[0]),
-            Placed(*share, 8.0 * PAIRS * share[0]),
-            Placed(*drawn, lost * size),
-        )
-        slides = (Placed(lean[0]), Placed(reach[0]))
-        return dict(zip((*self.slides, *self.constants), (*slides, *constants), strict=True))
+    reach = pair_root(reach2)
+    size = two_product(np.asarray(radius / drawing.unit), np.ones_like(square[0]))
+    share = pair_quotient(size, pair_root(square))
+    drop = pair_product(share, reach)
+    drawn = pair_sum(pair_dot((place, np.zeros_like(place)), e), minus_pair(drop))
+    # The root loses what the difference under it cancels to; roots, quotients and products round a few
+    # times as often as one product of pairs.
+    lost = 8.0 * PAIRS * (1.0 + square[0] / reach2[0])
+    sum_of = np.sum(np.abs(place * e[0]), axis=-1) + np.abs(drop[0])
+    numbers = (
+        Placed(lean[0]),
+        Placed(reach[0]),
+        Placed(*square, PAIRS * square[0]),
+        Placed(*share, 8.0 * PAIRS * share[0]),
+        Placed(*drawn, lost * sum_of),
+    )
+    return dict(zip(names, numbers, strict=True))

@@ -13,16 +13,16 @@ that it is drawn by.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.constraint import Constraint, crossed
+from pointcoord.linkage.constraints.constraint import ONE, Constraint, Edge, Equation, Names, Term
 from pointcoord.linkage.drawing import Drawing, Placed
-from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.double_double import (
     PAIRS,
     Pair,
@@ -32,160 +32,99 @@ from pointcoord.numerics.double_double import (
     pair_sum,
     two_sum,
 )
-from pointcoord.numerics.quadratic import Product, Row
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import cross, lengths
 
 Array = NDArray[np.float64]
+Triangle = tuple[str, str, str]
 
 # A product with the inverse of a 3 x 3 matrix, and that inverse, round some twenty times relative.
 SOLVED = 32.0 * UNIT_ROUNDOFF
 
 
-@dataclass(frozen=True)
-class Normal(Constraint):
-    r"""The normal of a body's triangle: n - (p_first - p_base) x (p_second - p_base) = 0. Three rows."""
-
-    normal: str
-    base: str
-    first: str
-    second: str
-
-    along_axes = True
-    holds_a_body = True
-
-    @property
-    def name(self) -> str:
-        return self.normal
-
-    @property
-    def vectors(self) -> tuple[str, ...]:
-        return (self.normal,)
-
-    def rows(self, layout: Layout) -> tuple[Row, ...]:
-        edges = (layout.edge(name, self.base) for name in (self.first, self.second))
-        return crossed(layout, layout.vector(self.normal), *edges)
-
-    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
-        base, first, second = (drawing.vectors[name] for name in (self.base, self.first, self.second))
-        return {self.normal: Placed(cross(first - base, second - base))}
-
-
-@dataclass(frozen=True)
-class AxisInBody(Constraint):
-    """An axis drawn from `tail` to `head` that the body of a triangle carries. Three rows.
+class Axis(NamedTuple):
+    """An axis that a body carries, drawn from `tail` to `head`.
 
     Without a tail it is drawn along the direction of the car that the head names.
     """
 
-    axis: str
+    name: str
     tail: str
     head: str
-    normal: Normal
-
-    along_axes = True
-    holds_a_body = True
-
-    @property
-    def name(self) -> str:
-        return self.axis
-
-    @property
-    def vectors(self) -> tuple[str, ...]:
-        return (self.axis,)
-
-    @property
-    def constants(self) -> tuple[str, ...]:
-        """Its place in the body: a, b and c."""
-        return weight_names(self.axis, self.normal)
-
-    def rows(self, layout: Layout) -> tuple[Row, ...]:
-        return weighted_rows(layout, layout.edge(self.axis), self.normal, self.constants)
-
-    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
-        """The drawn direction and its constants, with what they lack by rounding.
-
-        Raises:
-            MechanismError: the axis has no direction, or the triangle is flat.
-        """
-        direction = drawing.axis(self.tail, self.head)
-        weights = weights_in_body(drawing, direction, self.normal, self.axis)
-        return {self.axis: Placed(direction[0]), **by_component(self.constants, weights)}
-
-
-@dataclass(frozen=True)
-class PointInBody(Constraint):
-    """A further point of a body, held in its triangle. Three rows."""
-
-    point: str
     body: str
-    normal: Normal
-
-    along_axes = True
-    holds_a_body = True
-
-    @property
-    def name(self) -> str:
-        return f"{self.point} in {self.body}"
-
-    @property
-    def constants(self) -> tuple[str, ...]:
-        """Its place in the body: a, b and c."""
-        return weight_names(self.name, self.normal)
-
-    @property
-    def segments(self) -> tuple[tuple[str, str], ...]:
-        return ((self.normal.base, self.point),)
-
-    def rows(self, layout: Layout) -> tuple[Row, ...]:
-        return weighted_rows(layout, layout.edge(self.point, self.normal.base), self.normal, self.constants)
-
-    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
-        return by_component(self.constants, carrier_weights(drawing, self.point, self.normal))
 
 
-def by_component(names: Sequence[str], vector: Placed) -> dict[str, Placed]:
+def normal_name(body: str) -> str:
+    """What the normal of a body is called."""
+    return f"normal of the {body}"
+
+
+def normal_of(body: str, triangle: Triangle) -> Constraint:
+    r"""The normal of a body's triangle: n - (p_first - p_base) x (p_second - p_base) = 0. Three rows."""
+    (base, first, second), name = triangle, normal_name(body)
+    terms = Term(1.0, (name, ""), ONE), Term(-1.0, (first, base), (second, base), cross=True)
+    read = partial(_normal, name, triangle)
+    return Constraint(name, (Equation(name, terms),), read, vectors=(name,), holds_a_body=True)
+
+
+def axis_in_body(axis: Axis, triangle: Triangle) -> Constraint:
+    """An axis that the body of a triangle carries. Three rows; unknown is its direction."""
+    constants = weight_names(axis.name, axis.body, triangle)
+    equation = held_in_body(axis.name, (axis.name, ""), axis.body, triangle, constants)
+    read = partial(_axis, axis, triangle, constants)
+    return Constraint(
+        axis.name, (equation,), read, vectors=(axis.name,), constants=constants, holds_a_body=True
+    )
+
+
+def point_in_body(point: str, body: str, triangle: Triangle) -> Constraint:
+    """A further point of a body, held in its triangle. Three rows."""
+    name, edge = f"{point} in {body}", (point, triangle[0])
+    constants = weight_names(name, body, triangle)
+    return Constraint(
+        name,
+        (held_in_body(name, edge, body, triangle, constants),),
+        partial(_point, point, triangle, constants),
+        constants=constants,
+        segments=((triangle[0], point),),
+        holds_a_body=True,
+    )
+
+
+def weight_names(name: str, body: str, triangle: Triangle) -> Names:
+    """What the constants a, b and c of a vector in a body are called."""
+    return tuple(f"{name} along {part}" for part in (*triangle[1:], normal_name(body)))
+
+
+def held_in_body(label: str, vector: Edge, body: str, triangle: Triangle, weights: Names) -> Equation:
+    """v - a e1 - b e2 - c n = 0; bilinear in the constants and edges."""
+    base, first, second = triangle
+    edges = (first, base), (second, base), (normal_name(body), "")
+    parts = (Term(-1.0, weight, edge) for weight, edge in zip(weights, edges, strict=True))
+    return Equation(label, (Term(1.0, vector, ONE), *parts))
+
+
+def by_component(names: Names, vector: Placed) -> dict[str, Placed]:
     """The components of vectors (..., 3) as numbers with names of their own."""
     values, lacks, doubt = (np.asarray(part) for part in vector)
     return {name: Placed(values[..., i], lacks[..., i], doubt[..., i]) for i, name in enumerate(names)}
 
 
-def weight_names(name: str, body: Normal) -> tuple[str, ...]:
-    """What the constants a, b and c of a vector in a body are called."""
-    return tuple(f"{name} along {part}" for part in (body.first, body.second, body.normal))
-
-
-def weighted_rows(
-    layout: Layout, vector: tuple[Triple, Triple], body: Normal, constants: tuple[str, ...]
-) -> tuple[Row, ...]:
-    """v - a e1 - b e2 - c n = 0 for the difference v of two vectors; bilinear in the constants and edges."""
-    edges = layout.edge(body.first, body.base), layout.edge(body.second, body.base), layout.edge(body.normal)
-    parts = [(layout.number(name), head, tail) for name, (head, tail) in zip(constants, edges, strict=True)]
-    end, start = vector
-    return tuple(
-        (
-            Product(1.0, (end[i], start[i]), layout.number()),
-            *(Product(-1.0, weight, (head[i], tail[i])) for weight, head, tail in parts),
-        )
-        for i in range(3)
-    )
-
-
-def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> Placed:
+def weights_in_body(drawing: Drawing, vector: Pair, triangle: Triangle, what: str) -> Placed:
     """(a, b, c) of a drawn vector in a body, what they lack by rounding, and their doubt, each (..., 3).
 
     Raises:
         MechanismError: the body's triangle is flat.
     """
-    edges = drawing.edge(body.first, body.base), drawing.edge(body.second, body.base)
+    base, first, second = triangle
+    edges = drawing.edge(first, base), drawing.edge(second, base)
     columns = (*edges, pair_cross(*edges))
     frame = np.stack(np.broadcast_arrays(*(high for high, _ in columns)), axis=-1)
     sides = lengths(edges[0][0]) * lengths(edges[1][0])
     if not (lengths(columns[2][0]) > 16 * UNIT_ROUNDOFF * sides).all():
-        names = (body.base, body.first, body.second)
         raise MechanismError(
-            f"{', '.join(names)} lie in one line, so they cannot carry {what}; move one off the line",
-            names,
+            f"{', '.join(triangle)} lie in one line, so they cannot carry {what}; move one off the line",
+            triangle,
         )
     inverse = np.linalg.inv(frame)
     weights = _applied(inverse, np.broadcast_to(vector[0], frame.shape[:-1]))
@@ -199,9 +138,29 @@ def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> 
     return Placed(values, lacks, doubt)
 
 
-def carrier_weights(drawing: Drawing, point: str, body: Normal) -> Placed:
+def carrier_weights(drawing: Drawing, point: str, triangle: Triangle) -> Placed:
     """The same of a drawn point from the base of the body."""
-    return weights_in_body(drawing, drawing.edge(point, body.base), body, point)
+    return weights_in_body(drawing, drawing.edge(point, triangle[0]), triangle, point)
+
+
+def _normal(name: str, triangle: Triangle, drawing: Drawing) -> Mapping[str, Placed]:
+    base, first, second = (drawing.vectors[point] for point in triangle)
+    return {name: Placed(cross(first - base, second - base))}
+
+
+def _axis(axis: Axis, triangle: Triangle, constants: Names, drawing: Drawing) -> Mapping[str, Placed]:
+    """The drawn direction and its constants, with what they lack by rounding.
+
+    Raises:
+        MechanismError: the axis has no direction, or the triangle is flat.
+    """
+    direction = drawing.axis(axis.tail, axis.head)
+    weights = weights_in_body(drawing, direction, triangle, axis.name)
+    return {axis.name: Placed(direction[0]), **by_component(constants, weights)}
+
+
+def _point(point: str, triangle: Triangle, constants: Names, drawing: Drawing) -> Mapping[str, Placed]:
+    return by_component(constants, carrier_weights(drawing, point, triangle))
 
 
 def _applied(matrix: Array, vector: Array) -> Array:

@@ -9,15 +9,15 @@ import pytest
 from mpmath import mpf
 
 from pointcoord import InputOutOfRange
-from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.on_line import Line
 from pointcoord.linkage.drawing import Drawing
-from pointcoord.linkage.drives import ArmAngle, DistanceOf, Drive, Travel, TravelAlong, TurnedBy
+from pointcoord.linkage.drives import Drive, arm_angle, distance_of, travel, travel_along, turned_by
 from pointcoord.numerics.enclosure import Enclosed
 
 U = 2.0**-53
 UNIT = 256.0
-ARM = ArmAngle("rise", "arm_angle", "pivot", "ball", "up")
-RACK = Travel("travel", "rack", "centre", "inner", "right")
+ARM = arm_angle("rise", "arm_angle", "pivot", "ball", "up")
+RACK = travel("travel", "rack", "centre", "inner", "right")
 
 
 def drawn(seed: int) -> Drawing:
@@ -42,17 +42,17 @@ CASES: dict[str, tuple[Drive, Equation, tuple[float, float, float]]] = {
     "arm": (ARM, lambda x: length_of(DRAWING) * mpmath.cos(x), (0.6, 2.5, 0.5)),
     "travel": (RACK, lambda x: x / UNIT, (-90.0, 90.0, 8.0)),
     "travel along a line": (
-        TravelAlong("place", "strut", OnLine("inner", "pivot", "line", "ball", "place", between=True)),
+        travel_along("place", "strut", Line("line", "pivot", "ball", between=True), "inner"),
         lambda x: x / (UNIT * length_of(DRAWING)),
         (200.0, 400.0, 8.0),
     ),
     "distance": (
-        DistanceOf("distance", "apart", "pivot", "ball"),
+        distance_of("distance", "apart", "pivot", "ball"),
         lambda x: x / UNIT,
         (200.0, 400.0, 8.0),
     ),
-    "cosine of a turn": (TurnedBy("cosine", "turn", 0), mpmath.cos, (-9.0, 9.0, 0.5)),
-    "sine of a turn": (TurnedBy("sine", "turn", 1), mpmath.sin, (-9.0, 9.0, 0.5)),
+    "cosine of a turn": (turned_by("cosine", "turn", 0), mpmath.cos, (-9.0, 9.0, 0.5)),
+    "sine of a turn": (turned_by("sine", "turn", 1), mpmath.sin, (-9.0, 9.0, 0.5)),
 }
 by_kind = pytest.mark.parametrize("kind", CASES)
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, carrier_weights
-from pointcoord.linkage.constraints.on_line import FARTHEST, OnLine
+from pointcoord.linkage.constraints.in_body import Axis, axis_in_body, carrier_weights
+from pointcoord.linkage.constraints.on_line import FARTHEST, Line, on_line
 from pointcoord.linkage.constraints.scalar_product import link
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.simulation import scene_mechanism
@@ -20,10 +20,11 @@ from validate.reference.vectors import Vector, cross, dot, minus, times
 
 Array = NDArray[np.float64]
 U = 2.0**-53
-BODY = Normal("n", "base", "first", "second")
-AXIS = AxisInBody("axis", "tail", "head", BODY)
-HELD = OnLine("end", "head", "axis", "axis", "held", "held", axis=AXIS)
-LINE = OnLine("c", "a", "line a - b", "b", "ratio", between=True)
+BODY = ("base", "first", "second")
+DRAWN = Axis("axis", "tail", "head", "body")
+AXIS = axis_in_body(DRAWN, BODY)
+HELD = on_line("end", Line("axis", "head", "axis", axis=DRAWN), "held", "held")
+LINE = on_line("c", Line("line a - b", "a", "b", between=True), "ratio")
 seeds = st.integers(0, 2**32 - 1)
 places = st.sampled_from(["anywhere", "an edge", "the normal"])
 
