@@ -290,8 +290,9 @@ def foreseen(task: Task) -> MotionTooLong | None:
     """Whether a chain is too long for certain, before it is built: a segment ends at every break."""
     time = task.scene.time
     breaks = np.concatenate([np.array(law.breaks) for law in task.functions.values()])
-    inner = np.unique(breaks[(breaks > time.start) & (breaks < time.stop)])
-    if len(inner) < MOST_SEGMENTS:
+    inner = breaks[(breaks > time.start) & (breaks < time.stop)]
+    # The first call of np.unique takes as long as a small motion.
+    if len(inner) < MOST_SEGMENTS or len(inner := np.unique(inner)) < MOST_SEGMENTS:
         return None
     return MotionTooLong(MOST_SEGMENTS, float(inner[MOST_SEGMENTS - 1]), time.start, time.stop)
 

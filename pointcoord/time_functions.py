@@ -122,7 +122,7 @@ class Polynomial(TimeFunction):
             if not np.isfinite(result).all():
                 # Splitting a number above 1e300 overflows; there only the plain sum is left.
                 for k in range(count):
-                    plain = np.polynomial.polynomial.polyval(t, np.array(self._shifted(k)[0]))
+                    plain = np.polyval(self._shifted(k)[0][::-1], t)
                     np.copyto(result[..., k], plain, where=~np.isfinite(result[..., k]))
         return result
 
@@ -140,10 +140,10 @@ class Polynomial(TimeFunction):
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
         """4 n^2 u^2 of the sum of magnitudes of n terms (Graillat, Langlois, Louvet); of a constant none."""
-        law = np.polynomial.polynomial.polyder(np.abs(self.coefficients), derivative)
+        law = [abs(c) * float(perm(j, derivative)) for j, c in enumerate(self.coefficients)][derivative:]
         count = len(law)
         with np.errstate(over="ignore"):
-            terms = np.polynomial.polynomial.polyval(np.abs(instants), law)
+            terms = np.polyval(law[::-1], np.abs(instants))
         return np.asarray(4 * count**2 * UNIT_ROUNDOFF**2 * terms if count > 1 else np.zeros_like(instants))
 
     def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
