@@ -42,7 +42,7 @@ from validate.errors import UsageError
 from validate.extras import needed
 from validate.fitting.curves import Curves
 from validate.measured.mapping import Measured
-from validate.measured.poses import at_either_end
+from validate.measured.poses import Found, at_either_end
 from validate.measured.tolerances import out_of_reach
 from validate.tables.errors import FileError
 
@@ -129,6 +129,7 @@ class Fit:
         combinations: of the corrections, the best known first.
         factor: f above: how much more is left than the digits explain.
         freedom: how many more numbers there are than combinations that they know.
+        left, largest: of what is left, in the numbers' standard deviations: sum of squares, and the largest.
         bounds, prior: mm.
         converged: whether least squares ended at a minimum.
         solves: how many designs were tried. failures: of these that could not be solved, why, each once.
@@ -141,6 +142,8 @@ class Fit:
     combinations: tuple[Combination, ...]
     factor: float
     freedom: int
+    left: float
+    largest: float
     bounds: float
     prior: float
     converged: bool
@@ -179,6 +182,46 @@ def require_limits(bounds: float, prior: float, accuracy: float, mark: str = "")
             raise UsageError(f"{mark}{name} is {value:g}; allowed: a finite number {least}")
 
 
+@dataclass(frozen=True)
+class Problem:
+    """A file's numbers beside those of the car as drawn, in standard deviations s_i.
+
+    Attributes:
+        start: the car as drawn. first: its numbers, (columns * rows,).
+        used: which of these both have, likewise. spread: s_i of the used ones.
+    """
+
+    curves: Curves
+    start: Found
+    first: Array
+    used: Bools
+    spread: Array
+
+    @classmethod
+    def of(cls, scene: Scene, measured: Measured, free: Sequence[str], accuracy: float) -> Problem:
+        """See `fit_hardpoints`."""
+        curves = Curves(scene, measured, free_coordinates(scene, free))
+        start = curves.solved(np.zeros(len(curves.free)))
+        first, theirs = curves.numbers(start), np.concatenate([s.values for s in measured.numbers])
+        used: Bools = np.isfinite(first) & np.isfinite(theirs)
+        if not used.any():
+            why = next(iter(start.reasons.values()), "no number is both there and ours")
+            allowed = "rows that the scene's car can have"
+            raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
+        return cls(curves, start, first, used, _spread(curves, first, accuracy)[used])
+
+    def misfit(self, numbers: Array) -> Array:
+        """Ours less theirs, (used,); whole turns apart is the same angle."""
+        series = self.curves.measured.numbers
+        columns = zip(series, numbers.reshape(len(series), -1), strict=True)
+        apart = np.concatenate([s.apart(own, s.values) for s, own in columns])
+        return np.asarray(apart[self.used] / self.spread)
+
+    def slopes(self, amounts: Array) -> Array:
+        """How it changes with each coordinate, (used, free), 1/mm."""
+        return self.curves.slopes(amounts, self.used) / self.spread[:, None]
+
+
 def fit_hardpoints(
     scene: Scene,
     measured: Measured,
@@ -205,23 +248,10 @@ def fit_hardpoints(
         PointcoordError: the scene as drawn cannot be solved.
     """
     require_limits(bounds, prior, accuracy)
-    curves = Curves(scene, measured, free_coordinates(scene, free))
-    zero = np.zeros(len(curves.free))
-    start = curves.solved(zero)
-    first, theirs = curves.numbers(start), np.concatenate([s.values for s in measured.numbers])
-    used: Bools = np.isfinite(first) & np.isfinite(theirs)
-    if not used.any():
-        why = next(iter(start.reasons.values()), "no number is both there and ours")
-        allowed = "rows that the scene's car can have"
-        raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
-    spread = _spread(curves, first, accuracy)[used]
+    problem = Problem.of(scene, measured, free, accuracy)
+    curves, start, spread, used = problem.curves, problem.start, problem.spread, problem.used
+    zero, first = np.zeros(len(curves.free)), problem.first
     tried, failures = count(1), dict[str, None]()
-
-    def gap(numbers: Array) -> Array:
-        """Ours less theirs; whole turns apart is the same angle."""
-        columns = numbers.reshape(len(measured.numbers), -1)
-        apart = [s.apart(own, s.values) for s, own in zip(measured.numbers, columns, strict=True)]
-        return np.concatenate(apart)[used]
 
     def left(amounts: Array) -> Array:
         """What is left by corrections, NaN where the design cannot be solved or a row has no pose."""
@@ -236,11 +266,10 @@ def fit_hardpoints(
                     failures[f"{measured.rows[lost[0]]}: {reason}"] = None
             except PointcoordError as error:
                 failures[str(error)] = None
-        return np.concatenate([gap(numbers) / spread, amounts / prior])
+        return np.concatenate([problem.misfit(numbers), amounts / prior])
 
     def slopes(amounts: Array) -> Array:
-        known = curves.slopes(amounts, used) / spread[:, None]
-        return np.concatenate([known, np.eye(len(zero)) / prior])
+        return np.concatenate([problem.slopes(amounts), np.eye(len(zero)) / prior])
 
     solved = least_squares(
         left,
@@ -280,10 +309,12 @@ def fit_hardpoints(
     return Fit(
         scene=curves.design(amounts),
         coordinates=dict(zip(curves.free, coordinates, strict=True)),
-        columns=_columns(measured, used, gap(first), after * spread, spread),
+        columns=_columns(measured, used, problem.misfit(first) * spread, after * spread, spread),
         combinations=tuple(combinations),
         factor=factor,
         freedom=freedom,
+        left=float(after @ after),
+        largest=float(np.abs(after).max()),
         bounds=bounds,
         prior=prior,
         converged=bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),

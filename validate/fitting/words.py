@@ -142,7 +142,7 @@ def data_of(fit: Fit, name: str, source: str) -> dict[str, Any]:
             for unit, rms in fit.rms.items()
         ],
         "columns": [asdict(one) | {"column": shown(one.column)} for one in fit.columns],
-        "coordinates": _coordinates(fit),
+        "coordinates": coordinates_of(fit),
         "combinations": [asdict(one) for one in fit.combinations],
         "unique": not fit.unseen,
         "unseen": unseen_words(fit),
@@ -157,7 +157,7 @@ def data_of(fit: Fit, name: str, source: str) -> dict[str, Any]:
 
 def table_of(fit: Fit) -> str:
     """A row for each coordinate (CSV); what one that is held on its bound is known to is left empty."""
-    frame = needed("fit", "pandas").DataFrame(_coordinates(fit))
+    frame = needed("fit", "pandas").DataFrame(coordinates_of(fit))
     frame["on_bound"] = frame["on_bound"].astype(str).str.lower()
     names = {"deviation": "standard_deviation", "low": "low_95", "high": "high_95"}
     lengths = {key: f"{names.get(key, key)} [mm]" for key in frame if key not in ("coordinate", "on_bound")}
@@ -179,7 +179,7 @@ def corrected_text(fit: Fit, name: str, source: str) -> str:
     return "\n".join([*before, *written(fit.scene.model_dump(exclude_none=True))]) + "\n"
 
 
-def _coordinates(fit: Fit) -> list[dict[str, Any]]:
+def coordinates_of(fit: Fit) -> list[dict[str, Any]]:
     """Each coordinate; nothing is known of one that is held on its bound."""
     rows = [{"coordinate": name, **asdict(one)} for name, one in fit.coordinates.items()]
     return [r | (dict.fromkeys(("deviation", "low", "high")) if r["on_bound"] else {}) for r in rows]

@@ -27,7 +27,7 @@ PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint", "mujoco", "exudyn
 # Environment variables that say how many threads the linear algebra takes.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 # Kinds of runs that hold nothing to anything: times and numbers are neither right nor wrong.
-COMPARES_NOTHING = ("cost", "fit", "hard-list")
+COMPARES_NOTHING = ("cost", "fit", "fit-suspects", "hard-list")
 PAUSE = 9.0  # between two writings of a journal, in times that the first took
 
 
@@ -89,7 +89,8 @@ class Head:
     """What is known of a run before it begins.
 
     Attributes:
-        kind: which command's results follow: validate, hard, hard-list, random, bounds, claims, cost or fit.
+        kind: which command's results follow: validate, hard, hard-list, random, bounds, claims, cost, fit or
+            fit-suspects.
         command: the command line, word by word.
         started: UTC; None in a run whose results say nothing of times, so that the same run gives the same
             bytes.

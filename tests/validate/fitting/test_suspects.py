@@ -1,0 +1,128 @@
+"""Which few hardpoints explain a file, and which the file cannot tell apart."""
+
+import csv
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+from curve_files import at_inputs, measured, table
+
+from pointcoord import Scene, designs_of
+from validate.cli import main
+from validate.exit_status import ExitStatus
+from validate.fitting.suspect_words import text_of_suspects, verdict
+from validate.fitting.suspects import Suspects, explains, suspected
+from validate.output.document import schema_text
+
+# Arm angles (rad) and rack travels (mm) that the curves are over.
+CARS = {"double-wishbone": ((1.40, 1.66), (0.0, 10.0)), "off-axis-strut": ((1.53, 1.73), (0.0, 10.0))}
+ROWS = 12
+SOME = ("lower_ball_joint", "tie_rod_inner", "tie_rod_outer", "upper_ball_joint")
+
+
+def curves(name: str, offsets: Mapping[str, float], turned: float = 0.0) -> str:
+    """Camber and toe (deg) of a car with its points moved; toe turned by an angle that no car has."""
+    angles, racks = CARS[name]
+    moved = designs_of(Scene.load(name), offsets=offsets).design(0)
+    wheel = at_inputs(moved, {"arm_angle": angles, "rack": racks}, ROWS)["wheel"]
+    columns = {
+        "input.arm_angle [rad]": np.linspace(*angles, ROWS),
+        "input.rack [mm]": np.linspace(*racks, ROWS),
+    }
+    columns |= {f"wheel.{one} [deg]": np.degrees(wheel[one]) for one in ("camber", "toe")}
+    columns["wheel.toe [deg]"] = columns["wheel.toe [deg]"] + turned * (-1.0) ** np.arange(ROWS)
+    return table(columns, 4)
+
+
+def found_in(name: str, text: str, among: Sequence[str] = ()) -> Suspects:
+    car = Scene.load(name)
+    return suspected(car, measured(text, car), among)
+
+
+@pytest.mark.parametrize(
+    ("name", "offsets", "among"),
+    [
+        ("double-wishbone", {"upper_ball_joint.y": 5.0}, ()),
+        ("off-axis-strut", {"lower_ball_joint.z": -4.0}, SOME[:3]),
+        ("double-wishbone", {"upper_ball_joint.y": 3.0, "tie_rod_inner.z": -2.0}, SOME[1:]),
+        ("off-axis-strut", {"tie_rod_inner.z": 3.0, "strut_top.y": -4.0}, ()),
+    ],
+)
+def test_planted_faults_of_one_and_of_two_coordinates_are_found(
+    name: str, offsets: Mapping[str, float], among: Sequence[str]
+) -> None:
+    found = found_in(name, curves(name, offsets), among)
+    assert len(found.tried) == len(offsets)
+    (fit,) = (one for one in found.equal if one.coordinates.keys() == offsets.keys())
+    for at, right in offsets.items():
+        # Digits are spread evenly: their sums are within four deviations but for one in 10^4.
+        assert abs(fit.coordinates[at].correction - right) < 4.0 * fit.coordinates[at].deviation, at
+
+
+def test_two_ends_of_the_spin_axis_explain_angles_equally_well() -> None:
+    """An axis turns the same if its one end is raised or its other is lowered by as much."""
+    name = "double-wishbone"
+    found = found_in(name, curves(name, {"wheel_centre.z": 2.0}))
+    moved = {at: one.correction for fit in found.equal for at, one in fit.coordinates.items()}
+    assert {"wheel_centre.z", "wheel_axis_inner.z"} <= moved.keys()
+    assert moved["wheel_centre.z"] == pytest.approx(-moved["wheel_axis_inner.z"], abs=1e-4)
+    assert "explain it equally well" in verdict(found)
+
+
+def test_what_no_hardpoints_explain_is_said_with_the_nearest() -> None:
+    name, among = "double-wishbone", ("upper_ball_joint.y", "upper_ball_joint.z", "tie_rod_outer.z")
+    found = found_in(name, curves(name, {}, turned=0.02), among)
+    assert not found.explaining
+    assert [one[1] for one in found.tried] == [3, 3, 1]
+    assert [one.left for one in found.nearest] == sorted(one.left for one in found.nearest)
+    assert verdict(found).startswith("No set explains the file; nearest is ")
+
+
+def test_a_car_that_explains_its_file_has_no_suspects() -> None:
+    found = found_in("double-wishbone", curves("double-wishbone", {}))
+    assert found.drawn
+    assert not found.tried
+    assert "nothing to look for" in text_of_suspects(found, "car", "x.csv")
+
+
+def test_rounding_leaves_as_much_as_explains_but_for_one_file_in_a_thousand() -> None:
+    random = np.random.default_rng(3).uniform(-np.sqrt(3.0), np.sqrt(3.0), (4000, 20))
+    passed = [explains(float(one @ one), float(np.abs(one).max()), 20) for one in random]
+    assert np.mean(passed) > 0.999
+    assert not explains(16.0 * 20.0, 4.0, 20)
+    assert not explains(13.0, 3.6, 20)
+    assert not explains(0.0, 0.0, 0)
+
+
+def test_the_command_says_writes_and_corrects_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data, said, rows, scene = (str(tmp_path / name) for name in ("x.csv", "x.json", "y.csv", "z.toml"))
+    Path(data).write_text(curves("double-wishbone", {"upper_ball_joint.y": 3.0}))
+    words = [
+        "fit",
+        "double-wishbone",
+        "--data",
+        data,
+        "--suspects",
+        "--free",
+        "upper_ball_joint",
+        "tie_rod_outer.z",
+    ]
+    assert ExitStatus(main([*words, "-o", scene])) is ExitStatus.WRONG_INPUT
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not Path(scene).exists()
+    assert ExitStatus(main([*words, "--json", said, "--csv", rows])) is ExitStatus.AGREE
+    shown = capsys.readouterr().out
+    assert "a diagnosis: nothing is corrected" in shown
+    assert f"--data {data} --free upper_ball_joint.y -o corrected.toml" in shown
+    document = json.loads(Path(said).read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    (first,) = document["explaining"]
+    assert [one["coordinate"] for one in first["coordinates"]] == ["upper_ball_joint.y"]
+    with Path(rows).open() as file:
+        row = next(csv.DictReader(file))
+    assert (row["coordinate"], row["explains"]) == ("upper_ball_joint.y", "true")
