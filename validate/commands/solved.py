@@ -16,7 +16,7 @@ from validate.curves.numbers import TIME, TRAVEL, Curves, Number, angles_of, ask
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
-from validate.output.columns import ENDINGS, require_table, write_csv, write_motion
+from validate.output.columns import ENDINGS, GROUP, csv_lines, require_table, rows_of_motion, write_table
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.paper.printed import PRINTED
 
@@ -38,11 +38,11 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
 
     def write(motion: Motion) -> str:
+        rows = rows_of_motion(motion, instants)
         if target is None:
-            write_csv(console, motion, instants)
-            console.flush()
+            console.write_lines(csv_lines(rows))
         else:
-            write_motion(target, motion, instants)
+            write_table(target, rows, GROUP)
             console.written[target] = "the motion"
         count = instants or len(motion.times)
         return f"{count} instant{'' if count == 1 else 's'}"

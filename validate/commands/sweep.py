@@ -29,7 +29,7 @@ from validate.commands.usage import Command, load_scene, name_of, require_result
 from validate.commands.values import finite, values_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.output.columns import ENDINGS, require_table, write_sweep, write_sweep_csv
+from validate.output.columns import ENDINGS, csv_lines, require_table, rows_of_sweep, write_table
 from validate.output.console import Console
 from validate.output.progress import Told
 from validate.output.report import counted_as
@@ -119,9 +119,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         with console.progress("designs", total=designs.count, lines=False) as told:
             blocks = _seen(sweep_blocks(designs), summary, told)
             if target == "-":
-                write_sweep_csv(console, blocks)
+                console.write_lines(csv_lines(rows_of_sweep(blocks)))
             elif target is not None:
-                write_sweep(target, blocks)
+                write_table(target, rows_of_sweep(blocks))
                 console.written[target] = "the designs"
             else:
                 for _ in blocks:

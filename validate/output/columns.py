@@ -14,7 +14,7 @@ import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +24,6 @@ from pointcoord import Motion, Sweep
 from pointcoord.results.named_columns import columns, number_columns
 from validate.extras import needed
 from validate.output.files import require_known_ending, write_whole
-
-if TYPE_CHECKING:
-    from _typeshed import SupportsWrite
 
 Array = NDArray[np.float64]
 Block = Mapping[str, NDArray[Any]]
@@ -56,41 +53,38 @@ def require_table(target: str) -> None:
         needed(".parquet", "pyarrow.parquet", "parquet")
 
 
-def write_motion(target: str, motion: Motion, instants: int | None = None) -> None:
-    """Write a motion by the ending of the target.
+def write_table(target: str, blocks: Iterator[Block], group: int = 1) -> None:
+    """Write the rows of a motion or of a sweep by the ending of the target.
+
+    Args:
+        group: how many blocks make a group of rows of Parquet, `GROUP` for a motion.
+    Raises:
+        UsageError, MissingPackage: see `require_table`.
+        OutputError: the file cannot be written; what was there is whole.
+        PointcoordError: as the blocks raise it.
+    """
+    require_table(target)
+    ending = Path(target).suffix
+
+    def write(stream: BinaryIO) -> None:
+        if ending == ".csv":
+            stream.writelines(text.encode() for text in csv_lines(blocks))
+        elif ending == ".npz":
+            _npz(stream, blocks)
+        else:
+            _parquet(stream, blocks, group)
+
+    write_whole(target, write)
+
+
+def rows_of_motion(motion: Motion, instants: int | None = None) -> Iterator[Block]:
+    """A row for each instant.
 
     Args:
         instants: how many, evenly over the motion; its own if not given.
     Raises:
-        UsageError, MissingPackage: see `require_table`.
-        OutputError: the file cannot be written; what was there is whole.
         NotComputed: instants are given, and the method knows the motion at its own only.
     """
-    _write(target, _of_motion(motion, instants), GROUP)
-
-
-def write_sweep(target: str, blocks: Iterable[Sweep]) -> None:
-    """Write a sweep by the ending of the target.
-
-    Raises:
-        UsageError, MissingPackage, OutputError: see `write_motion`. PointcoordError: as the blocks raise it.
-    """
-    _write(target, _by_instant(blocks), 1)
-
-
-def write_csv(stream: SupportsWrite[str], motion: Motion, instants: int | None = None) -> None:
-    """Write a motion as CSV; reading a number gives the same bits."""
-    for text in _csv(_of_motion(motion, instants)):
-        stream.write(text)
-
-
-def write_sweep_csv(stream: SupportsWrite[str], blocks: Iterable[Sweep]) -> None:
-    """Write a sweep as CSV; reading a number gives the same bits."""
-    for text in _csv(_by_instant(blocks)):
-        stream.write(text)
-
-
-def _of_motion(motion: Motion, instants: int | None) -> Iterator[Block]:
     return (dict(columns(block)) for block in motion.blocks(instants, ROWS))
 
 
@@ -103,7 +97,7 @@ def _of_designs(block: Sweep) -> tuple[Block, NDArray[np.str_]]:
     return {DESIGN: numbers, **varied, CLOSING: block.closing}, said
 
 
-def _by_instant(blocks: Iterable[Sweep]) -> Iterator[Block]:
+def rows_of_sweep(blocks: Iterable[Sweep]) -> Iterator[Block]:
     """A row for each design and instant, of some designs at a time."""
     for block in blocks:
         instants, each, (before, said) = len(block.times), dict(number_columns(block)), _of_designs(block)
@@ -118,23 +112,8 @@ def _by_instant(blocks: Iterable[Sweep]) -> Iterator[Block]:
             }
 
 
-def _write(target: str, blocks: Iterator[Block], group: int) -> None:
-    require_table(target)
-    ending = Path(target).suffix
-
-    def write(stream: BinaryIO) -> None:
-        if ending == ".csv":
-            stream.writelines(text.encode() for text in _csv(blocks))
-        elif ending == ".npz":
-            _npz(stream, blocks)
-        else:
-            _parquet(stream, blocks, group)
-
-    write_whole(target, write)
-
-
-def _csv(blocks: Iterable[Block]) -> Iterator[str]:
-    """Lines, some at a time, the names of the columns first."""
+def csv_lines(blocks: Iterable[Block]) -> Iterator[str]:
+    """Rows as CSV, some at a time, the names of the columns first; reading a number gives the same bits."""
     for i, block in enumerate(blocks):
         if not i:
             yield f"{','.join(block)}\r\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 
 from validate.output.files import OutputError, unwritable, write_content
@@ -62,7 +62,7 @@ class Console:
             write_content(target, content)
         self.written[target] = what
 
-    def write(self, text: str) -> int:
+    def write(self, text: str) -> None:
         """Text on standard output, as it is; characters that it has no code for are shown as escapes.
 
         Once the reader of a pipe has gone, such as `head`, the text is dropped: the work and its verdict
@@ -74,7 +74,12 @@ class Console:
                 sys.stdout.write(text.encode(code, "backslashreplace").decode(code))
             except (OSError, ValueError, AttributeError) as error:
                 self._lose(error)
-        return len(text)
+
+    def write_lines(self, texts: Iterable[str]) -> None:
+        """Many texts, as they come."""
+        for text in texts:
+            self.write(text)
+        self.flush()
 
     def flush(self) -> None:
         """Bring what was written to its reader."""

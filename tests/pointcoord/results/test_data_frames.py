@@ -1,6 +1,5 @@
 """A motion as a data frame is its CSV, whichever library makes it; nothing else needs one of them."""
 
-import io
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,7 +12,7 @@ from every_effect import every_effect
 
 from pointcoord import MissingLibrary, Scene, UnknownName, simulate
 from pointcoord.results.named_columns import LIBRARIES
-from validate.output.columns import write_csv
+from validate.output.columns import csv_lines, rows_of_motion
 
 
 class Frame:
@@ -33,9 +32,7 @@ def pretend(monkeypatch: pytest.MonkeyPatch, *there: str) -> None:
 
 
 def as_csv(scene: Scene) -> dict[str, list[float]]:
-    stream = io.StringIO()
-    write_csv(stream, simulate(scene))
-    head, *rows = stream.getvalue().splitlines()
+    head, *rows = "".join(csv_lines(rows_of_motion(simulate(scene)))).splitlines()
     numbers = [[float(cell) for cell in row.split(",")] for row in rows]
     return dict(zip(head.split(","), map(list, zip(*numbers, strict=True)), strict=True))
 

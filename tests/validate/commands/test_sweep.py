@@ -11,7 +11,7 @@ import pytest
 from pointcoord import Scene, simulate, sweep
 from pointcoord.results.named_columns import columns
 from validate.cli import main
-from validate.output.columns import write_sweep
+from validate.output.columns import rows_of_sweep, write_table
 
 SCENE = "double-wishbone"
 VARY = ("--vary", "lower_ball_joint.z=-10,0,150", "--vary", "upper_ball_joint.y=0:1:2")
@@ -98,13 +98,13 @@ def test_a_table_is_written_in_the_memory_of_a_block(ending: str, tmp_path: Path
     scene = Scene.load(SCENE)
     scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 101})})
     found = sweep(scene, offsets={"lower_ball_joint.z": np.linspace(-1.0, 1.0, 8)})
-    write_sweep(str(tmp_path / f"few{ending}"), [found])  # what is made once stays
+    write_table(str(tmp_path / f"few{ending}"), rows_of_sweep([found]))  # what is made once stays
     copies = 16
 
     def peak(count: int) -> int:
         tracemalloc.start()
         try:
-            write_sweep(str(tmp_path / f"many{ending}"), (found for _ in range(count)))
+            write_table(str(tmp_path / f"many{ending}"), rows_of_sweep(found for _ in range(count)))
             return tracemalloc.get_traced_memory()[1]
         finally:
             tracemalloc.stop()
