@@ -431,7 +431,9 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
             raise SceneError(source, "mechanism.closure", problem, method.only)
         topology = own
     try:
-        return build_mechanism(topology, dict(part.points), {"up": part.up, "right": part.right})
+        if method.linkage is None:
+            return part.linkage
+        return build_mechanism(topology, dict(part.points), part.directions)
     except MechanismError as error:
         raise SceneError(source, "mechanism.points", error.problem) from error
 

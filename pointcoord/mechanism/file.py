@@ -8,23 +8,22 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, StrictBool, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, StrictBool
 
 from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
 from pointcoord.mechanism.compiled import Compiler, Place
-from pointcoord.mechanism.faults import TableFault, faults_of, known_keys, no_such
+from pointcoord.mechanism.faults import TableFault, known_keys, no_such
 from pointcoord.mechanism.freedoms import Freedoms, settled
 from pointcoord.mechanism.inputs import CHASSIS, Name
-from pointcoord.mechanism.structure import CLOSING, TABLES, Structure, structure_of
+from pointcoord.mechanism.structure import CLOSING, TABLES, Structure, read, structure_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import shown
 
 # The shipped ones. (importlib.resources takes as long to import as a fifth of numpy.)
 MECHANISMS = Path(__file__).parents[1] / "mechanisms"
 AS_DRAWN = "drawn"
-OTHERS = ("closures", "parts")
 ENDING = ".toml"
 BY_ORDER: Place = (0.0, 0.0, 0.0)
 """Where all points are if only their order counts."""
@@ -50,12 +49,8 @@ class _Part(BaseModel, defer_build=True):
     mirrored: StrictBool = False
 
 
-class _Others(BaseModel, defer_build=True):
-    closures: dict[
-        Name,
-        Annotated[dict[Name, dict[Name, Any]], AfterValidator(lambda changes: known_keys(changes, CLOSING))],
-    ] = {}
-    parts: dict[Name, Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields))]] = {}
+CHANGES = Annotated[dict[Name, dict[Name, Any]], AfterValidator(lambda changes: known_keys(changes, CLOSING))]
+PART = Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields))]
 
 
 @dataclass(frozen=True)
@@ -191,26 +186,25 @@ class MechanismFile:
         """
         known_keys(tables, (*TABLES, "title"))
         given = {key: value for key, value in tables.items() if value is not None}
-        try:
-            others = _Others.model_validate({key: given[key] for key in OTHERS if key in given})
-        except ValidationError as error:
-            raise faults_of(error)[0] from None
+        # A table that is not there is not read: most files have neither, and to build a reader takes time.
+        changed = read(dict[Name, CHANGES], given["closures"], "closures") if "closures" in given else {}
+        tables_of_parts = read(dict[Name, PART], given["parts"], "parts") if "parts" in given else {}
         title = str(given.get("title") or name)
-        parts = {f"{part}.": _part(part, table) for part, table in others.parts.items()}
-        sides = {part: str(table.side) for part, table in others.parts.items()}
-        closures = {AS_DRAWN: {}, **others.closures}
+        parts = {f"{part}.": _part(part, table) for part, table in tables_of_parts.items()}
+        sides = {part: str(table.side) for part, table in tables_of_parts.items()}
+        closures = {AS_DRAWN: {}, **changed}
         for own in parts.values():
             closures |= {closure: {} for closure in own.closures if closure not in closures}
         structures = {}
         for closure, changes in closures.items():
-            changed = {table: {**given.get(table, {}), **entries} for table, entries in changes.items()}
+            put_in = {table: {**given.get(table, {}), **entries} for table, entries in changes.items()}
             try:
-                structures[closure] = _closed({**given, **changed}, parts, sides, title, closure)
+                structures[closure] = _closed({**given, **put_in}, parts, sides, title, closure)
             except TableFault as fault:
                 if closure == AS_DRAWN or not fault.place:
                     raise
                 raise fault.under("closures", closure) from None
-        return cls(title, structures, {f"{part}.": table.mirrored for part, table in others.parts.items()})
+        return cls(title, structures, {f"{part}.": table.mirrored for part, table in tables_of_parts.items()})
 
 
 def _part(part: str, table: _Part) -> MechanismFile:

@@ -52,7 +52,7 @@ def _reader(kind: Any) -> TypeAdapter[Any]:
     return TypeAdapter(kind)
 
 
-def _read(kind: Any, value: object, *key: str) -> Any:
+def read(kind: Any, value: object, *key: str) -> Any:
     """A value of a type; the key of a table that holds it, where no type says so.
 
     Raises:
@@ -90,7 +90,7 @@ def _roles(roles: Mapping[str, Any]) -> dict[str, Role]:
         last = role.rpartition(".")[2]
         if last not in ROLES:
             raise no_such("role", role, ROLES, (role,))
-        found[role] = _read(Pair if last in PAIR_ROLES else Name, who, role)
+        found[role] = read(Pair if last in PAIR_ROLES else Name, who, role)
     return found
 
 
@@ -271,7 +271,7 @@ def structure_of(tables: Mapping[str, Any], name: str) -> Structure:
         TableFault: something has not the shape or type that it must have.
     """
     given = {table: tables[table] for table in CLOSING if tables.get(table) is not None}
-    found: Structure = _read(Structure, {"name": name, **given})
+    found: Structure = read(Structure, {"name": name, **given})
     return found
 
 
