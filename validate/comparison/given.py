@@ -94,10 +94,10 @@ def given(solution: Solution, instants: Array) -> Given:
                 notes.append(f"{what} is not a number at {wrong} of {len(array)} instants")
             numbers[quantity][name] = array[places]
             if name in claimed:
-                claims[quantity][name] = claimed[name]
+                claims[quantity][name] = claimed[name][places]
             else:
                 notes.append(f"{what}: its accuracy is not given")
-    accuracy = replace(own, claims=claims).at(places)
+    accuracy = replace(own, claims={}).at(places).with_claims(claims)
     return Given(found, Solution(who, instants[found], numbers, accuracy, tuple(notes), tuple(faults)))
 
 
