@@ -366,16 +366,11 @@ def _columns(
     measured: Measured, used: Bools, before: Array, after: Array, spread: Array
 ) -> tuple[Fitted, ...]:
     """What was before and after, column by column; the three are of the used numbers."""
-    which = np.repeat(np.arange(len(measured.numbers)), len(measured.rows))[used]
-    squares = (
-        needed("fit", "pandas")
-        .DataFrame({"before": before**2, "after": after**2, "known_to": spread**2})
-        .groupby(which)
-    )
-    found = squares.mean() ** 0.5
-    found["count"] = squares.size()
-    found["column"] = [measured.numbers[i].column for i in found.index]
-    found["unit"] = [measured.numbers[i].meaning.unit for i in found.index]
-    return tuple(
-        Fitted(**{str(key): value for key, value in row.items()}) for row in found.to_dict("records")
-    )
+    which, found = np.repeat(np.arange(len(measured.numbers)), len(measured.rows))[used], list[Fitted]()
+    for i, s in enumerate(measured.numbers):
+        here = which == i
+        if here.any():
+            first, last, known = (float(np.sqrt(np.mean(p[here] ** 2))) for p in (before, after, spread))
+            count = int(here.sum())
+            found.append(Fitted(s.column, s.meaning.unit, first, last, known, count))
+    return tuple(found)
