@@ -105,19 +105,17 @@ def _picture(coordinates: Sequence[str], columns: Sequence[Column], name: str, e
     """A panel of bars for each number, a bar for each of the first coordinates."""
     # Imported here: matplotlib takes a second.
     from matplotlib import rc_context
-    from matplotlib.figure import Figure
 
-    from validate.output.figure import BLUE, SETTINGS, drawn, plain
+    from validate.output.figure import BLUE, SETTINGS, drawn, panels
 
     first = coordinates[:ROWS][::-1]
     with rc_context(SETTINGS):
-        page = Figure(figsize=(2.2 * len(columns) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
-        page.suptitle(f"{name}: change by each hardpoint, per mm", x=0.02, ha="left", fontsize=9.0)
-        panels = page.subplots(1, len(columns), sharey=True, squeeze=False)[0]
-        for axes, one in zip(panels, columns, strict=True):
+        size = (2.2 * len(columns) + 1.4, 0.18 * len(first) + 1.0)
+        title = f"{name}: change by each hardpoint, per mm"
+        page, grid = panels(size, title, 1, len(columns), sharey=True)
+        for axes, one in zip(grid, columns, strict=True):
             axes.barh(first, one.changes[:ROWS][::-1], color=BLUE)
             axes.set_xlabel(f"{one.name}, {one.unit}/mm")
-            plain(axes)
         return drawn(page, ending.removeprefix("."))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from validate.errors import UsageError
 from validate.extras import MissingPackage
 from validate.output.columns import DESIGN
-from validate.output.figure import SETTINGS, plain
+from validate.output.figure import SETTINGS, panels
 from validate.plain_text import shown, some_of
 
 try:
@@ -63,18 +63,16 @@ def columns_called(table: pd.DataFrame, words: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(found))
 
 
+@mpl.rc_context(SETTINGS)
 def figure_of(table: pd.DataFrame, across: str, up: Sequence[str], title: str) -> Figure:
     """A panel for each column that goes upward, a curve for each design."""
     designs = [table] if DESIGN not in table else [one for _, one in table.groupby(DESIGN)]
     chosen = np.unique(np.linspace(0, len(designs) - 1, min(len(designs), MOST)).round().astype(int))
-    with mpl.rc_context(SETTINGS):
-        page = Figure(figsize=(5.5, 2.2 * len(up) + 0.8), layout="constrained")
-        page.suptitle(title, x=0.02, ha="left", fontsize=9.0, parse_math=False)
-        for axes, column in zip(page.subplots(len(up), 1, sharex=True, squeeze=False).flat, up, strict=True):
-            plain(axes)
-            for place in chosen.tolist():
-                shade = mpl.colormaps[SHADES](place / max(len(designs) - 1, 1))
-                axes.plot(designs[place][across], designs[place][column], color=shade, linewidth=1.0)
-            axes.set_ylabel(column)
-        axes.set_xlabel(across)
+    page, grid = panels((5.5, 2.2 * len(up) + 0.8), title, len(up), 1, sharex=True)
+    for axes, column in zip(grid, up, strict=True):
+        for place in chosen.tolist():
+            shade = mpl.colormaps[SHADES](place / max(len(designs) - 1, 1))
+            axes.plot(designs[place][across], designs[place][column], color=shade, linewidth=1.0)
+        axes.set_ylabel(shown(column), parse_math=False)
+    grid[-1].set_xlabel(shown(across), parse_math=False)
     return page

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from validate.curves.numbers import TRAVEL, Curves, Number
 from validate.extras import MissingPackage
-from validate.output.figure import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, plain
-from validate.plain_text import shown
+from validate.output.figure import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, panels
 
 try:
     import matplotlib as mpl
@@ -28,11 +27,12 @@ STYLES = ("-", "--", "-.", ":")  # for those who see no colours, and beyond thei
 # Inches: how wide and high panels are, one alone or several that stand side by side or above each other, and
 # what the labels and the title take.
 ALONE, BESIDE, ABOVE, LABELS = (4.4, 3.6), (2.3, 3.6), (5.5, 2.3), (0.9, 1.1)
-TITLE, LETTER = 0.08, 0.066  # inches, of letters of a title and of a label, on average
+LETTER = 0.066  # inches, of a letter of a label, on average
 # Digits below which numbers that do not change differ by rounding.
 STILL = 1e-9
 
 
+@mpl.rc_context(SETTINGS)
 def figure(curves: Curves, values: Values, title: str) -> Figure:
     """Draw curves.
 
@@ -44,15 +44,11 @@ def figure(curves: Curves, values: Values, title: str) -> Figure:
     rows, columns = (1, len(several)) if upright else (len(several), 1)
     size = ALONE if len(several) == 1 else BESIDE if upright else ABOVE
     wide, high = columns * size[0] + LABELS[0], rows * size[1] + LABELS[1]
-    with mpl.rc_context(SETTINGS):
-        page = Figure(figsize=(wide, high), layout="constrained")
-        heading = fill(shown(title), int(wide / TITLE))
-        page.suptitle(heading, x=0.02, ha="left", fontsize=9.0, parse_math=False)
-        grid = page.subplots(rows, columns, sharex=not upright, sharey=upright, squeeze=False)
-        for axes, panel in zip(grid.flat, several, strict=True):
-            across, up = (panel, curves.up) if upright else (curves.across, panel)
-            _draw(axes, Curves(tuple(across), tuple(up)), values, size)
-            axes.label_outer()
+    page, grid = panels((wide, high), title, rows, columns, sharex=not upright, sharey=upright)
+    for axes, panel in zip(grid, several, strict=True):
+        across, up = (panel, curves.up) if upright else (curves.across, panel)
+        _draw(axes, Curves(tuple(across), tuple(up)), values, size)
+        axes.label_outer()
     return page
 
 
@@ -65,7 +61,6 @@ def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
 
 
 def _draw(axes: Axes, curves: Curves, values: Values, size: tuple[float, float]) -> None:
-    plain(axes)
     for set_limits, numbers in ((axes.set_xlim, curves.across), (axes.set_ylim, curves.up)):
         every = np.concatenate([values(number).ravel() for number in numbers])
         known = every[np.isfinite(every)]

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import io
+from textwrap import fill
 from typing import Any
 
 from validate.extras import MissingPackage
+from validate.plain_text import shown
 
 try:
     import matplotlib as mpl
@@ -43,6 +45,24 @@ SETTINGS: Any = {
     "savefig.facecolor": "white",
 }
 DOTS = 200  # to an inch, of a PNG
+TITLE = 0.08  # inches, of a letter of a title, on average
+
+
+def panels(
+    size: tuple[float, float], title: str, rows: int, columns: int, sharex: bool = False, sharey: bool = False
+) -> tuple[Figure, list[Axes]]:
+    """A new page and its panels, row by row, below a title that takes as many lines as it needs.
+
+    Args:
+        size: width and height, inches. sharex, sharey: whether panels have that axis in common.
+    """
+    page = Figure(figsize=size, layout="constrained")
+    heading = fill(shown(title), int(size[0] / TITLE))
+    page.suptitle(heading, x=0.02, ha="left", fontsize=9.0, parse_math=False)
+    every = [*page.subplots(rows, columns, squeeze=False, sharex=sharex, sharey=sharey).flat]
+    for axes in every:
+        plain(axes)
+    return page, every
 
 
 def plain(axes: Axes) -> None:

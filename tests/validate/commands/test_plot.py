@@ -129,3 +129,9 @@ def test_a_file_of_a_sweep_has_a_curve_for_each_design(ending: str, tmp_path: Pa
             assert np.asarray(drawn) == pytest.approx(np.stack([few.instants, solved], axis=-1), rel=1e-14)
     assert main(("plot", str(target), "-o", str(tmp_path / "a.png"))) == 0
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_names_of_files_and_columns_are_text_in_a_picture(tmp_path: Path) -> None:
+    file, target = tmp_path / "$\\frac{1$.csv", tmp_path / "a.png"
+    file.write_text("time [s],$\\frac{2$\n0,1\n1,2\n", encoding="utf-8")
+    assert main(("plot", str(file), "--y", "$\\frac{2$", "-o", str(target))) == 0
