@@ -7,7 +7,6 @@ what validates it: the program behind these lines is looked up by its name, as a
 
 from __future__ import annotations
 
-import gc
 import importlib
 import os
 import signal
@@ -30,7 +29,6 @@ SIGNALS = {
 def main() -> int:
     """Run the program; returns its exit status, see `validate.exit_status`."""
     _open_closed_descriptors()
-    gc.disable()  # what is imported stays, and to look through it takes an eighth of it; `cli` enables it
     ours = [one for one, (_, usual) in SIGNALS.items() if signal.getsignal(one) is usual]
     for one in ours:
         signal.signal(one, _interrupted)

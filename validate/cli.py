@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import gc
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -106,7 +105,6 @@ def _run(words: list[str], console: Console) -> ExitStatus:
     except Answer as answer:
         console.say(str(answer).rstrip())
         return ExitStatus.AGREE
-    gc.enable()  # `pointcoord.__main__` disables it until here
     options.command = ("pointcoord", *words)
     return ExitStatus(options.run(options, console))
 
