@@ -24,6 +24,7 @@ WORLD = "world"
 MOST_BODIES = 100
 # m and rad: a weld that is drawn apart by more is no weld as drawn; MuJoCo saves models with six digits.
 APART = 1e-5
+SOLREF = (0.02, 1.0)  # of an equality that says nothing of it
 KINDS = ("free", "ball", "slide", "hinge")  # in the order of mjtJoint
 
 
@@ -69,6 +70,7 @@ class Mjcf:
         sites: by name, the body of each and where it is, (3,), m.
         connects, welds: what closes loops; pairs of bodies that are one.
         actuated: names of actuators by the joints that they drive. texts: of `custom`, by name.
+        ignored: what the model says beside, in words.
     """
 
     bodies: Mapping[str, MjcfBody]
@@ -77,6 +79,7 @@ class Mjcf:
     welds: tuple[tuple[str, str], ...]
     actuated: Mapping[str, str]
     texts: Mapping[str, str]
+    ignored: tuple[str, ...] = ()
 
 
 def read_mjcf(path: str, axes: Array) -> Mjcf:
@@ -159,7 +162,16 @@ class _Reader:
             if model.actuator_trntype[one] == self.mujoco.mjtTrn.mjTRN_JOINT
         }
         by_name = {body.name: body for body in bodies_of}
-        return Mjcf(by_name, sites, tuple(connects), tuple(welds), actuated, texts)
+        return Mjcf(by_name, sites, tuple(connects), tuple(welds), actuated, texts, self._ignored())
+
+    def _ignored(self) -> tuple[str, ...]:
+        """Tendons, and how softly an equality holds: forces, which no linkage has."""
+        model = self.model
+        found = [f"tendon {short(self.name('tendon', one))} is ignored" for one in range(model.ntendon)]
+        soft = model.eq_active0 & (model.eq_solref != SOLREF).any(axis=1)
+        for one in np.flatnonzero(soft).tolist():
+            found.append(f"solref of {short(self.name('equality', one))} is ignored: it is taken as rigid")
+        return tuple(found)
 
     def _turned(self, vector: Array) -> Array:
         return np.asarray(self.axes @ vector)

@@ -81,7 +81,7 @@ class _Builder:
         places += [joint.at for body in model.bodies.values() for joint in body.joints]
         places += [at for connect in model.connects for at in connect.places]
         self.size = float(np.ptp(places, axis=0).max()) or 1.0 if places else 1.0
-        self.facts = list[str]()
+        self.facts = list(model.ignored)
         self.names: set[str] = {CHASSIS}
         self.points: dict[str, _Point] = {}
         self.slides: dict[str, dict[str, Any]] = {}

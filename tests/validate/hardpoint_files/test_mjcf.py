@@ -313,6 +313,16 @@ def test_what_is_not_known_is_refused_by_its_name(
     assert "\n" not in str(caught.value)
 
 
+def test_tendons_and_soft_equalities_are_ignored_and_named(tmp_path: Path) -> None:
+    strap = '<tendon><fixed name="strap"><joint joint="knee" coef="1"/></fixed></tendon><equality>'
+    soft_end = 'anchor="0.3 0 0" name="end" solref="0.1 1"'
+    text = broken("<equality>", strap).replace('anchor="0.3 0 0"', soft_end)
+    assert made(FOUR_BAR, tmp_path).facts == ()
+    tendon, soft = made(text, tmp_path).facts
+    assert "tendon 'strap' is ignored" in tendon
+    assert "solref of 'end' is ignored" in soft
+
+
 def test_sites_that_are_to_meet_and_are_apart_are_refused(tmp_path: Path) -> None:
     text = broken('<joint class="pin"/>', '<joint class="pin"/><site name="tip" pos="0 0 0.2"/>')
     text = text.replace('body1="coupler" body2="rocker" anchor="0.3 0 0"', 'site1="end" site2="tip"')
