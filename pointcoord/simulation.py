@@ -431,8 +431,6 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
             raise SceneError(source, "mechanism.closure", problem, method.only)
         topology = own
     try:
-        if method.linkage is None:
-            return part.linkage
         return build_mechanism(topology, dict(part.points), part.directions)
     except MechanismError as error:
         raise SceneError(source, "mechanism.points", error.problem) from error

@@ -23,7 +23,6 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import MechanismError, SceneError
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.hardpoints import build_mechanism
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.faults import TableFault, no_such
 from pointcoord.mechanism.file import (
@@ -388,15 +387,6 @@ class MechanismPart(Part):
     @cached_property
     def topology(self) -> Topology:
         return self.file.topology(self.closure, self.driven, self.points, self.directions, self._lengths)
-
-    @cached_property
-    def linkage(self) -> Mechanism:
-        """The topology with these points, made once for all that is asked of the scene.
-
-        Raises:
-            MechanismError: the points do not make one.
-        """
-        return build_mechanism(self.topology, dict(self.points), self.directions)
 
     @property
     def directions(self) -> dict[str, Vector]:

@@ -10,13 +10,14 @@ from plain_solvers import closed_form, less_exact
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
+from validate.cars.car import content_of
 from validate.cars.input_ends import drawn_inputs, end
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Found, Problem, asked_of
 from validate.formulations.protocol import NOTHING, Solution
 from validate.formulations.stated_accuracy import accuracy_for
 from validate.formulations.trees import linkage_in
-from validate.hard.cars import scene_content
+from validate.hard.cars import ASKED, scene_content
 from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.motion import numbers
 from validate.solvers.plain import PlainSolver, Solve
@@ -29,7 +30,9 @@ MOVING = {"arm_angle": (1.6, 0.12, -0.3), "rack": (4.0, -25.0, 40.0), "heave": (
 
 
 def moving(car) -> Scene:
-    return Scene.from_mapping(scene_content(car, **MOVING, start=-0.5, stop=0.5, samples=5), "moving")
+    return Scene.from_mapping(
+        content_of(car, MOVING, effects=ASKED, start=-0.5, stop=0.5, samples=5), "moving"
+    )
 
 
 def compared(solver: Solve, scene: Scene, accuracy: float) -> Outcome:
