@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from absolute.backend import pin
 from absolute.errors import DescriptionError
@@ -205,48 +204,22 @@ def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
     Args:
         first, second: the two bodies of each row. sizes: freedoms of each body, none of the first.
     """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
     holder = np.repeat(np.arange(len(sizes)), sizes)
-    held = (first[:, None] == holder) | (second[:, None] == holder)
-    matched = _matched(held)
-    if matched is None:
+    held = csr_array((first[:, None] == holder) | (second[:, None] == holder))
+    matched = maximum_bipartite_matching(held, perm_type="column")
+    if len(first) != len(holder) or (matched < 0).any():
         return [Group(np.arange(len(first)), np.arange(len(holder)))]
     own = holder[matched]
-    waits = np.eye(len(sizes), dtype=np.bool_)
+    waits = np.zeros((len(sizes), len(sizes)), dtype=np.bool_)
     waits[own, first] = waits[own, second] = True
-    for _ in range(len(sizes).bit_length()):
-        waits = waits @ waits
-    # Each group by its first body; what stands waits for nothing.
-    group = (waits & waits.T).argmax(axis=1)
+    _, group = connected_components(csr_array(waits), connection="strong")
     return [
         Group(np.flatnonzero(group[own] == one), np.flatnonzero(group[holder] == one))
         for one in np.unique(group[1:])
     ]
-
-
-def _matched(held: NDArray[np.bool_]) -> Places | None:
-    """(rows,) a column for each row, each column once, along (rows, columns) where one is in the other; None
-    if there is no such matching.
-
-    Scipy has one too, but to import it takes longer than to solve a scene.
-    """
-    if held.shape[0] != held.shape[1]:
-        return None
-    columns = [np.flatnonzero(row).tolist() for row in held]
-    taken: dict[int, int] = {}
-
-    def match(row: int, seen: set[int]) -> bool:
-        """Whether a row finds a column, if need be by another row's moving on (Kuhn, 1955)."""
-        for column in columns[row]:
-            if column not in seen:
-                seen.add(column)
-                if column not in taken or match(taken[column], seen):
-                    taken[column] = row
-                    return True
-        return False
-
-    if not all(match(row, set()) for row in range(len(columns))):
-        return None
-    return np.array([column for column, _ in sorted(taken.items(), key=lambda pair: pair[1])], dtype=np.intp)
 
 
 def _largest(vanishing: Array) -> Places:

@@ -289,10 +289,9 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
 def foreseen(task: Task) -> MotionTooLong | None:
     """Whether a chain is too long for certain, before it is built: a segment ends at every break."""
     time = task.scene.time
-    breaks = np.concatenate([np.array(law.breaks) for law in task.functions.values()])
-    inner = breaks[(breaks > time.start) & (breaks < time.stop)]
-    # The first call of np.unique takes as long as a small motion.
-    if len(inner) < MOST_SEGMENTS or len(inner := np.unique(inner)) < MOST_SEGMENTS:
+    every = (instant for law in task.functions.values() for instant in law.breaks)
+    inner = sorted({instant for instant in every if time.start < instant < time.stop})
+    if len(inner) < MOST_SEGMENTS:
         return None
     return MotionTooLong(MOST_SEGMENTS, float(inner[MOST_SEGMENTS - 1]), time.start, time.stop)
 

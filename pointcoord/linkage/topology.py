@@ -119,7 +119,7 @@ class Topology:
     @property
     def wheel_centre(self) -> str:
         """The outer point of the wheel's axis; empty without one."""
-        return "".join(self.wheel_axis[1:])
+        return self.wheel_axis[1] if self.wheel_axis else ""
 
     def driven_along(self, way: str, part: str = "") -> tuple[str, ...]:
         """The driven inputs that are the travel of a slide, `by_rack`, those that are not, `by_travel`, or

@@ -48,6 +48,8 @@ def unexpected(found: Comparison) -> Comparison:
 def _explained(one: Difference) -> bool:
     if one.case == ALL:
         return True
+    if one.now == "disagree":
+        return False
     refused = one.now == "nothing" or one.quantity.endswith(("refuses", "verdict", "exit status"))
     return refused and one.case.partition("-")[0] in KNOWN
 

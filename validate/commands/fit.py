@@ -58,15 +58,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         measured = read_results(options.data, options.map, scene)
         count = len(free_coordinates(scene, options.free))
         numbers = len(measured.numbers) * len(measured.rows)
+        told_of = "suspected, of" if options.suspects else "fitted to"
+        console.note(f"{name}: {count} coordinates are {told_of} {numbers} numbers; this may take a while")
         if options.suspects:
-            console.note(
-                f"{name}: {count} coordinates are suspected, of {numbers} numbers; this takes a while"
-            )
             suspects = suspected(scene, measured, options.free, *limits, told=told)
         else:
-            console.note(
-                f"{name}: {count} coordinates are fitted to {numbers} numbers; this may take a while"
-            )
             fit = fit_hardpoints(scene, measured, options.free, *limits, told=told)
     if options.suspects:
         return _said_of_suspects(suspects, name, measured, options, head, console)

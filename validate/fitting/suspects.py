@@ -38,9 +38,8 @@ Set = tuple[str, ...]
 LARGEST = 3  # coordinates of a set: a point that is misread
 LEVEL = 1000.0
 TWICE = 2.0 * math.sqrt(3.0)  # standard deviations of a number that is rounded
-CANDIDATES = (
-    12  # sets of a size that are fitted by the slopes of the drawing, and as many beside a better start
-)
+# Sets of a size that are fitted by the slopes of the drawing, and as many beside a better start.
+CANDIDATES = 12
 STARTS = 3  # sets that one more coordinate is put to
 SHOWN = 8  # sets that explain nothing are kept for being nearest
 
