@@ -57,13 +57,11 @@ class SparseFactors:
 def sparse_inverse(matrix: Array) -> tuple[Array, SparseFactors] | None:
     """The inverse of large matrices of few entries, (..., n, n), and the factors that it is made of.
 
-    Args:
-        matrix: finite numbers.
     Returns:
         None where the plain way is as good, or there is no inverse.
     """
     n = matrix.shape[-1]
-    if n < LARGE or not _few(matrix):
+    if n < LARGE or not (_few(matrix) and np.isfinite(matrix).all()):
         return None
     # Imported here: no car is so large.
     from scipy.sparse import csc_matrix

@@ -34,7 +34,7 @@ class Factors:
         inverse: the inverse of the scaled matrix.
         row_scale: the power of two that scales each row, shape (..., n).
         condition: condition number of the scaled matrix in the maximum norm, shape (...,); infinite
-            where the matrix is exactly singular.
+            where the matrix is exactly singular, and no number where it has elements that are none.
         sparse: factors of the scaled matrix, if it is large and has few entries.
     """
 
@@ -142,28 +142,20 @@ def _times(rows: Array, matrix: Array) -> Array:
 
 def factorise(matrix: Array) -> Factors:
     """Factorise matrices of shape (..., n, n); singular ones are marked, never raised or passed over."""
-    largest = np.abs(matrix).max(axis=-1)
-    usable = np.isfinite(largest) & (largest > 0.0)
-    row_scale = np.ldexp(1.0, 1 - np.frexp(np.where(usable, largest, 1.0))[1])
+    row_scale = np.ldexp(1.0, 1 - np.frexp(np.abs(matrix).max(axis=-1))[1])
     scaled = matrix * row_scale[..., None]
-    sound = usable.all(axis=-1)
-    whole = bool(sound.all())
-    safe = scaled if whole else _with_identity(scaled, sound)
-    found = sparse_inverse(safe) if whole else None
+    found = sparse_inverse(scaled)
     if found is not None:
         own, sparse = found
         return Factors(scaled, own, row_scale, _condition(scaled, own), sparse)
     try:
-        inverse = np.linalg.inv(safe)
+        inverse = np.linalg.inv(scaled)
     except np.linalg.LinAlgError:
-        # One member with an exact zero pivot stops the whole batch: set such members aside.
-        sound, whole = sound & (np.linalg.slogdet(safe)[0] != 0.0), False
-        inverse = np.linalg.inv(_with_identity(safe, sound))
-    condition = _condition(scaled, inverse)
-    if not whole:
-        inverse = np.where(sound[..., None, None], inverse, np.inf)
-        condition = np.where(sound, condition, np.inf)
-    return Factors(scaled, inverse, row_scale, condition)
+        # One member with an exact zero pivot stops the whole batch: the identity stands in for such members.
+        sound = (np.linalg.slogdet(scaled)[0] != 0.0)[..., None, None]
+        inverse = np.linalg.inv(np.where(sound, scaled, np.eye(matrix.shape[-1])))
+        inverse = np.where(sound, inverse, np.inf)
+    return Factors(scaled, inverse, row_scale, _condition(scaled, inverse))
 
 
 def _condition(matrix: Array, inverse: Array) -> Array:
@@ -179,11 +171,6 @@ def _norm(matrix: Array) -> Array:
         return np.asarray((np.abs(matrix) @ np.ones(matrix.shape[-1])).max(axis=-1))
     parts = (matrix[..., low : low + ROWS, :] for low in range(0, matrix.shape[-2], ROWS))
     return np.asarray(np.max([np.abs(part).sum(axis=-1).max(axis=-1) for part in parts], axis=0))
-
-
-def _with_identity(matrix: Array, sound: NDArray[np.bool_]) -> Array:
-    """The identity in place of members that have no inverse."""
-    return np.where(sound[..., None, None], matrix, np.eye(matrix.shape[-1]))
 
 
 def null_directions(matrix: Array) -> tuple[Array, Array]:
