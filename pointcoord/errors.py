@@ -38,14 +38,21 @@ class PointcoordError(Exception):
     Its message is one line of characters that print, whatever a scene or a file is called. It can be
     pickled, with its data, so that it comes back from another process.
 
+    Args:
+        said: what is wrong, where, with the value.
+        allowed: what would be right. advice: what to try. Empty where what is said tells it.
+
     Attributes:
         partial: the `Motion` up to where it stopped, with at least one instant; None if nothing was solved.
     """
 
     partial: Any = None
 
-    def __init__(self, message: str) -> None:
-        super().__init__(visible(message))
+    def __init__(self, said: str, allowed: str = "", advice: str = "") -> None:
+        self.allowed = allowed
+        self.advice = advice
+        parts = (said, f"allowed: {allowed}" if allowed else "", advice)
+        super().__init__(visible("; ".join(part for part in parts if part)))
 
     def __reduce__(
         self,
@@ -74,9 +81,7 @@ class SceneError(PointcoordError):
         self.source = source
         self.key = key
         self.problem = problem
-        self.allowed = allowed
-        where = f"{source}: {key}" if key else source
-        super().__init__(f"{where}: {problem}" + (f"; allowed: {allowed}" if allowed else ""))
+        super().__init__(f"{source}: {key}: {problem}" if key else f"{source}: {problem}", allowed)
 
 
 class UnknownName(PointcoordError, LookupError):
@@ -106,8 +111,8 @@ class NotComputed(PointcoordError, LookupError):
     def __init__(self, quantity: str, effect: str, advice: str = "") -> None:
         self.quantity = quantity
         self.effect = effect
-        self.advice = advice or f"add {effect!r} to the scene's effects"
-        super().__init__(f"{quantity} was not computed; {self.advice}")
+        advice = advice or f"add {effect!r} to the scene's effects"
+        super().__init__(f"{quantity} was not computed", advice=advice)
 
 
 class MissingLibrary(PointcoordError, ImportError):
@@ -123,7 +128,8 @@ class MissingLibrary(PointcoordError, ImportError):
         self.part = part
         self.libraries = tuple(libraries)
         extras = " or ".join(f"pip install 'pointcoord[{name}]'" for name in self.libraries)
-        super().__init__(f"{part} needs {' or '.join(self.libraries)}, which {problem}; try: {extras}")
+        said = f"{part} needs {' or '.join(self.libraries)}, which {problem}"
+        super().__init__(said, advice=f"try: {extras}")
 
 
 class MechanismError(PointcoordError):
@@ -141,36 +147,42 @@ class MechanismError(PointcoordError):
 
 
 class InputOutOfRange(PointcoordError):
-    """An input has a value for which its equation has no or no unique meaning."""
-
-    def __init__(self, name: str, value: float, allowed: str, instant: float | None = None) -> None:
-        self.name = name
-        self.value = value
-        self.allowed = allowed
-        self.instant = instant
-        when = "" if instant is None else f" at t = {instant:.6g} s"
-        super().__init__(f"input {name!r} is {value:.10g}{when}; allowed: {allowed}")
-
-
-class InputNotKnown(PointcoordError):
-    """The terms of an input's law cancel so far that what is left is not known well enough.
+    """An input has a value for which its equation has no or no unique meaning, or that is hardly known.
 
     Args:
-        name: the input. law: its kind. value: of the input as summed, rad or mm.
-        doubt: how far the value may be off, rad or mm. instant: s.
+        name: the input. value: rad or mm. instant: s.
+        doubt: how far the value may be off, rad or mm, where the terms of the law cancel so far that no pose
+            can be proven from what is left.
+        law: its kind, where there is such a doubt.
     """
 
-    def __init__(self, name: str, law: str, value: float, doubt: float, instant: float) -> None:
+    def __init__(
+        self,
+        name: str,
+        value: float,
+        allowed: str,
+        instant: float | None = None,
+        *,
+        doubt: float = 0.0,
+        law: str = "",
+    ) -> None:
         self.name = name
-        self.law = law
         self.value = value
-        self.doubt = doubt
         self.instant = instant
-        super().__init__(
-            f"input {name!r} is not known at t = {instant:.10g} s: the terms of its {law} cancel to "
-            f"{value:.3g}, which may be off by {doubt:.2g}, and no pose can be proven from that; give a law "
-            "of smaller terms, such as a table of values, or the same motion in a time that starts near zero"
-        )
+        self.doubt = doubt
+        self.law = law
+        when = "" if instant is None else f" at t = {instant:.10g} s"
+        said, advice = f"input {name!r} is {value:.10g}{when}", ""
+        if doubt:
+            said = (
+                f"input {name!r} is not known{when}: the terms of its {law} cancel to {value:.3g}, which may "
+                f"be off by {doubt:.2g}, and no pose can be proven from that"
+            )
+            advice = (
+                "give a law of smaller terms, such as a table of values, or the same motion in a time that "
+                "starts near zero"
+            )
+        super().__init__(said, allowed, advice)
 
 
 class AssemblyError(PointcoordError):
@@ -206,78 +218,62 @@ class AssemblyError(PointcoordError):
         self.limits = limits
         self.instant = instant
         when = "" if instant is None else f" at t = {instant:.6g} s"
-        goals = ", ".join(f"{name} = {value:.10g}" for name, value in wanted.items())
-        stops = ", ".join(f"{name} = {value:.10g}" for name, value in reached.items())
-        advice = (
-            f"bring {reduce!r} back towards its value there" if reduce else "draw these nearer to closing"
-        )
+        advice = "draw these nearer to closing"
+        if reduce:
+            advice = f"bring {reduce!r} back towards its value there"
         super().__init__(
-            f"{problem}{when}: wanted {goals}; assembly stopped at {stops} "
-            f"(condition number {condition:.2g}), limited by {', '.join(limits[:3]) or 'an unknown link'}; "
-            f"{advice}"
+            f"{problem}{when}: wanted {_told(wanted)}; assembly stopped at {_told(reached)} "
+            f"(condition number {condition:.2g}), limited by {', '.join(limits[:3]) or 'an unknown link'}",
+            advice=advice,
         )
 
 
-class MotionTooLong(PointcoordError):
-    """A motion that would take more segments than the limit.
+def _told(inputs: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} = {value:.10g}" for name, value in inputs.items())
+
+
+class NotFollowed(PointcoordError):
+    """A motion that power series in time do not follow: they would be too many, or none follows an input.
 
     Args:
-        limit: most segments. instant: how far they reached, s. start, stop: of the motion, s.
+        instant: how far the series reach, s.
+        name: the input that changes too fast, or from too large terms, for any step after that; empty if the
+            series are too many.
+        coarsest: whether no larger tolerance is left to try.
+        limit: most series. start, stop: of the motion that needs more, s.
 
     Attributes:
-        expected: about how many the whole motion takes.
+        problem: which of the two, without numbers.
+        expected: about how many the whole motion takes, if that is too many.
     """
 
-    def __init__(self, limit: int, instant: float, start: float, stop: float) -> None:
-        self.limit = limit
-        self.instant = instant
-        self.start = start
-        self.stop = stop
-        self.expected = limit * (stop - start) / (instant - start)
-        super().__init__(
-            f"the motion from {start:.6g} to {stop:.6g} s takes about {self.expected:.2g} segments; allowed: "
-            f"{limit}, which reach t = {instant:.6g} s; shorten the time, slow the inputs down, or use the "
-            "method 'newton', which solves at the scene's instants only"
-        )
-
-
-class MotionTooRough(PointcoordError):
-    """An input that changes too fast, or from too large terms, for any step of a series to follow.
-
-    Args:
-        name: the input. instant: how far the motion came, s.
-        coarsest: whether no larger tolerance is left to try.
-    """
-
-    def __init__(self, name: str, instant: float, *, coarsest: bool = False) -> None:
-        self.name = name
-        self.instant = instant
-        looser = "" if coarsest else "allow a larger tolerance, "
-        super().__init__(
-            f"input {name!r} changes too fast or too unevenly after t = {instant:.10g} s: no step that time "
-            "can tell apart follows it to the tolerance, though the mechanism could; smooth it there, "
-            f"{looser}or use the method 'newton', which solves at the scene's instants only"
-        )
-
-
-class MotionNotMapped(PointcoordError):
-    """A motion whose inputs go where no map of them is proven.
-
-    Args:
-        instant: up to when the way of the inputs is covered, s; the start if nothing is.
-        inputs: value of each input there.
-        reason: why not further.
-    """
-
-    def __init__(self, instant: float, inputs: Mapping[str, float], reason: str) -> None:
-        self.instant = instant
-        self.inputs = dict(inputs)
-        self.reason = reason
-        place = ", ".join(f"{name} = {value:.10g}" for name, value in inputs.items())
-        super().__init__(
-            f"the map of the inputs does not cover their way after t = {instant:.10g} s, {place}: {reason}; "
-            "keep the inputs farther from there, or use the method 'series' or 'newton'"
-        )
+    def __init__(
+        self,
+        instant: float,
+        *,
+        name: str = "",
+        coarsest: bool = False,
+        limit: int = 0,
+        start: float = 0.0,
+        stop: float = 0.0,
+    ) -> None:
+        self.instant, self.name = instant, name
+        self.limit, self.start, self.stop = limit, start, stop
+        self.expected = 0.0 if name else limit * (stop - start) / (instant - start)
+        if name:
+            self.problem, allowed = "no series follows an input", ""
+            said = (
+                f"input {name!r} changes too fast or too unevenly after t = {instant:.10g} s: no step that "
+                "time can tell apart follows it to the tolerance, though the mechanism could"
+            )
+            advice = "smooth it there" + ("" if coarsest else ", allow a larger tolerance")
+        else:
+            self.problem = "the motion takes too many series"
+            said = f"the motion from {start:.6g} to {stop:.6g} s takes about {self.expected:.2g} segments"
+            allowed = f"{limit} segments, which reach t = {instant:.6g} s"
+            advice = "shorten the time, slow the inputs down"
+        newton = "or use the method 'newton', which solves at the scene's instants only"
+        super().__init__(said, allowed, f"{advice}, {newton}")
 
 
 class SingularConfiguration(PointcoordError):
@@ -287,60 +283,63 @@ class SingularConfiguration(PointcoordError):
         self.free = free
         self.condition = condition
         self.where = where
-        super().__init__(
-            f"singular configuration{' ' + where if where else ''}: {free} "
-            f"(condition number {condition:.2g}); move an input or a point away from it"
-        )
-
-
-class OutsideMotion(PointcoordError, ValueError):
-    """An instant outside the time that a motion covers."""
-
-    def __init__(self, instant: float, start: float, stop: float) -> None:
-        self.instant = instant
-        self.start = start
-        self.stop = stop
-        super().__init__(
-            f"t = {instant:.10g} s is outside the motion; allowed: {start:.10g} to {stop:.10g} s"
-        )
+        place = f"singular configuration {where}" if where else "singular configuration"
+        advice = "move an input or a point away from it"
+        super().__init__(f"{place}: {free} (condition number {condition:.2g})", advice=advice)
 
 
 class WrongArgument(PointcoordError, ValueError):
-    """A kinematic map or a sweep cannot be made, used or read as it was asked for.
+    """A motion, a kinematic map or a sweep cannot be made, used or read as it was asked for.
 
     Args:
-        what: the argument, option, file or design at fault.
+        what: the argument, option, file, instant or design at fault.
         problem: what is wrong, with the value.
         allowed: what would be right.
+        instant: s, if one is at fault.
     """
 
-    def __init__(self, what: str, problem: str, allowed: str) -> None:
+    def __init__(self, what: str, problem: str, allowed: str, instant: float | None = None) -> None:
         self.what = what
         self.problem = problem
-        self.allowed = allowed
-        super().__init__(f"{what} {problem}; allowed: {allowed}")
-
-
-MapError = SweepError = WrongArgument
+        self.instant = instant
+        super().__init__(f"{what} {problem}", allowed)
 
 
 class NotCovered(PointcoordError, ValueError):
-    """Inputs inside the range of a kinematic map at which nothing is proven.
+    """Inputs at which nothing is proven, though they lie in the range of a map, or on the way of a motion.
 
     Args:
-        inputs: value of each input, the first that is not covered.
-        reason: why not.
-        count: how many of those that were asked for are not. asked: how many there are.
+        inputs: value of each input: of a kinematic map the first that is not covered, of a motion the last
+            that are.
+        reason: why not, or not further.
+        count: how many of the poses that were asked for are not. asked: how many there are.
+        instant: of a motion by a map, up to when its way is covered, s; the start if nothing of it is.
     """
 
-    def __init__(self, inputs: Mapping[str, float], reason: str, count: int, asked: int) -> None:
+    def __init__(
+        self,
+        inputs: Mapping[str, float],
+        reason: str,
+        count: int = 1,
+        asked: int = 1,
+        instant: float | None = None,
+    ) -> None:
         self.inputs = dict(inputs)
         self.reason = reason
         self.count = count
         self.asked = asked
-        place = ", ".join(f"{name} = {value:.10g}" for name, value in inputs.items())
+        self.instant = instant
+        where = "the map does not cover"
+        advice = "keep to what `covers` says, or make the map of a smaller range or with more halvings"
+        if instant is not None:
+            where = f"the map of the inputs does not cover their way after t = {instant:.10g} s,"
+            advice = "keep the inputs farther from there, or use the method 'series' or 'newton'"
         others = f"; {count} of {asked} poses are not covered" if asked > 1 else ""
-        super().__init__(
-            f"the map does not cover {place}: {reason}{others}; keep to what `covers` says, or make the map "
-            "of a smaller range or with more halvings"
-        )
+        super().__init__(f"{where} {_told(inputs)}: {reason}{others}", advice=advice)
+
+
+# Names that errors had before they became one.
+MapError = SweepError = OutsideMotion = WrongArgument
+MotionTooLong = MotionTooRough = NotFollowed
+MotionNotMapped = NotCovered
+InputNotKnown = InputOutOfRange

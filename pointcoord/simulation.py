@@ -12,12 +12,10 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.plan import plan_effects
 from pointcoord.errors import (
-    InputNotKnown,
     InputOutOfRange,
     MechanismError,
-    MotionNotMapped,
-    MotionTooLong,
-    MotionTooRough,
+    NotCovered,
+    NotFollowed,
     PointcoordError,
     SceneError,
 )
@@ -68,13 +66,12 @@ def simulate(scene: Scene | str | PathLike[str], method: Method | str = AUTO) ->
     Raises:
         UnknownName: there is no such method.
         SceneError: the hardpoints do not make a mechanism, or the scene was made wrong after it was read.
-        InputOutOfRange: an input leaves the values for which it has a meaning.
-        InputNotKnown: the terms of an input's law cancel so far that no pose can be proven with it.
+        InputOutOfRange: an input leaves the values for which it has a meaning, or the terms of its law
+            cancel so far that no pose can be proven with it.
         AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there, None if
             there is none.
-        MotionTooLong: the motion takes too many series; likewise.
-        MotionTooRough: no series follows an input; likewise.
-        MotionNotMapped: no map covers the way of the inputs, though no pose on it is singular; likewise.
+        NotFollowed: the motion takes too many series, or none follows an input; likewise.
+        NotCovered: no map covers the way of the inputs, though no pose on it is singular; likewise.
 
     >>> motion = simulate("steer")
     >>> motion.position["wheel_centre"].shape
@@ -102,7 +99,7 @@ def solve_task(task: Task) -> Motion:
     """Solve a scene that is ready, by the method of the task.
 
     Raises:
-        InputNotKnown, AssemblyError, MotionTooLong, MotionTooRough, MotionNotMapped: as `simulate`.
+        InputOutOfRange, AssemblyError, NotFollowed, NotCovered: as `simulate`.
     """
     if task.method.by_series and task.method.by_map:
         task, solved = solve_by_either(task)
@@ -277,7 +274,7 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
     if stopped is None:
         solved = solve_by_series(task, hopeful=False)
         stopped = solved.status.stopped
-    if isinstance(stopped, MotionTooLong | MotionTooRough):
+    if isinstance(stopped, NotFollowed):
         mapped = solve_by_map(task, why_map(stopped))
         if mapped.status.complete:
             return replace(task, method=MAP), mapped
@@ -286,19 +283,20 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
     return replace(task, method=SERIES), solved
 
 
-def foreseen(task: Task) -> MotionTooLong | None:
+def foreseen(task: Task) -> NotFollowed | None:
     """Whether a chain is too long for certain, before it is built: a segment ends at every break."""
     time = task.scene.time
     every = (instant for law in task.functions.values() for instant in law.breaks)
     inner = sorted({instant for instant in every if time.start < instant < time.stop})
     if len(inner) < MOST_SEGMENTS:
         return None
-    return MotionTooLong(MOST_SEGMENTS, float(inner[MOST_SEGMENTS - 1]), time.start, time.stop)
+    reached = float(inner[MOST_SEGMENTS - 1])
+    return NotFollowed(reached, limit=MOST_SEGMENTS, start=time.start, stop=time.stop)
 
 
-def why_map(stopped: MotionTooLong | MotionTooRough) -> str:
+def why_map(stopped: NotFollowed) -> str:
     """Why a map was used instead of series, as a note."""
-    if isinstance(stopped, MotionTooRough):
+    if stopped.name:
         reason = f"no series in time follows {stopped.name!r} after t = {stopped.instant:.10g} s"
     else:
         reason = f"series in time would be about {stopped.expected:.2g}, and {stopped.limit} are allowed"
@@ -325,7 +323,7 @@ def _stop_of_map(task: Task, solved: ByMap) -> PointcoordError:
             problem = "the mechanism cannot be assembled"
             return blocked(mechanism, problem, path.y, path.factors, target, path.done < 1.0, instant)
         y = path.y
-    return MotionNotMapped(until, inputs, way.reason)
+    return NotCovered(inputs, way.reason, instant=until)
 
 
 def _at_instants(task: Task) -> SolvedScene:
@@ -507,7 +505,7 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
     """Find out whether a law that is less certain than the scene's tolerance leaves a pose unproven.
 
     Raises:
-        InputNotKnown: it does, and with the law's values as they are the pose is proven.
+        InputOutOfRange: it does, and with the law's values as they are the pose is proven.
     """
     doubts = {name: law.rounding(samples.times) for name, law in solved.functions.items()}
     if all((doubt <= tolerance).all() for doubt in doubts.values()):
@@ -519,7 +517,8 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
         name = max(doubts, key=lambda name: float(doubts[name][place]))
         function, instant = solved.functions[name], float(samples.times[place])
         value, law = float(function.series(instant, 0)[0]), type(function).__name__.lower()
-        raise InputNotKnown(name, law, value, float(doubts[name][place]), instant)
+        doubt = float(doubts[name][place])
+        raise InputOutOfRange(name, value, "", instant, doubt=doubt, law=law)
 
 
 def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:

@@ -71,7 +71,9 @@ def test_the_first_lines_of_the_program_need_nothing_but_python() -> None:
 def test_every_name_of_pointcoord_is_what_it_says_whatever_was_imported_first() -> None:
     program = (
         "import pkgutil, importlib, pointcoord\n"
-        "same = dict.fromkeys(('MapError', 'SweepError'), 'WrongArgument')\n"
+        "same = dict.fromkeys(('MapError', 'OutsideMotion', 'SweepError'), 'WrongArgument')\n"
+        "same |= dict.fromkeys(('MotionTooLong', 'MotionTooRough'), 'NotFollowed')\n"
+        "same |= {'InputNotKnown': 'InputOutOfRange', 'MotionNotMapped': 'NotCovered'}\n"
         "for found in pkgutil.walk_packages(pointcoord.__path__, 'pointcoord.'):\n"
         "    importlib.import_module(found.name)\n"
         "for name in pointcoord.__all__:\n"

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.errors import InputOutOfRange, MapError, UnknownName
+from pointcoord.errors import InputOutOfRange, UnknownName, WrongArgument
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.patches.domain import Domain
 
@@ -31,13 +31,13 @@ def columns_of(
         By derivative, each (N, p); what moves the chassis by input and derivative, each (N,); and the shape
         of what is given, of N numbers.
     Raises:
-        UnknownName, InputOutOfRange, MapError: what is none of a map's.
+        UnknownName, InputOutOfRange, WrongArgument: what is none of a map's.
     """
     topology = domain.mechanism.topology
     held = {name: low for name, (low, high) in domain.ranges.items() if low == high}
     for d, state in enumerate(given):
         if not isinstance(state, Mapping):
-            raise MapError(STATES[d], f"is a {type(state).__name__}", "numbers or arrays by input")
+            raise WrongArgument(STATES[d], f"is a {type(state).__name__}", "numbers or arrays by input")
         kind = ("input", "input with a rate", "input with an acceleration")[d]
         for name in state:
             if name not in topology.inputs:
@@ -76,7 +76,8 @@ def numbers_of(what: str, value: ArrayLike) -> Array:
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError) as error:
-        raise MapError(what, f"cannot be read as numbers: {error}", "numbers or arrays of them") from error
+        problem = f"cannot be read as numbers: {error}"
+        raise WrongArgument(what, problem, "numbers or arrays of them") from error
 
 
 def common_shape(shapes: Sequence[tuple[int, ...]], what: str) -> tuple[int, ...]:
@@ -85,18 +86,18 @@ def common_shape(shapes: Sequence[tuple[int, ...]], what: str) -> tuple[int, ...
         return np.broadcast_shapes(*shapes)
     except ValueError as error:
         told = ", ".join(map(str, dict.fromkeys(shapes)))
-        raise MapError(what, f"have the shapes {told}", "shapes that broadcast to one") from error
+        raise WrongArgument(what, f"have the shapes {told}", "shapes that broadcast to one") from error
 
 
 def checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[float, float]]:
     """The range of each driving input, in their order."""
     topology = mechanism.topology
     if not isinstance(ranges, Mapping):
-        raise MapError("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
+        raise WrongArgument("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
     for name in ranges:
         if name in topology.chassis_inputs and name not in topology.required_inputs:
             allowed = "no range: it moves the whole chassis, whatever it is"
-            raise MapError(f"ranges[{name!r}]", "is given", allowed)
+            raise WrongArgument(f"ranges[{name!r}]", "is given", allowed)
         if name not in topology.required_inputs:
             raise UnknownName("driving input", name, topology.required_inputs)
     found = {}
@@ -110,7 +111,7 @@ def checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[floa
         # Comparisons are false of what is not a number.
         within = max(abs(low), abs(high)) <= FARTHEST
         if not (within and (low == high or high - low >= NARROWEST)):
-            raise MapError(
+            raise WrongArgument(
                 f"ranges[{name!r}]",
                 f"is {ranges[name]!r}",
                 f"two finite numbers within {FARTHEST:g}, the lower first and {NARROWEST:g} apart at least, "

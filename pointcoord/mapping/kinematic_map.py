@@ -30,7 +30,7 @@ from numpy.typing import ArrayLike, NDArray
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.errors import InputOutOfRange, MapError, NotComputed, NotCovered
+from pointcoord.errors import InputOutOfRange, NotComputed, NotCovered, WrongArgument
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mapping.asked import STATES, Ranges, checked_ranges, columns_of, numbers_of
@@ -214,7 +214,7 @@ class KinematicMap(ReadOnly):
             InputOutOfRange: a value outside the map's range, or a rate that is not finite.
             NotCovered: inputs at which nothing is proven.
             NotComputed: accelerations without rates.
-            MapError: what is no number, or shapes that do not broadcast.
+            WrongArgument: what is no number, or shapes that do not broadcast.
         """
         given = _states(inputs, rates, accelerations)
         states, laws, shape = columns_of(self.domain, given)
@@ -255,14 +255,14 @@ class KinematicMap(ReadOnly):
         Raises:
             InputOutOfRange: a value outside the map's range, or a rate that is not finite.
             NotCovered: inputs at which nothing is proven.
-            MapError: an array that is not a number for each input.
+            WrongArgument: an array that is not a number for each input.
         """
         states = []
         for what, given in zip(STATES, _states(values, rates, accelerations), strict=False):
             state = numbers_of(what, given)
             if state.shape != self._shape:
                 allowed = f"{self._shape}, a number for each of {', '.join(self.inputs)}"
-                raise MapError(what, f"have the shape {state.shape}", allowed)
+                raise WrongArgument(what, f"have the shape {state.shape}", allowed)
             states.append(state.tolist())
         number = self._lookup.at_one(states[0])
         if number < 0 or not all(map(isfinite, chain(*states[1:]))):
@@ -299,7 +299,7 @@ class KinematicMap(ReadOnly):
         """Write it to an npz file, which `load` and any program that reads numpy's files can read.
 
         Raises:
-            MapError: the file cannot be written.
+            WrongArgument: the file cannot be written.
         """
         data = packed((self.scene, self.tolerance, self.series, self.gaps))
         with _of_file(path, "written", "a path to write to"), open(path, "wb") as stream:
@@ -310,7 +310,7 @@ class KinematicMap(ReadOnly):
         """Read a map that was saved.
 
         Raises:
-            MapError: there is no such file, it is another one, of another version, or damaged.
+            WrongArgument: there is no such file, it is another one, of another version, or damaged.
         """
         with _of_file(path, "read", ALLOWED), open(path, "rb") as stream:
             data = stream.read()
@@ -386,7 +386,7 @@ def kinematic_map(
     Raises:
         UnknownName: a range that is missing, or of no input that drives the suspension.
         InputOutOfRange: an end at which the input has no meaning.
-        MapError: a range, tolerance or number of halvings that makes no map.
+        WrongArgument: a range, tolerance or number of halvings that makes no map.
         SceneError: the hardpoints do not make a mechanism, or closing them makes another car.
         AssemblyError: the range cannot be reached from the drawing.
         NotCovered: nothing of it can be proven.
@@ -403,17 +403,17 @@ def kinematic_map(
     mechanism = scene_mechanism(scene)
     whole = isinstance(halvings, int | np.integer) and not isinstance(halvings, bool)
     if not (whole and 0 <= halvings <= MOST_HALVINGS):
-        raise MapError("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
+        raise WrongArgument("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
     domain = Domain(mechanism, checked_ranges(mechanism, ranges), int(halvings))
     if not 1 <= len(domain.free) <= VARIABLES:
-        raise MapError("ranges", f"leave {len(domain.free)} inputs free", f"1 to {VARIABLES} of them")
+        raise WrongArgument("ranges", f"leave {len(domain.free)} inputs free", f"1 to {VARIABLES} of them")
     number = isinstance(tolerance, int | float | np.integer | np.floating) and not isinstance(tolerance, bool)
     if not (number and np.isfinite(tolerance) and tolerance > 0.0):
-        raise MapError("tolerance", f"is {tolerance!r}", "a finite number of mm above 0")
+        raise WrongArgument("tolerance", f"is {tolerance!r}", "a finite number of mm above 0")
     domain.known_at(np.stack(domain.ends))
     for effect in plan_effects(scene.effects).computed:
         if others := mapped_instead_of(effect):
-            raise MapError("effects", f"has {effect.name!r}", others)
+            raise WrongArgument("effects", f"has {effect.name!r}", others)
     closed = close_drawing(mechanism)
     require_the_drawn_car(scene, closing(mechanism, closed.y))
     cover = flood_from_drawing(domain, domain.order_for(tolerance), Limits(tolerance), closed, MOST)
@@ -458,10 +458,10 @@ def _hold_rows(patches: ProvenPatches) -> None:
 def _of_file(path: object, done: str, allowed: str) -> Iterator[None]:
     """What may go wrong with a file, in words."""
     if not isinstance(path, str | PathLike):
-        raise MapError(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
+        raise WrongArgument(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
     try:
         yield
     except OSError as error:
-        raise MapError(
+        raise WrongArgument(
             f"file {fspath(path)!r}", f"cannot be {done}: {error.strerror or error}", allowed
         ) from error

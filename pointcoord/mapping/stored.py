@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.errors import MapError, PointcoordError
+from pointcoord.errors import PointcoordError, WrongArgument
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import Key
@@ -66,27 +66,27 @@ def unpacked(data: bytes, what: str) -> Content:
     Args:
         what: the file, in words.
     Raises:
-        MapError: they are another file's, of another version, or damaged.
+        WrongArgument: they are another file's, of another version, or damaged.
     """
     try:
         with np.load(BytesIO(data), allow_pickle=False) as archive:
             found = dict(archive)
     except Exception as error:  # what reading other bytes ends with is numpy's affair, and zipfile's
-        raise MapError(what, "is no npz file, or a damaged one", ALLOWED) from error
+        raise WrongArgument(what, "is no npz file, or a damaged one", ALLOWED) from error
     if str(found.pop("format", "")) != FORMAT:
-        raise MapError(what, "is no kinematic map", ALLOWED)
+        raise WrongArgument(what, "is no kinematic map", ALLOWED)
     version = str(found.pop("version", "none"))
     if version != str(VERSION):
-        raise MapError(what, f"is of version {version}", f"version {VERSION}; make it again")
+        raise WrongArgument(what, f"is of version {version}", f"version {VERSION}; make it again")
     try:
         text, digest = str(found.pop("head")), str(found.pop("digest"))
         if _digest(text, found) != digest:
-            raise MapError(what, "is damaged: its numbers are not those that were saved", ALLOWED)
+            raise WrongArgument(what, "is damaged: its numbers are not those that were saved", ALLOWED)
         return _content(json.loads(text), found, what)
-    except MapError:
+    except WrongArgument:
         raise
     except (PointcoordError, LookupError, TypeError, ValueError) as error:
-        raise MapError(what, f"does not hold a whole map: {error}", ALLOWED) from error
+        raise WrongArgument(what, f"does not hold a whole map: {error}", ALLOWED) from error
 
 
 def _content(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], what: str) -> Content:
@@ -97,7 +97,7 @@ def _content(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], what: 
     points = moving_points(domain.mechanism.topology)
     wanted = (len(arrays["low"]), powers(len(domain.free), order).count, 3 * len(points))
     if arrays["coefficients"].shape != wanted:
-        raise MapError(what, f"has coefficients of shape {arrays['coefficients'].shape}", f"{wanted}")
+        raise WrongArgument(what, f"has coefficients of shape {arrays['coefficients'].shape}", f"{wanted}")
     corners = arrays["low"], arrays["high"]
     off = Jet(*(arrays[name] for name in OFF))
     patches = Patches(domain, order, *corners, arrays["coefficients"], off)

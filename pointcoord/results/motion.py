@@ -109,7 +109,7 @@ class Motion(Samples):
         Returns:
             Arrays of the instants' shape, vectors with a last dimension of 3.
         Raises:
-            OutsideMotion: an instant before the start, after the stop, or not a number.
+            WrongArgument: an instant before the start, after the stop, or not a number.
             NotComputed: the method knows the motion at the scene's instants only.
             ValueError: `out` is no such array.
 
@@ -134,7 +134,7 @@ class Motion(Samples):
                 given.
             size: how many instants a block has; the last may have fewer.
         Raises:
-            OutsideMotion: as `at`, at the block that has the instant.
+            WrongArgument: as `at`, at the block that has the instant.
             NotComputed: instants are given, and the method knows the motion at the scene's only.
             ValueError: a number below 1, or instants of another shape.
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.solved_coordinates import Summed
-from pointcoord.errors import OutsideMotion
+from pointcoord.errors import WrongArgument
 from pointcoord.mechanism.freedoms import held_rows
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import BLOCK, Readout
@@ -125,11 +125,13 @@ class SolvedScene(ABC):
             rows: a table of results or some columns of one, shape (..., height, N). The states that are
                 reported are put into their places, and those that are returned may be views of them.
         Raises:
-            OutsideMotion: an instant that is not covered, or not a number.
+            WrongArgument: an instant that is not covered, or not a number.
         """
         outside = ~((instants >= self.start) & (instants <= self.stop))
         if outside.any():
-            raise OutsideMotion(float(instants[outside][0]), self.start, self.stop)
+            instant = float(instants[outside][0])
+            allowed = f"{self.start:.10g} to {self.stop:.10g} s"
+            raise WrongArgument(f"t = {instant:.10g} s", "is outside the motion", allowed, instant)
         if rows is None:
             rows = self.readout.room(len(instants))
         places = self.readout.places(rows)
@@ -142,7 +144,7 @@ class SolvedScene(ABC):
         Args:
             out: where the numbers go, shape (rows, N); a new array if not given.
         Raises:
-            OutsideMotion: an instant that was not solved for, or not a number.
+            WrongArgument: an instant that was not solved for, or not a number.
             MechanismError: a row that was left out, as it followed from others at the drawing, is violated.
         """
         readout = self.readout

@@ -30,7 +30,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.errors import InputOutOfRange, MotionTooLong, MotionTooRough
+from pointcoord.errors import InputOutOfRange, NotFollowed
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden, on_branch, regular_along
 from pointcoord.numerics.counters import Work
@@ -188,7 +188,9 @@ def build_chains(
         members = waiting.pop()
         course = _Course.of(mechanism.taken(members), functions, start, stop, settings)
         chain, kept = course.build(pose.taken(members), leaving=len(members) > 1)
-        if len(kept) > 1 and not (chain.status.complete or isinstance(chain.status.stopped, MotionTooLong)):
+        stopped = chain.status.stopped
+        too_long = isinstance(stopped, NotFollowed) and not stopped.name
+        if len(kept) > 1 and not (chain.status.complete or too_long):
             # Which of them it was shows one by one.
             waiting += [members[[place]] for place in kept.tolist()]
         else:
@@ -272,17 +274,20 @@ class _Course:
         def chain(status: Status) -> tuple[Chain, Numbers]:
             return Chain(tuple(segments), work, status), kept
 
+        def too_many(reached: float) -> NotFollowed:
+            return NotFollowed(reached, limit=MOST_SEGMENTS, start=start, stop=stop)
+
         untold = hidden(self.part.system, joint.y, joint.factors)
         if start < stop and untold.any():
             return chain(course.stops_at(joint, untold, coarsest=False))
         while joint.instant < stop or not segments:
             if len(segments) == MOST_SEGMENTS:
-                return chain(Status(MotionTooLong(MOST_SEGMENTS, joint.instant, start, stop)))
+                return chain(Status(too_many(joint.instant)))
             if len(segments) == TELLING and not self.settings.hopeful:
                 # Later ones would have to be four times as long on average to be enough.
                 likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
                 if stop - start > 4.0 * (likely - start):
-                    return chain(Status(MotionTooLong(MOST_SEGMENTS, likely, start, stop)))
+                    return chain(Status(too_many(likely)))
             segment, lengths = course.segment_from(joint)
             solves = segment.order * joint.members
             work += Work(
@@ -474,7 +479,7 @@ class _Course:
         error = blocked(self.mechanism, problem, place.y, place.factors, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
         locked = error.condition > REGULAR
-        return Status(error if locked else MotionTooRough(error.reduce, instant, coarsest=coarsest))
+        return Status(error if locked else NotFollowed(instant, name=error.reduce, coarsest=coarsest))
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.errors import SweepError, UnknownName
+from pointcoord.errors import UnknownName, WrongArgument
 from pointcoord.linkage.topology import Topology
 from pointcoord.results.read_only import ReadOnly
 from pointcoord.scene.scene_file import Scene
@@ -86,11 +86,11 @@ class Designs(ReadOnly):
         """The scene of one design, checked.
 
         Raises:
-            SweepError: there is no such design.
+            WrongArgument: there is no such design.
             SceneError: it is no scene that could be solved.
         """
         if not 0 <= number < self.count:
-            raise SweepError(f"design {number}", "is none of these", f"0 to {self.count - 1}")
+            raise WrongArgument(f"design {number}", "is none of these", f"0 to {self.count - 1}")
         points = {name: tuple(place[0].tolist()) for name, place in self.points(np.array([number])).items()}
         part = self.scene.mechanism
         content = {name: getattr(self.scene, name) for name in self.scene.model_fields_set}
@@ -113,7 +113,7 @@ def designs_of(
         offsets: the same, measured from where the scene draws it.
     Raises:
         UnknownName: no point or axis is called so.
-        SweepError: numbers of another shape, of another count than the others, or of a coordinate twice.
+        WrongArgument: numbers of another shape, of another count than the others, or of a coordinate twice.
     """
     values = _coordinates(scene, points or {}, offsets or {})
     counts = {name: len(column) for name, column in values.items() if column.ndim}
@@ -121,9 +121,9 @@ def designs_of(
     for name, own in counts.items():
         if own != count:
             longest = max(counts, key=lambda name: counts[name])
-            raise SweepError(name, f"has {own} values where {longest} has {count}", "as many of each")
+            raise WrongArgument(name, f"has {own} values where {longest} has {count}", "as many of each")
     if not count:
-        raise SweepError(next(iter(counts)), "has no values", "one or more designs")
+        raise WrongArgument(next(iter(counts)), "has no values", "one or more designs")
     return Designs(scene, count, {name: Column(np.atleast_1d(column)) for name, column in values.items()})
 
 
@@ -139,24 +139,25 @@ def grid_of(
         offsets: the same, measured from where the scene draws it.
     Raises:
         UnknownName: no point or axis is called so.
-        SweepError: something else than a list of numbers, an empty one, a coordinate twice, or too many
+        WrongArgument: something else than a list of numbers, an empty one, a coordinate twice, or too many
             designs.
     """
     for name in (*(points or {}), *(offsets or {})):
         if "." not in name:
-            raise SweepError(name, "is no axis of a grid", f"{name}.x, {name}.y or {name}.z with its values")
+            allowed = f"{name}.x, {name}.y or {name}.z with its values"
+            raise WrongArgument(name, "is no axis of a grid", allowed)
     values = _coordinates(scene, points or {}, offsets or {})
     lengths = {name: int(column.size) for name, column in values.items()}
     for name, length in lengths.items():
         if not length:
-            raise SweepError(name, "has no values", "one or more")
+            raise WrongArgument(name, "has no values", "one or more")
     columns, repeat = {}, 1
     for name in reversed(values):
         columns[name] = Column(np.atleast_1d(values[name]), repeat)
         repeat *= lengths[name]
     if repeat > MOST:
         sizes = " x ".join(str(length) for length in lengths.values())
-        raise SweepError("the grid", f"has {sizes} = {repeat:.3g} designs", f"at most {MOST:.0e}")
+        raise WrongArgument("the grid", f"has {sizes} = {repeat:.3g} designs", f"at most {MOST:.0e}")
     return Designs(scene, repeat, {name: columns[name] for name in values})
 
 
@@ -170,7 +171,7 @@ def _coordinates(
         for name, numbers in given.items():
             for coordinate, values in _split(name, numbers, topology).items():
                 if coordinate in found:
-                    raise SweepError(coordinate, "is varied twice", "once")
+                    raise WrongArgument(coordinate, "is varied twice", "once")
                 point, _, axis = coordinate.rpartition(".")
                 found[coordinate] = values + drawn[point][AXES.index(axis)] if relative else values
     return found
@@ -199,11 +200,11 @@ def _split(name: str, numbers: ArrayLike, topology: Topology) -> dict[str, Array
     try:
         values = np.array(numbers, dtype=float)
     except (TypeError, ValueError):
-        raise SweepError(name, f"is {shown(numbers)}", "numbers") from None
+        raise WrongArgument(name, f"is {shown(numbers)}", "numbers") from None
     if len(named) == 1:
         if values.ndim > 1:
-            raise SweepError(name, f"has the shape {values.shape}", "a number for each design, (D,)")
+            raise WrongArgument(name, f"has the shape {values.shape}", "a number for each design, (D,)")
         return {name: values}
     if values.shape[-1:] != (3,) or values.ndim > 2:
-        raise SweepError(name, f"has the shape {values.shape}", "three numbers for each design, (D, 3)")
+        raise WrongArgument(name, f"has the shape {values.shape}", "three numbers for each design, (D, 3)")
     return {coordinate: values[..., i] for i, coordinate in enumerate(named)}

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.errors import SweepError, UnknownName
+from pointcoord.errors import UnknownName, WrongArgument
 from pointcoord.results.read_only import ReadOnly
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
@@ -75,7 +75,7 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
             such as rod_force.tie_rod or velocity.wheel_centre.z; all of the car unless given.
         coordinates: such as lower_ball_joint.z, or a point's name for all three; all hardpoints unless given.
     Raises:
-        SceneError, SweepError: as `sweep`.
+        SceneError, WrongArgument: as `sweep`.
         UnknownName: no point, axis or number is called so.
 
     >>> found = sensitivity(Scene.load("double-wishbone"), ["camber"], ["upper_ball_joint.y"])
@@ -91,7 +91,8 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
     drawn = sweep(scene)
     every = numbers_named(drawn.numbers, numbers)
     if not every:
-        raise SweepError("the scene's effects", "give no number of the car", "an effect such as wheel_angles")
+        allowed = "an effect such as wheel_angles"
+        raise WrongArgument("the scene's effects", "give no number of the car", allowed)
     if drawn.failures:
         nothing = {name: np.full((len(named), len(drawn.times)), np.nan) for name in every}
         failures = dict.fromkeys(named, str(drawn.failures[0].error))

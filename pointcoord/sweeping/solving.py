@@ -21,8 +21,7 @@ from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.errors import (
     AssemblyError,
     MechanismError,
-    MotionTooLong,
-    MotionTooRough,
+    NotFollowed,
     PointcoordError,
     SceneError,
 )
@@ -265,7 +264,7 @@ class _Block:
         for place, error in solved.failures.items():
             if members[place] in self.failures:
                 continue
-            if isinstance(error, MotionTooLong | MotionTooRough):
+            if isinstance(error, NotFollowed):
                 # What is too long or too rough for all together may not be so for one, or for a map.
                 self._alone(int(members[place]))
             else:
@@ -390,8 +389,6 @@ def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
 
 
 REASONS: tuple[tuple[type[PointcoordError], str], ...] = (
-    (MotionTooLong, "the motion takes too many series"),
-    (MotionTooRough, "no series follows an input"),
     (SceneError, "the drawing is refused"),
     (MechanismError, "the mechanism locks"),
 )
@@ -399,7 +396,7 @@ REASONS: tuple[tuple[type[PointcoordError], str], ...] = (
 
 def reason_of(error: PointcoordError) -> str:
     """The reason of a failure in words without numbers."""
-    if isinstance(error, AssemblyError):
+    if isinstance(error, AssemblyError | NotFollowed):
         return error.problem
     if isinstance(error, SceneError) and "that is another car" in error.problem:
         return "closing the drawing makes another car of it"

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from numpy.typing import ArrayLike
 
-from pointcoord.errors import SweepError
+from pointcoord.errors import WrongArgument
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.sweeping.designs import Designs, designs_of, grid_of
@@ -38,9 +38,9 @@ def sweep(
         `failures`; it disturbs no other.
     Raises:
         UnknownName: no point or axis is called so.
-        SweepError: the values do not make designs, or their results do not fit into this machine's memory.
+        WrongArgument: the values do not make designs, or their results do not fit into this machine's memory.
         SceneError: the scene was made wrong after it was read.
-        InputOutOfRange, InputNotKnown: a law that all designs share.
+        InputOutOfRange: a law that all designs share.
 
     >>> from pointcoord import Scene
     >>> found = sweep(Scene.load("double-wishbone"), offsets={"lower_ball_joint.z": [-5.0, 0.0, 5.0]})
@@ -53,7 +53,7 @@ def sweep(
     count, room = course.designs.count, _physical_memory()
     needed = count * course.bytes_of_a_design
     if needed > room:
-        raise SweepError(
+        raise WrongArgument(
             "the sweep",
             f"has {count} designs, whose numbers take {needed / 1e9:.3g} GB",
             f"what fits into this machine's {room / 1e9:.3g} GB; use sweep_blocks, which takes any number",
@@ -75,7 +75,7 @@ def sweep_blocks(
         memory: bytes that a block and solving it take at most; one that is still held when the next is asked
             for comes to that.
     Raises:
-        SweepError: as `sweep`; or one design takes more memory than that.
+        WrongArgument: as `sweep`; or one design takes more memory than that.
 
     >>> from pointcoord import Scene
     >>> blocks = sweep_blocks(Scene.load("steer"), offsets={"strut_top.y": [0.0, 1.0]}, memory=100e6)
@@ -85,7 +85,7 @@ def sweep_blocks(
     course = Course.of(_designs(designs, points, offsets, grid))
     needed = course.bytes_of_a_design + course.bytes_on_the_way
     if needed > memory:
-        raise SweepError(
+        raise WrongArgument(
             "memory",
             f"is {memory / 1e6:.4g} MB, where one design of {len(course.scene.instants)} instants takes "
             f"{needed / 1e6:.4g} MB",
@@ -105,7 +105,8 @@ def _designs(
 ) -> Designs:
     if isinstance(designs, Designs):
         if points or offsets or grid:
-            raise SweepError("points", "are given beside designs that have their own", "a scene with these")
+            problem = "are given beside designs that have their own"
+            raise WrongArgument("points", problem, "a scene with these")
         return designs
     require_scene(designs)
     return (grid_of if grid else designs_of)(designs, points, offsets)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.proof import Proof
-from pointcoord.errors import PointcoordError, SweepError
+from pointcoord.errors import PointcoordError, WrongArgument
 from pointcoord.results.motion import Motion
 from pointcoord.results.samples import Samples
 from pointcoord.scene.scene_file import Scene
@@ -124,7 +124,7 @@ class Sweep(Samples):
         """The numbers of one design, as `simulate` gives them.
 
         Raises:
-            SweepError: it is none of these.
+            WrongArgument: it is none of these.
             PointcoordError: it could not be solved; what stopped it.
         """
         place = self._place(number)
@@ -140,7 +140,7 @@ class Sweep(Samples):
         """The scene of one design.
 
         Raises:
-            SweepError: it is none of these.
+            WrongArgument: it is none of these.
             SceneError: it is no scene that could be solved.
         """
         self._place(number)
@@ -150,7 +150,7 @@ class Sweep(Samples):
         """The design solved once more by itself, dense in time.
 
         Raises:
-            SweepError: it is none of these.
+            WrongArgument: it is none of these.
             PointcoordError: as `simulate`.
         """
         return simulate(self.scene(number))
@@ -162,7 +162,7 @@ class Sweep(Samples):
         lie from them is measured and added.
 
         Raises:
-            SweepError: it is none of these.
+            WrongArgument: it is none of these.
             PointcoordError: it could not be solved.
         """
         samples = self.of(number)
@@ -171,5 +171,5 @@ class Sweep(Samples):
     def _place(self, number: int) -> int:
         if not self.first <= number < self.first + len(self):
             allowed = f"{self.first} to {self.first + len(self) - 1}"
-            raise SweepError(f"design {number}", "is none of these", allowed)
+            raise WrongArgument(f"design {number}", "is none of these", allowed)
         return number - self.first

@@ -25,7 +25,7 @@ KINDS = {
         "SingularError",
         "UnreachableError",
     ),
-    "the effort": ("MotionNotMapped", "MotionTooLong", "MotionTooRough"),
+    "the effort": ("MotionNotMapped", "MotionTooLong", "MotionTooRough", "NotCovered", "NotFollowed"),
 }
 KIND_OF = {name: kind for kind, names in KINDS.items() for name in names}
 

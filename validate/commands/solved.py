@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
+from pointcoord import Motion, NotFollowed, PointcoordError, Scene, SceneError, simulate
 from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
@@ -122,7 +122,7 @@ def solved(
     except SceneError:
         raise
     except PointcoordError as error:
-        advice = " (--method newton)" if isinstance(error, MotionTooLong | MotionTooRough) else ""
+        advice = " (--method newton)" if isinstance(error, NotFollowed) else ""
         if error.partial is None:
             console.complain(f"{name}: {error}{advice}; nothing is written")
             return ExitStatus.NO_VERDICT

@@ -15,8 +15,8 @@ from pointcoord import (
     Scene,
     SceneError,
     Sweep,
-    SweepError,
     UnknownName,
+    WrongArgument,
     designs_of,
     grid_of,
     sweep_blocks,
@@ -126,7 +126,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             else:
                 for _ in blocks:
                     pass
-    except (SceneError, SweepError, UnknownName):
+    except (SceneError, WrongArgument, UnknownName):
         raise
     except PointcoordError as error:
         console.complain(f"{name}: {error}")
@@ -159,9 +159,9 @@ def _designs(scene: Scene, options: argparse.Namespace) -> Designs:
     for text in options.vary:
         what, (coordinate, _, values) = f"--vary {shown(text)}", text.partition("=")
         if len(meant := coordinates_named(coordinate.strip(), scene.mechanism.topology.points)) > 1:
-            raise SweepError(what, "names no coordinate", ", ".join(meant))
+            raise WrongArgument(what, "names no coordinate", ", ".join(meant))
         if coordinate.strip() in varied:
-            raise SweepError(f"--vary {shown(coordinate)}", "is given twice", "once")
+            raise WrongArgument(f"--vary {shown(coordinate)}", "is given twice", "once")
         varied[coordinate.strip()] = values_of(what, values, EXAMPLES)
     return grid_of(scene, offsets=varied)
 
@@ -171,16 +171,16 @@ def _designs_of_file(scene: Scene, path: str) -> Designs:
     name, text = shown(path), text_of(read_file(path, "a CSV file"))
     rows = lines_of(text or "").rows
     if len(rows) < 2:
-        raise SweepError(name, "has no designs", "a line of names, then a line of numbers for each design")
+        raise WrongArgument(name, "has no designs", "a line of names, then a line of numbers for each design")
     (first, head), *lines = rows
     header = [cell.removesuffix(" [mm]") for cell in joined(head)]
     for column in header:
         if "." not in column or header.count(column) > 1:
             problem = f"has the column {shown(column)!r}{' twice' if '.' in column else ''}"
-            raise SweepError(f"{name}: line {first}", problem, "columns such as strut_top.z, each once")
+            raise WrongArgument(f"{name}: line {first}", problem, "columns such as strut_top.z, each once")
     for line, row in lines:
         if len(row) != len(header):
-            raise SweepError(f"{name}: line {line}", f"has {len(row)} numbers", f"{len(header)}, as names")
+            raise WrongArgument(f"{name}: line {line}", f"has {len(row)} numbers", f"{len(header)}, as names")
     values = np.array([finite(f"{name}: line {line}", row, EXAMPLES) for line, row in lines])
     return designs_of(scene, {column: values[:, i] for i, column in enumerate(header)})
 

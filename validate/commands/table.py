@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, PointcoordError, Scene, SweepError, UnknownName, solve_poses
+from pointcoord import Motion, PointcoordError, Scene, UnknownName, WrongArgument, solve_poses
 from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.numbers import READ_FIRST
@@ -114,9 +114,9 @@ def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
         name, equals, values = text.partition("=")
         if name not in scene.inputs or not equals:
             problem = f"names no input that the scene drives{meant(name, scene.inputs)}"
-            raise SweepError(f"--grid {shown(text)}", problem, f"{EXAMPLES}; of {', '.join(scene.inputs)}")
+            raise WrongArgument(f"--grid {shown(text)}", problem, f"{EXAMPLES}; of {', '.join(scene.inputs)}")
         if name in found:
-            raise SweepError(f"--grid {shown(name)}", "is given twice", "each input once")
+            raise WrongArgument(f"--grid {shown(name)}", "is given twice", "each input once")
         found[name] = values_of(f"--grid {shown(text)}", values, EXAMPLES)
     moving = [n for n, law in scene.functions.items() if n not in found and not law.still]
     if moving:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import SweepError
+from pointcoord import WrongArgument
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -21,17 +21,17 @@ def values_of(what: str, text: str, examples: str) -> Array:
     Args:
         what: gives them, for messages. examples: of what is allowed.
     Raises:
-        SweepError: they are none.
+        WrongArgument: they are none.
     """
     parts = text.split(":")
     if len(parts) == 1:
         return finite(what, text.split(","), examples)
     count = parts[-1].strip()
     if len(parts) != 3 or not (count.isascii() and count.isdigit() and 1 <= int(count) <= MOST_VALUES):
-        raise SweepError(what, "is no range", f"START:STOP:COUNT, with a COUNT of 1 to {MOST_VALUES}")
+        raise WrongArgument(what, "is no range", f"START:STOP:COUNT, with a COUNT of 1 to {MOST_VALUES}")
     start, stop = finite(what, parts[:2], examples).tolist()
     if int(count) == 1 and start != stop:
-        raise SweepError(
+        raise WrongArgument(
             what, "has one value from one number to another", "START = STOP, or a count of 2 or more"
         )
     return np.linspace(start, stop, int(count))
@@ -41,14 +41,14 @@ def finite(what: str, texts: Sequence[str], examples: str) -> Array:
     """Finite numbers from their texts.
 
     Raises:
-        SweepError: one is none.
+        WrongArgument: one is none.
     """
     found = []
     for text in texts:
         try:
             found.append(float(text))
         except ValueError:
-            raise SweepError(what, f"has {shown(text)!r} for a number", examples) from None
+            raise WrongArgument(what, f"has {shown(text)!r} for a number", examples) from None
     if not np.isfinite(found).all():
-        raise SweepError(what, "has a number that is not finite", examples)
+        raise WrongArgument(what, "has a number that is not finite", examples)
     return np.array(found)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pointcoord import MotionTooLong, MotionTooRough, Scene, SceneError
+from pointcoord import NotFollowed, Scene, SceneError
 from validate.closed_drawing import closing_data, closing_of, warnings_of
 from validate.comparison.compare import Outcome, compare_solutions, solved_by
 from validate.exit_status import ExitStatus, combined
@@ -155,7 +155,7 @@ def examine(
         unprinted=unprinted,
         solved=tuple(n for n, one in answers.items() if isinstance(one, Solution) and n not in refusals),
         # The method newton, which some refusals advise, under its name here.
-        advice=NEWTON if any(isinstance(one, MotionTooLong | MotionTooRough) for one in reasons) else "",
+        advice=NEWTON if any(isinstance(one, NotFollowed) for one in reasons) else "",
         warnings=warnings_of(scene, moved),
         closing=closing_data(moved),
         defaults=scene.mechanism.defaults_taken,

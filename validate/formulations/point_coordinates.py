@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from pointcoord import (
     Motion,
-    MotionTooLong,
-    MotionTooRough,
+    NotFollowed,
     PointcoordError,
     Scene,
     SceneError,
@@ -69,7 +68,7 @@ class PointCoordinates:
             return simulate(scene, self.method)
         try:
             return simulate(scene.model_copy(update={"tolerance": fine}), self.method)
-        except (MotionTooLong, MotionTooRough):
+        except NotFollowed:
             # A rough law may be followed to what the scene asks for and no further.
             return simulate(scene, self.method)
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral
 
-from pointcoord import AssemblyError, MotionTooLong, Scene
+from pointcoord import AssemblyError, Scene
 from validate.formulations.protocol import FormulationError
 
 DRAWING = "drawing has no assembly"
@@ -95,8 +95,6 @@ def refusal_of(formulation: str, reason: Exception, scene: Scene) -> Refusal:
     reached = _numbers(getattr(reason, "reached", None))
     name = _at_fault(reason, wanted, reached)
     value, limit = getattr(reason, "value", None), getattr(reason, "allowed", None)
-    if isinstance(reason, MotionTooLong):
-        value, limit = None, f"{reason.limit} segments"
     if name in wanted:
         value, limit = wanted[name], reached.get(name)
     return Refusal(

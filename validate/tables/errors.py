@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pointcoord import PointcoordError
-from validate.plain_text import shown
 
 
 class FileError(PointcoordError, ValueError):
@@ -20,6 +19,5 @@ class FileError(PointcoordError, ValueError):
         self.source = source
         self.place = f"line {place}" if place and isinstance(place, int) else str(place or "")
         self.problem = problem
-        self.allowed = allowed
         where = f"{source}: {self.place}" if self.place else source
-        super().__init__(shown(f"{where}: {problem}; allowed: {allowed}"))
+        super().__init__(f"{where}: {problem}", allowed)

@@ -59,7 +59,7 @@ def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
     assert main(["validate", path]) == 3
     out, err = capsys.readouterr()
     (line,) = err.splitlines()
-    assert "(--first pointcoord-newton); refused by pointcoord (MotionTooLong); " in line
+    assert "(--first pointcoord-newton); refused by pointcoord (NotFollowed); " in line
     assert line.endswith("solved by absolute and pointcoord-newton")
     assert f"0 of 1 scene agrees; not tested (refused): {path}." in out
     assert out.splitlines()[-1].startswith(f"Next: pointcoord plan {path} says how far each input can go")

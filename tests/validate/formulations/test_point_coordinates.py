@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pointcoord import Motion, MotionTooRough, Scene, SingularConfiguration, simulate
+from pointcoord import Motion, NotFollowed, Scene, SingularConfiguration, simulate
 from pointcoord.bounds.proof import Proof
 from pointcoord.method import Method
 from validate.cars.car import Car
@@ -93,7 +93,7 @@ def test_a_law_too_rough_to_follow_finely_is_followed_as_the_scene_asks(
     def solved(scene: Scene, method: Method) -> Motion:
         asked.append(scene.tolerance)
         if len(asked) == 1:
-            raise MotionTooRough("rack", 0.5)
+            raise NotFollowed(0.5, name="rack")
         return simulate(scene, method)
 
     monkeypatch.setattr("validate.formulations.point_coordinates.simulate", solved)

@@ -188,6 +188,6 @@ def test_its_effort_is_bounded_and_what_it_refuses_is_counted_by_reason(
     result = examine(STEERED)
     assert {a.outcome for _, a in result.answers(MAP)} == {"refused"}
     assert as_expected([result])
-    assert "Refused by the map, whose effort is bounded here: 2 MotionNotMapped." in text_of(
+    assert "Refused by the map, whose effort is bounded here: 2 NotCovered." in text_of(
         summary_parts([result])
     )

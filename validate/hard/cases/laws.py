@@ -110,7 +110,7 @@ def told_as_rough(subject: Subject, _: float, __: Trial, answer: Answer) -> Answ
 
     The mechanism is nowhere near a singular pose, and must not be given as the reason.
     """
-    rough = answer.reason.startswith(f"MotionTooRough: input '{subject.driven[0]}'")
+    rough = answer.reason.startswith(f"NotFollowed: input '{subject.driven[0]}'")
     if answer.outcome != "refused" or (rough and "singular" not in answer.reason):
         return answer
     return replace(answer, outcome="wrong", reason=f"refused for another reason: {answer.reason}")

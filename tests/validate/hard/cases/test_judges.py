@@ -77,8 +77,8 @@ def test_a_jump_refused_for_another_reason_is_wrong() -> None:
         answer = Answer("pointcoord", "refused", reason)
         return laws.told_as_rough(PAPER, 1e-9, Trial(1e-9, (answer,)), answer).outcome
 
-    assert told("MotionTooRough: input 'arm_angle' changes too fast") == "refused"
-    assert told("MotionTooRough: input 'rack' changes too fast") == "wrong"
+    assert told("NotFollowed: input 'arm_angle' changes too fast") == "refused"
+    assert told("NotFollowed: input 'rack' changes too fast") == "wrong"
     assert told("SingularConfiguration: singular configuration at t = 0.5 s") == "wrong"
 
 
