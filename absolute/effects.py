@@ -520,9 +520,7 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
     known = effects_in(model) if names else {}
     for name in names:
         if name not in known:
-            raise InputError(
-                f"there is no effect {name!r}; it must be one of {list(known)}", name, None, name
-            )
+            raise InputError(f"there is no effect {name!r}; it must be one of {list(known)}", name, name)
     return {name: known[name] for name in names}
 
 

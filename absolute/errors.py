@@ -9,43 +9,31 @@ class AbsoluteError(Exception):
     """Base of every error raised here.
 
     Attributes:
+        name: the point, body, joint, input or effect at fault; empty if there is none by itself.
+        value: what was found there.
+        instant: index of the first bad instant, or None when the fault is not at one instant.
         partial: the motion solved before the failing instant, or None if there is none.
     """
 
     partial: Solution | None = None
 
+    def __init__(
+        self, message: str, name: str = "", value: object = None, instant: int | None = None
+    ) -> None:
+        super().__init__(message)
+        self.name, self.value, self.instant = name, value, instant
+
 
 class DescriptionError(AbsoluteError):
-    """The description of the linkage is not usable: a name, a point, an axis, the row count.
-
-    Attributes:
-        name: the point, body, joint or input at fault.
-        value: what was found there.
-    """
-
-    def __init__(self, message: str, name: str = "", value: object = None) -> None:
-        super().__init__(message)
-        self.name, self.value = name, value
+    """The description of the linkage is not usable: a name, a point, an axis, the row count."""
 
 
 class InputError(AbsoluteError):
-    """Inputs of a wrong name, shape or value.
-
-    Attributes:
-        name: the input at fault.
-        instant: index of the first bad instant, or None when the fault is not at one instant.
-        value: what was found there.
-    """
-
-    def __init__(
-        self, message: str, name: str = "", instant: int | None = None, value: object = None
-    ) -> None:
-        super().__init__(message)
-        self.name, self.instant, self.value = name, instant, value
+    """Inputs of a wrong name, shape or value; an effect that there is not."""
 
 
 class PoseError(AbsoluteError):
-    """Base of the errors about one pose of the mechanism.
+    """The bodies as drawn do not fit together, or the mechanism does not come to a pose, or to no single one.
 
     Attributes:
         instant: index of the instant, or None while the drawing itself is being assembled.
@@ -53,7 +41,7 @@ class PoseError(AbsoluteError):
         reached: the inputs of the last pose that could be solved on the way there.
         condition: estimate of the condition number (1-norm) at that last pose.
         limits: the joints that hold each other there, the strongest first; empty where none do.
-        limit: the input that meets the end of its range there, or "" where it was not one of them.
+        limit: the input that meets the end of its range there, or "" where none does; `name` is the same.
     """
 
     def __init__(
@@ -66,23 +54,11 @@ class PoseError(AbsoluteError):
         limits: tuple[str, ...] = (),
         limit: str = "",
     ) -> None:
-        super().__init__(message)
-        self.instant, self.condition = instant, condition
-        self.inputs, self.reached = dict(inputs or {}), dict(reached or {})
+        super().__init__(message, limit, instant=instant)
+        self.inputs, self.reached, self.condition = dict(inputs or {}), dict(reached or {}), condition
         self.limits, self.limit = limits, limit
 
 
-class AssemblyError(PoseError):
-    """The bodies as drawn cannot be joined by a continuous change of the drawing."""
-
-
-class UnreachableError(PoseError):
-    """No continuous motion of the assembled mechanism leads to these inputs."""
-
-
-class SingularError(PoseError):
-    """The inputs do not fix the pose: the Jacobian has lost rank to working accuracy."""
-
-
-class MissingPinocchioError(ImportError):
-    """Pinocchio or eigenpy cannot be imported; they come with an extra of the package."""
+# Names that errors had before they became one; of Pinocchio that is not there Python's own says all.
+AssemblyError = UnreachableError = SingularError = PoseError
+MissingPinocchioError = ImportError

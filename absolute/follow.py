@@ -12,7 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
-from absolute.errors import AbsoluteError, SingularError, UnreachableError
+from absolute.errors import PoseError
 from absolute.mechanism import Mechanism
 from absolute.newton import (
     SMALLEST_RCOND,
@@ -151,7 +151,7 @@ def through(mechanism: Mechanism, drawn: Configurations, goals: Array) -> Iterat
     """The poses at inputs (N, inputs) over N instants: straight, else one input after the other.
 
     Raises:
-        UnreachableError, SingularError: at the first instant without a pose, after those before it.
+        PoseError: at the first instant without a pose, after those before it.
     """
     pose, at, done = drawn, mechanism.drawn_inputs.copy(), 0
     # After whole turns the car stands as it is drawn.
@@ -189,7 +189,7 @@ def _around(mechanism: Mechanism, pose: Configurations, at: Array, goal: Array) 
 
 def _refusal(
     mechanism: Mechanism, blocked: BlockedError, start: Array, goal: Array, instant: int
-) -> AbsoluteError:
+) -> PoseError:
     wanted, reached = (mechanism.named(values.tolist()) for values in (goal, blocked.reached))
     residual = float(blocked.pose.residual[0]) * mechanism.drawing.size
     condition = float(blocked.pose.condition[0])
@@ -204,14 +204,14 @@ def _refusal(
     limit = limiting_input(mechanism, blocked.pose, change[mechanism.joint_rows :])
     facts = instant, wanted, reached, condition, limits, limit
     if np.allclose(blocked.reached, goal, rtol=SMALLEST_RCOND, atol=0):
-        return SingularError(
+        return PoseError(
             f"instant {instant}: {asked} is a singular pose ({limited_by(limits)}condition number about "
             f"{condition:.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and branch are undetermined there; "
             "stay away from the limit of the motion",
             *facts,
         )
-    return UnreachableError(
+    return PoseError(
         f"instant {instant}: {asked} cannot be reached; going there the mechanism locks at {where} "
         f"({limited_by(limits)}condition number about {condition:.3g}, rows still closed to "
         f"{residual:.3g} mm). Keep the inputs inside that limit ({limit!r} meets it), or reach them by "

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from absolute.errors import AssemblyError, SingularError
+from absolute.errors import PoseError
 from absolute.follow import BlockedError, follow, limited_by, limits_at
 from absolute.mechanism import Mechanism, too_many_rows
 from absolute.newton import SMALLEST_RCOND, Configurations, configurations_at, signs_of
@@ -20,8 +20,8 @@ def assemble(mechanism: Mechanism) -> Configurations:
     (1 - share) rows(drawn) + share * target, without meeting a singular pose.
 
     Raises:
-        SingularError: the drawing itself is singular.
-        AssemblyError: the drawing stands for two assemblies; closing it locks the mechanism.
+        PoseError: the drawing itself is singular or stands for two assemblies, or closing it locks the
+            mechanism.
         DescriptionError: there are more rows than unknowns, and they do not follow from each other.
     """
     target = mechanism.targets(mechanism.drawn_inputs[None])[0]
@@ -45,9 +45,9 @@ def assemble(mechanism: Mechanism) -> Configurations:
     return pose
 
 
-def _singular(mechanism: Mechanism, drawn: Configurations) -> SingularError:
+def _singular(mechanism: Mechanism, drawn: Configurations) -> PoseError:
     condition, limits = float(drawn.condition[0]), limits_at(mechanism, drawn)
-    return SingularError(
+    return PoseError(
         f"the drawing is singular: condition number about {condition:.3g}, at most "
         f"{1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
         "Look for points on one line that should not be (a steering arm on the strut axis, "
@@ -66,7 +66,7 @@ def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
     distances = np.linalg.norm(there - drawing.origins[body] - arms, axis=1)
     if distances.max() > FURTHEST:
         furthest, far = list(drawing.points)[int(distances.argmax())], float(distances.max())
-        raise AssemblyError(
+        raise PoseError(
             f"closing the drawing moves {furthest!r} by {far * drawing.size:.3g} mm; beyond "
             f"{FURTHEST * drawing.size:.3g} mm, a part of the mechanism's size, another assembly may be "
             "meant: draw the points closer to an assembled pose",
@@ -93,7 +93,7 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
     alone = [owner for owner in dict.fromkeys(stack.owners) if other_side(np.where(of == owner, gap, 0.0))]
     open_joints = tuple(alone) or (stack.owners[int(np.abs(gap).argmax())],)
     largest = float(np.abs(gap[np.isin(of, open_joints)]).max()) * mechanism.drawing.size
-    raise AssemblyError(
+    raise PoseError(
         f"the drawing stands for two assemblies: {', '.join(map(repr, open_joints))} is drawn {largest:.3g} "
         "mm from closed, and which assembly is meant depends on which of its parts is put right, "
         "since a pose where both meet lies between; draw the points closer to an assembled pose",
@@ -103,10 +103,10 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
     )
 
 
-def _locked_while_closing(mechanism: Mechanism, blocked: BlockedError, gap: Array) -> AssemblyError:
+def _locked_while_closing(mechanism: Mechanism, blocked: BlockedError, gap: Array) -> PoseError:
     largest = float(np.abs(gap).max()) * mechanism.drawing.size
     limits = limits_at(mechanism, blocked.pose)
-    return AssemblyError(
+    return PoseError(
         f"the drawing cannot be assembled: rows are violated by up to {largest:.3g} mm (most at "
         f"{mechanism.stack.owners[int(np.abs(gap).argmax())]!r}) and closing them locks the mechanism with "
         f"{largest * float(1.0 - blocked.reached[0]):.3g} mm left; {limited_by(limits)}"
@@ -129,15 +129,13 @@ def _require_redundant(mechanism: Mechanism, pose: Configurations) -> None:
         raise locked(mechanism, None, pose, mechanism.drawn_inputs.tolist())
 
 
-def locked(
-    mechanism: Mechanism, instant: int | None, pose: Configurations, inputs: list[float]
-) -> AssemblyError:
+def locked(mechanism: Mechanism, instant: int | None, pose: Configurations, inputs: list[float]) -> PoseError:
     """The refusal of a pose that rows which were left out do not hold."""
     stack, left_out = mechanism.stack, pose.choice.left_out
     off = np.abs(stack.gap(pose.placed, stack.drawn))[0, left_out]
     names = stack.owners_of(left_out[np.argsort(-off)])
     where = "the closed drawing" if instant is None else f"instant {instant}"
-    return AssemblyError(
+    return PoseError(
         f"{where}: {', '.join(names)} cannot hold together with the other joints, by "
         f"{float(off.max()) * mechanism.drawing.size:.3g} mm: their rows follow from the others in the "
         "drawing, but not here, so the mechanism is locked: draw axes that should be parallel or meet "

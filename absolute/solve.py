@@ -41,7 +41,7 @@ def close_drawing(model: Model) -> ClosedDrawing:
     """Solve a model at the inputs of its own drawing.
 
     Raises:
-        DescriptionError, AssemblyError, SingularError: as `solve`.
+        DescriptionError, PoseError: as `solve`.
     """
     assembled = Assembled(model)
     inputs = assembled.drawn_inputs
@@ -75,9 +75,8 @@ def solve(
             loads of a mechanism that has none, or whose rows follow from each other; effects or loads of one
             that lacks a role, a number of the car, or an input to take derivatives by.
         InputError: names, shapes or values of inputs; an effect that is not known.
-        AssemblyError: the bodies as drawn do not fit together.
-        UnreachableError: the mechanism locks before the inputs of an instant.
-        SingularError: the inputs of an instant do not fix the pose.
+        PoseError: the bodies as drawn do not fit together, the mechanism locks before the inputs of an
+            instant, or these do not fix the pose.
         Every error raised at an instant carries the motion before it as `partial`.
 
     >>> import absolute
@@ -99,7 +98,7 @@ class Assembled:
     """A linkage whose drawing is put together, to be solved for any inputs.
 
     Raises:
-        DescriptionError, AssemblyError, SingularError: as `solve`.
+        DescriptionError, PoseError: as `solve`.
     """
 
     def __init__(self, model: Model) -> None:
@@ -227,7 +226,6 @@ def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, A
                 f"{name!r} has shape {law.shape}; {('N', orders)} is needed: value, rate and acceleration at "
                 "each instant, and as many more of its rates as another input has",
                 name,
-                None,
                 law.shape,
             )
         instant = leading(np.asarray(np.isfinite(law).all(axis=1)))
@@ -236,14 +234,13 @@ def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, A
             raise InputError(
                 f"{name!r} is {found} at instant {instant}; all its numbers must be finite",
                 name,
-                instant,
                 found,
+                instant,
             )
         if len(law) != count:
             raise InputError(
                 f"{name!r} has {len(law)} instants, the others have {count}; give all as many",
                 name,
-                None,
                 len(law),
             )
     return series
@@ -254,7 +251,7 @@ def _array(name: str, values: object) -> Array:
         # A copy of 0 dimensions has one instant, and no numbers there.
         return np.atleast_1d(np.array(values, dtype=float))
     except (TypeError, ValueError) as error:
-        raise InputError(f"{name!r} is not an array of numbers: {error}", name, None, values) from error
+        raise InputError(f"{name!r} is not an array of numbers: {error}", name, values) from error
 
 
 def _of_rates(
@@ -282,6 +279,6 @@ def _overflow(instant: int, rates: Mapping[str, Array]) -> InputError:
         f"instant {instant}: the rates and accelerations of points overflow; those of {fastest!r} are "
         f"{rates[fastest].tolist()}: give smaller ones",
         fastest,
-        instant,
         rates[fastest].tolist(),
+        instant,
     )

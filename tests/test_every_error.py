@@ -32,7 +32,6 @@ PACKAGES = ("pointcoord", "absolute", "validate")
 BASES = {
     "pointcoord.errors.PointcoordError",
     "absolute.errors.AbsoluteError",
-    "absolute.errors.PoseError",
 }
 # Says inside the solver that members take another form, or what is wrong with a mechanism's tables, of which
 # the scene's error then says in which file; both are caught there.

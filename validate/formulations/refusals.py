@@ -124,9 +124,6 @@ def _instant(reason: Exception, scene: Scene) -> float | None:
 
 def _at_fault(reason: Exception, wanted: Mapping[str, float], reached: Mapping[str, float]) -> str:
     """The input or key at fault; of several inputs the one that lacks the largest part of its value."""
-    limit = getattr(reason, "limit", "")
-    if isinstance(limit, str) and limit in wanted:
-        return limit
     named = getattr(reason, "reduce", "") or getattr(reason, "name", "") or getattr(reason, "key", "")
     if named:
         return str(named)

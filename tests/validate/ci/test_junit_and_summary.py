@@ -140,7 +140,7 @@ def test_a_scene_that_is_refused_or_cannot_be_read_is_an_error_and_the_others_go
     types = [(case.get("name"), case.find("error").get("type")) for case in suites[past].iter("testcase")]
     assert types == [
         ("solved by pointcoord", "AssemblyError"),
-        ("solved by absolute", "UnreachableError"),
+        ("solved by absolute", "PoseError"),
     ]
     refusals = json.loads(data.read_text())["scenes"][0]["refusals"]
     messages = [error.get("message") for error in suites[past].iter("error")]

@@ -29,7 +29,7 @@ def test_a_refusal_says_who_where_which_value_and_which_limit(
     (line,) = err.splitlines()
     assert line.startswith(f"pointcoord: {path}: ")
     assert (
-        "; refused by pointcoord (AssemblyError), absolute (UnreachableError) "
+        "; refused by pointcoord (AssemblyError), absolute (PoseError) "
         "and pointcoord-newton (AssemblyError)" in line
     )
     (scene,) = json.loads(out)["scenes"]

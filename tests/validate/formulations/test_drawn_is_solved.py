@@ -43,8 +43,9 @@ def solved(name: str, scene: Scene) -> Solution:
     try:
         return formulation(name).solve(scene)
     except FormulationError as error:
-        passed = AssemblyError | absolute.AssemblyError | InputOutOfRange | SceneError
-        assume(not isinstance(error.reason, passed))
+        of_drawing = isinstance(error.reason, absolute.PoseError) and error.reason.instant is None
+        assume(not of_drawing)
+        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange | SceneError))
         raise
     except SceneError:
         assume(False)
