@@ -3,7 +3,7 @@
 try:
     import pinocchio as pin
 except ModuleNotFoundError as error:
-    raise ImportError(
+    raise ModuleNotFoundError(
         f"the absolute model needs Pinocchio ({error}): pip install 'pointcoord[validate]'", name=error.name
     ) from None
 except ImportError as error:
@@ -12,6 +12,6 @@ except ImportError as error:
         f"the absolute model needs Pinocchio, which is there and does not load ({error}): "
         "install the system's package with the library that is named, such as libgomp1",
         name="pinocchio",
-    ) from None
+    ) from error
 
 __all__ = ["pin"]

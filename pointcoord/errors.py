@@ -120,16 +120,26 @@ class MissingLibrary(PointcoordError, ImportError):
 
     Args:
         part: what needs it.
-        libraries: any of which would do; each is an extra of the same name.
+        libraries: any of which would do.
         problem: what is wrong with them, if they are there.
+        extra: of this distribution, that brings them; one of the same name for each unless given.
+        more: what else to try.
     """
 
-    def __init__(self, part: str, libraries: Iterable[str], problem: str = "is not installed") -> None:
+    def __init__(
+        self,
+        part: str,
+        libraries: Iterable[str],
+        problem: str = "is not installed",
+        extra: str = "",
+        more: str = "",
+    ) -> None:
         self.part = part
         self.libraries = tuple(libraries)
-        extras = " or ".join(f"pip install 'pointcoord[{name}]'" for name in self.libraries)
-        said = f"{part} needs {' or '.join(self.libraries)}, which {problem}"
-        super().__init__(said, advice=f"try: {extras}")
+        extras = (extra,) if extra else self.libraries
+        brought = " or ".join(f"pip install 'pointcoord[{name}]'" for name in extras)
+        named = " or ".join(map(repr, self.libraries))
+        super().__init__(f"{part} needs the package {named}, which {problem}", advice=f"try: {brought}{more}")
 
 
 class MechanismError(PointcoordError):

@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from pointcoord.wording import meant, shown
 from validate.commands.pages import page
-from validate.errors import UsageError
+from validate.errors import NotFinished, UsageError
 from validate.exit_status import HELP, ExitStatus, of_interruption
 from validate.output.console import Console
 from validate.output.document import program_version, schema_text
@@ -76,16 +76,13 @@ def _ending(error: BaseException, console: Console) -> tuple[ExitStatus, str] | 
     # Imported here: most runs end without an error, and need not have all that can raise one.
     from pointcoord import PointcoordError
     from validate.comparison.examined import told_failure
-    from validate.extras import MissingPackage
     from validate.formulations.protocol import FormulationError
-    from validate.output.files import OutputError
-    from validate.studies.study import StudyStopped
 
-    if isinstance(error, UsageError | PointcoordError | MissingPackage):
+    if isinstance(error, UsageError | PointcoordError):
         return ExitStatus.WRONG_INPUT, str(error)
     if isinstance(error, FormulationError):
         return ExitStatus.NO_VERDICT, str(error)
-    if isinstance(error, OutputError | StudyStopped):
+    if isinstance(error, NotFinished):
         return ExitStatus.NOT_FINISHED, str(error)
     name = "" if isinstance(error, MemoryError) else f"{type(error).__name__}: "
     return ExitStatus.NOT_FINISHED, f"{name}{told_failure(error)}"

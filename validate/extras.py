@@ -5,39 +5,35 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
+from pointcoord.errors import MissingLibrary
 
-class MissingPackage(ImportError):
-    """A part of the program needs a package that is not installed, or that does not load.
+
+def not_there(part: str, error: ImportError, extra: str = "validate") -> MissingLibrary:
+    """The error of a part of the program that needs a package that is not installed, or does not load.
 
     Args:
         part: the part, such as a formulation's name.
         error: what the import of the package raised.
         extra: of this distribution, that brings the package.
     """
-
-    def __init__(self, part: str, error: ImportError, extra: str = "validate") -> None:
-        self.part = part
-        self.package = error.name or part
-        if "the absolute model needs Pinocchio" in str(error):
-            # The part says it itself.
-            super().__init__(str(error), name=error.name)
-            return
-        problem = "is not installed"
-        advice = f"pip install 'pointcoord[{extra}]'"
-        if not isinstance(error, ModuleNotFoundError):
-            problem = f"does not load ({' '.join(str(error).split())})"
-            advice += ", and the system's package with the library, if one is named"
-        said = f"{part!r} needs the package {self.package!r}, which {problem}; try: {advice}"
-        super().__init__(said, name=error.name)
+    package = (error.name or part,)
+    if isinstance(error, ModuleNotFoundError):
+        return MissingLibrary(repr(part), package, extra=extra)
+    # Its cause, where whoever imports the package has already said what to do.
+    why = " ".join(str(error.__cause__ or error).split())
+    more = ", and the system's package with the library, if one is named"
+    return MissingLibrary(repr(part), package, f"does not load ({why})", extra, more)
 
 
 def needed(part: str, module: str, extra: str = "validate") -> Any:
     """A module that needs packages that the solvers do without.
 
     Raises:
-        MissingPackage: they are not there.
+        MissingLibrary: they are not there.
     """
     try:
         return import_module(module)
+    except MissingLibrary:
+        raise
     except ImportError as error:
-        raise MissingPackage(part, error, extra) from None
+        raise not_there(part, error, extra) from None

@@ -52,14 +52,14 @@ from validate.cars.random_cars import (
     sliding,
     with_every_point,
 )
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import FormulationError
 
 try:
     from hypothesis import strategies as st
 except ModuleNotFoundError as error:
-    raise MissingPackage("validate.strategies", error, "strategies") from None
+    raise not_there("validate.strategies", error, "strategies") from None
 
 __all__ = ["inputs", "mechanisms", "near_singular", "scenes"]
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from validate.assemblies.homotopy import solve_quadratic
 from validate.assemblies.legs import forms
-from validate.extras import MissingPackage
+from validate.extras import not_there
 
 try:
     from flint import acb, acb_mat, arb, ctx
@@ -32,7 +32,7 @@ try:
     from validate.reference.errors import NotDecidedError
     from validate.reference.vectors import Scalar
 except ImportError as error:
-    raise MissingPackage("validate.assemblies", error) from None
+    raise not_there("validate.assemblies", error) from None
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -101,7 +101,7 @@ def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) 
     Args:
         mechanism: as plain data. places: of every point at an assembled pose, mm.
     Raises:
-        NotOnLegsError: the knuckle is not held by six conditions that are known.
+        NoAnswer: the knuckle is not held by six conditions that are known.
     """
     quadratic = forms(mechanism, places)
     found = Counted(2 ** len(quadratic))

@@ -29,6 +29,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.errors import NoAnswer
 from validate.spanning_tree.cut import car_directions
 
 Array = NDArray[np.float64]
@@ -59,30 +60,27 @@ STUDY = _form(NONE, UNIT)
 """<e, g>."""
 
 
-class NotOnLegsError(ValueError):
-    """A mechanism whose knuckle is not held by six conditions that are known here."""
-
-
 def forms(mechanism: Mapping[str, Any], places: Mapping[str, Array]) -> Array:
     """The quadratic forms that vanish at every assembly, (7, 8, 8), the largest entry of each 1.
 
     Args:
         mechanism: as plain data. places: of every point at one pose, mm; where the inputs are held.
     Raises:
-        NotOnLegsError: the knuckle is held by something else.
+        NoAnswer: the knuckle is held by something else.
     """
     knuckle = mechanism["roles"].get("knuckle")
     if knuckle is None:
-        raise NotOnLegsError("the mechanism names no knuckle, whose role is not given")
+        raise NoAnswer("the mechanism", "names no knuckle, whose role is not given", "a knuckle in [roles]")
     # About the middle of the knuckle, in its size, numbers are of order one.
     middle = np.mean([places[name] for name in mechanism["bodies"][knuckle]], axis=0)
     size = max(float(np.abs(place - middle).max()) for place in places.values())
     local = {name: (place - middle) / size for name, place in places.items()}
     found = np.array([STUDY, *_conditions(mechanism, knuckle, local)])
     if len(found) != CONDITIONS + 1:
-        raise NotOnLegsError(
-            f"{len(found) - 1} conditions hold {knuckle}, and assemblies are counted of {CONDITIONS}: rods, "
-            "arms on hinges, a slide and the inputs"
+        raise NoAnswer(
+            knuckle,
+            f"is held by {len(found) - 1} conditions",
+            f"{CONDITIONS}, of which assemblies are counted: rods, arms on hinges, a slide and the inputs",
         )
     return np.asarray(found / np.abs(found).max(axis=(1, 2), keepdims=True))
 

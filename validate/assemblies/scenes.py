@@ -10,7 +10,7 @@ import numpy as np
 
 from pointcoord import Scene, solve_poses
 from validate.assemblies.count import Counted, count_assemblies
-from validate.assemblies.legs import NotOnLegsError
+from validate.errors import NoAnswer
 from validate.output.table import Part, Table
 
 SHIPPED = ("bounce", "off-axis-strut", "double-wishbone", "five-link")
@@ -58,7 +58,7 @@ def counts(name: str) -> Iterator[SceneCount]:
         places = {point: np.array(at) for point, at in solve_poses(there, drawn).position.items()}
         try:
             yield SceneCount(name, held, count_assemblies(there.mechanism.plain(held), places))
-        except NotOnLegsError as error:
+        except NoAnswer as error:
             yield SceneCount(name, held, None, str(error))
 
 

@@ -13,12 +13,11 @@ from pointcoord import Scene
 from validate.ci.baseline import Recorder, Since
 from validate.ci.record import Record
 from validate.comparison.examined import Examined
-from validate.errors import UsageError
+from validate.errors import NotFinished, UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
 from validate.output.document import Ending, Head, Journal, at_the_end
-from validate.output.files import OutputError
 from validate.output.report import share_of_all
 from validate.plain_text import shown
 
@@ -44,9 +43,9 @@ class Page:
         """The page that `--report` asks for, if it does, found to be possible before anything is solved.
 
         Raises:
-            MissingPackage: a page needs the extra `report`.
+            MissingLibrary: a page needs the extra `report`.
             UsageError: the folder has no name, or cannot be a report's.
-            OutputError: it cannot be written.
+            NotFinished: it cannot be written.
         """
         if options.report is None:
             return None
@@ -116,7 +115,7 @@ def comparing(
     """A run of comparisons; its files are written however it ends, its page if it comes to its end.
 
     Raises:
-        MissingPackage, UsageError: there can be no page. OutputError: a result cannot be written.
+        MissingLibrary, UsageError: there can be no page. NotFinished: a result cannot be written.
     """
     drawings, page = None, Page.of(options)
     if page is not None:
@@ -151,16 +150,16 @@ def _leave_files(
     """Write what services read, however the run ends, if it came to anything; a baseline of a whole run only.
 
     Raises:
-        OutputError: one of them cannot be written; the others are tried all the same.
+        NotFinished: one of them cannot be written; the others are tried all the same.
     """
     if not record.examined:
         return
-    problems: list[OutputError] = []
+    problems: list[NotFinished] = []
 
     def attempt(target: str, content: str | bytes) -> None:
         try:
             console.put(target, content, f"{len(record.examined)} of {len(record.names)} scenes")
-        except OutputError as error:
+        except NotFinished as error:
             problems.append(error)
 
     if recorder is not None:

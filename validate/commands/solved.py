@@ -112,7 +112,7 @@ def solved(
     Args:
         write: writes a motion; returns what of it, in words.
     Raises:
-        SceneError: the scene is wrong. OutputError: the result cannot be written.
+        SceneError: the scene is wrong. NotFinished: the result cannot be written.
     """
     name = name_of(options.scene)
     problem: PointcoordError | None = None

@@ -18,10 +18,10 @@ from typing import Any
 
 from pointcoord import Scene, SceneError
 from validate.commands.pages import page
-from validate.errors import UsageError
+from validate.errors import NotFinished, UsageError
 from validate.exit_status import HELP, ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
-from validate.output.files import OutputError, require_known_ending, require_writable, write_content
+from validate.output.files import require_known_ending, require_writable, write_content
 from validate.plain_text import one_line, shown
 
 STANDARD_INPUT = "-"
@@ -141,7 +141,7 @@ def require_results(
         says: whether the command says something on standard output beside its results.
     Raises:
         UsageError: a result names no file or one that is read, two are the same, or the ending is not known.
-        OutputError: one cannot be written; or standard output is closed and wanted.
+        NotFinished: one cannot be written; or standard output is closed and wanted.
     """
     wanted = {option: target for option, target in results.items() if target is not None}
     places: dict[str, str] = {}
@@ -161,7 +161,7 @@ def require_results(
     console.quiet, console.mute = getattr(options, "quiet", False), "-" in wanted.values()
     if sys.stdout is None and ((says and not console.quiet) or console.mute):
         instead = "use --quiet, and name files for results" if says else f"use {next(iter(results))} FILE"
-        raise OutputError(STANDARD_OUTPUT, f"is closed; {instead}")
+        raise NotFinished(STANDARD_OUTPUT, f"is closed; {instead}")
     for option, target in wanted.items():
         if target != "-":
             if endings and option in endings:
@@ -173,7 +173,7 @@ def place_of_result(options: argparse.Namespace, endings: Collection[str], conso
     """The file that `-o` names, found to be writable before anything is solved; None is standard output.
 
     Raises:
-        UsageError, OutputError: see `require_results`.
+        UsageError, NotFinished: see `require_results`.
     """
     target: str = "-" if options.output is None else options.output
     require_results({"-o": target}, (options.scene,), options, console, {"-o": endings}, says=False)
@@ -184,7 +184,7 @@ def place_of_picture(options: argparse.Namespace, endings: Collection[str], cons
     """The same of a picture; for a terminal, which shows none, a file of a name that is free, and says so.
 
     Raises:
-        UsageError, OutputError: see `require_results`.
+        UsageError, NotFinished: see `require_results`.
     """
     if options.output is None and sys.stdout is not None and sys.stdout.isatty():
         stem = "picture" if options.scene == STANDARD_INPUT else Path(options.scene).stem
@@ -198,7 +198,7 @@ def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
     """Write a file that an option names and that is not there yet, and say what to do.
 
     Raises:
-        UsageError: it is not called .toml. OutputError: it cannot be written.
+        UsageError: it is not called .toml. NotFinished: it cannot be written.
     """
     require_known_ending(target, TOML)
     write_content(target, text)

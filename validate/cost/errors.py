@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.cost.race import Found, absent
-from validate.cost.way import Answer, NoNumbers
+from validate.cost.way import Answer
+from validate.errors import NoAnswer
 from validate.formulations.protocol import Numbers
 from validate.formulations.reference_solution import as_solution, reference_motion, told_by
 
@@ -72,7 +73,7 @@ def errors_of(answer: Answer, truth: Truth, positions: bool | None = None) -> Fo
     A quantity that is given at all must be given whole.
 
     Raises:
-        NoNumbers: a number is none, or it or its point is missing.
+        NoAnswer: a number is none, or it or its point is missing.
     """
     found: Found = {}
     work = ", ".join(f"{name} {count}" for name, count in answer.work.items())
@@ -96,13 +97,13 @@ def _error(quantity: str, name: str, given: Mapping[str, Array], exact: Array) -
     """Errors of the numbers of one point, body or angle."""
     what = f"{QUANTITIES[quantity].words} of {name}"
     if name not in given:
-        raise NoNumbers(f"gives no {what}")
+        raise NoAnswer(what, "is not given", "every number of a quantity of which any is given")
     if given[name].shape != exact.shape:
-        raise NoNumbers(f"gives the {what} in the shape {given[name].shape}, not {exact.shape}")
+        raise NoAnswer(what, f"has the shape {given[name].shape}", str(exact.shape))
     with np.errstate(over="ignore", invalid="ignore"):
         off = np.asarray(given[name] - exact)
     bad = ~np.isfinite(off).reshape(len(off), -1).all(axis=-1)
     if bad.any():
         where = f"{np.count_nonzero(bad)} of {len(off)} instants, first at number {int(np.argmax(bad))}"
-        raise NoNumbers(f"the {what} is no finite number at {where}")
+        raise NoAnswer(what, f"is no finite number at {where}", "finite numbers")
     return off

@@ -28,7 +28,7 @@ from threadpoolctl import threadpool_limits
 from pointcoord import PointcoordError
 from pointcoord.errors import visible
 from validate.cost.table import Row, Verdict
-from validate.cost.way import NoNumbers
+from validate.errors import NoAnswer
 
 Clock = Callable[[], int]
 """Nanoseconds since some instant."""
@@ -154,7 +154,7 @@ def _rows(row: Row, found: Found, samples: Sequence[tuple[float, float]]) -> lis
 
 def _broken(error: Exception) -> dict[str, Any]:
     """Columns of a row of what breaks down: failed, or that its package is not there."""
-    known = isinstance(error, PointcoordError | NoNumbers | ImportError)
+    known = isinstance(error, PointcoordError | NoAnswer | ImportError)
     verdict: Verdict = "left out" if isinstance(error, ImportError) else "failed"
     return absent(verdict, str(error) if known else f"{type(error).__name__}: {error}")
 

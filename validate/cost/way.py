@@ -25,10 +25,6 @@ def power(number: float) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
-class NoNumbers(Exception):
-    """A way does not answer what it was asked for: it stops, or a number is none or not there; says why."""
-
-
 @dataclass(frozen=True)
 class Answer:
     """What a way computed, by quantity and name, in the scene's axes and units, and what it did for that."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from validate.errors import UsageError
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.output.columns import DESIGN
 from validate.output.figure import SETTINGS, panels
 from validate.plain_text import shown, some_of
@@ -18,7 +18,7 @@ try:
     import pandas as pd
     from matplotlib.figure import Figure
 except ImportError as error:
-    raise MissingPackage("validate.curves.of_sweep", error, "plot") from None
+    raise not_there("validate.curves.of_sweep", error, "plot") from None
 
 NAMED = 8  # columns, in a message
 MOST = 400  # curves: more cover each other, and evenly as many are drawn

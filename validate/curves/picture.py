@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.curves.numbers import TRAVEL, Curves, Number
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.output.figure import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, panels
 
 try:
@@ -17,7 +17,7 @@ try:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 except ImportError as error:
-    raise MissingPackage("validate.curves.picture", error, "plot") from None
+    raise not_there("validate.curves.picture", error, "plot") from None
 
 Array = NDArray[np.float64]
 Values = Callable[[Number], Array]

@@ -9,7 +9,7 @@ from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import Scene
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
@@ -17,7 +17,7 @@ from validate.formulations.protocol import AccuracyError, FormulationError, Numb
 try:
     import absolute
 except ModuleNotFoundError as error:
-    raise MissingPackage("absolute", error) from None
+    raise not_there("absolute", error) from None
 
 
 class AbsoluteCoordinates:

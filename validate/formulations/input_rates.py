@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from pointcoord.effects.plan import plan_effects
 from pointcoord.scene.input_part import InputPart, TablePart
 from pointcoord.scene.scene_file import Scene
-from validate.extras import MissingPackage
+from validate.extras import not_there
 
 # It is imported where a law needs it, for few do; but it is missed before a scene is solved.
 if find_spec("flint") is None:
-    raise MissingPackage("validate.formulations.input_rates", ModuleNotFoundError(name="flint"))
+    raise not_there("validate.formulations.input_rates", ModuleNotFoundError(name="flint"))
 
 Array = NDArray[np.float64]
 Intervals = NDArray[Any]

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from numbers import Integral
 
 from pointcoord import AssemblyError, Scene
+from validate.errors import NoAnswer
 from validate.formulations.protocol import FormulationError
 
 DRAWING = "drawing has no assembly"
@@ -26,7 +27,6 @@ FAMILIES = ({DRAWING, HARDPOINTS}, {START, MOTION})
 
 KINDS: Mapping[str, str] = {
     "SceneError": HARDPOINTS,
-    "HardpointsError": HARDPOINTS,
     "DescriptionError": HARDPOINTS,
     "InputOutOfRange": INPUT,
     "InputError": INPUT,
@@ -46,7 +46,9 @@ def _class_of(reason: Exception) -> str:
             return DRAWING
         return START if reason.partial is None else MOTION
     found = next((KINDS[name] for name in names if name in KINDS), "")
-    if not found and {"PeerError", "PoseError"} & {*names}:
+    if isinstance(reason, NoAnswer) and reason.name:
+        return HARDPOINTS if reason.value is None else INPUT
+    if isinstance(reason, NoAnswer) or "PoseError" in names:
         # What cannot be solved at an instant, or in the drawing.
         instant = getattr(reason, "instant", None)
         return DRAWING if instant is None else START if instant == 0 else MOTION

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from pointcoord.errors import MissingLibrary
 from pointcoord.method import AUTO, CHORD, MAP, NEWTON, NEWTON_COLD
 from validate.errors import UsageError
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
 from validate.paper.printed import PRINTED
@@ -70,7 +71,7 @@ def formulation(name: str) -> Formulation:
 
     Raises:
         UsageError: no formulation has this name.
-        MissingPackage: a package that it needs is not installed, or does not load.
+        MissingLibrary: a package that it needs is not installed, or does not load.
     """
     if name in _POINT_COORDINATES:
         return _POINT_COORDINATES[name]
@@ -83,17 +84,17 @@ def formulation(name: str) -> Formulation:
         from validate.formulations.trees import InTree
 
         return InTree(name, program_of(name))
-    except MissingPackage:
+    except MissingLibrary:
         raise
     except ImportError as error:
-        raise MissingPackage(name, error) from error
+        raise not_there(name, error) from error
 
 
 def program_of(name: str) -> Callable[[Linkage], Program]:
     """What makes a linkage a model of a program: `relative`, or one of `OUTSIDE`.
 
     Raises:
-        MissingPackage: the program is not installed, or does not load.
+        MissingLibrary: the program is not installed, or does not load.
     """
     found: Callable[[Linkage], Program] = _imported(PROGRAMS[name])
     return found
@@ -114,7 +115,7 @@ def second_there() -> tuple[str, str]:
     for name in ("absolute", *OUTSIDE, "reference"):
         try:
             formulation(name)
-        except MissingPackage as error:
+        except MissingLibrary as error:
             why = why or str(error)
         else:
             return name, why
@@ -127,6 +128,6 @@ def missing(names: Iterable[str]) -> dict[str, str]:
     for name in dict.fromkeys(names):
         try:
             formulation(name)
-        except MissingPackage as error:
+        except MissingLibrary as error:
             lacking[name] = str(error)
     return lacking

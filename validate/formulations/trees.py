@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pointcoord import Scene, SceneError
+from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Solution
@@ -18,7 +19,6 @@ from validate.peers.linkage import Linkage, linkage_of
 from validate.peers.motion import Poses
 from validate.peers.motion import numbers as numbers_of
 from validate.peers.program import Program
-from validate.spanning_tree.errors import PeerError
 
 # Rad and car sizes: far above rounding, and its square far below. A correction that small leaves none.
 TOLERANCE = 1e-10
@@ -28,7 +28,7 @@ def linkage_in(scene: Scene) -> Linkage:
     """The car of a scene.
 
     Raises:
-        HardpointsError: its points make no linkage.
+        NoAnswer: its points make no linkage.
     """
     return linkage_of(scene.mechanism.plain(tuple(scene.inputs)))
 
@@ -62,7 +62,7 @@ class InTree:
         def partial(before: Poses | None) -> Solution | None:
             try:
                 return None if before is None else solution(before)
-            except PeerError:
+            except NoAnswer:
                 return None
 
         try:
@@ -75,7 +75,7 @@ class InTree:
             with np.errstate(over="ignore", invalid="ignore"):
                 poses = program.poses(inputs.values, TOLERANCE, closed)
             return solution(poses)
-        except PeerError as error:
+        except NoAnswer as error:
             before = error.partial
             raise FormulationError(self.name, error, lambda: partial(before)) from error
         except (SceneError, AccuracyError) as error:

@@ -13,11 +13,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pointcoord import Scene, SceneError
+from pointcoord import MissingLibrary, Scene, SceneError
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import MAP as BY_MAP
 from validate.comparison.compare import compare_solutions
-from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.reference_solution import reference_solution, told_by
@@ -27,7 +26,7 @@ from validate.reference import InfeasibleError, NoReferenceError
 OURS = "pointcoord"
 # Every case that pointcoord has to solve is tried by a map of the inputs too.
 MAP = "pointcoord-map"
-NOT_ASKED = NoReferenceError("not asked, as all refuse")
+NOT_ASKED = NoReferenceError("the reference", "is not asked, as all refuse", "an answer to compare")
 # Factorisations of one map: some 0.3 s. Plain motions take a tenth of it; near folds no number is enough.
 MAP_EFFORT = 1000
 # right: every number lies within its bound of the reference. refused: a reason in place of numbers. wrong:
@@ -106,7 +105,7 @@ def solved(name: str, scene: Scene) -> Solution | Exception:
     """A formulation's solution, or why there is none: a warning is an error, and the run goes on.
 
     Raises:
-        MissingPackage: the formulation is not installed.
+        MissingLibrary: the formulation is not installed.
     """
     try:
         with warnings.catch_warnings():
@@ -116,7 +115,7 @@ def solved(name: str, scene: Scene) -> Solution | Exception:
                 # Given up early: thousands of hard cases have to be tried in little time.
                 one = replace(one, method=replace(BY_MAP, map_effort=MAP_EFFORT))
             return one.solve(scene)
-    except MissingPackage:
+    except MissingLibrary:
         raise
     except Exception as error:
         return error

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from validate.extras import MissingPackage
+from pointcoord import MissingLibrary
 from validate.hard.answer import Answer, Outcome, Trial, said
 from validate.hard.case import Case
 
@@ -46,7 +46,7 @@ def examine(case: Case) -> Examined:
     """Try all values of a case.
 
     Raises:
-        MissingPackage: a formulation of the case is not installed.
+        MissingLibrary: a formulation of the case is not installed.
     """
     began = time.perf_counter()
     trials = tuple(tried(case, value) for value in case.values)
@@ -57,11 +57,11 @@ def tried(case: Case, value: float) -> Trial:
     """A value tried; a trial that fails says nothing of the formulations: it is counted, and the run goes on.
 
     Raises:
-        MissingPackage: a formulation of the case is not installed.
+        MissingLibrary: a formulation of the case is not installed.
     """
     try:
         return case.examine(value)
-    except MissingPackage:
+    except MissingLibrary:
         raise
     except Exception as error:
         reason = f"the trial fails: {said(error)}"

@@ -89,7 +89,7 @@ def read_mjcf(path: str, axes: Array) -> Mjcf:
         axes: the scene's coordinates from the file's, (3, 3).
     Raises:
         FileError: MuJoCo does not take it, or it has what changes its motion and is not known here.
-        MissingPackage: MuJoCo is not installed.
+        MissingLibrary: MuJoCo is not installed.
     """
     mujoco = needed("import", "mujoco", "peers")
     try:

@@ -8,13 +8,13 @@ from collections.abc import Mapping
 from hashlib import sha256
 from pathlib import Path
 
-from validate.errors import UsageError
+from validate.errors import NotFinished, UsageError
 from validate.extras import needed
 from validate.html.data import WORDS, data_files
 from validate.html.run import Run
 from validate.html.section import PLOTLY
 from validate.html.sections import sections
-from validate.output.files import OutputError, require_writable, unwritable, write_content
+from validate.output.files import require_writable, unwritable, write_content
 
 TEMPLATES = Path(__file__).with_name("templates")
 # What marks a page as ours, so that no other page is written over.
@@ -36,7 +36,7 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     Args:
         files: beside it, by name, and what each holds.
     Raises:
-        MissingPackage: a package of the extra is not there.
+        MissingLibrary: a package of the extra is not there.
     """
     jinja2 = needed("report", "jinja2", "report")
     environment = jinja2.Environment(
@@ -73,7 +73,7 @@ def require_folder(folder: str) -> None:
 
     Raises:
         UsageError: it is a file, or holds a page that this program did not make.
-        OutputError: it cannot be made or written.
+        NotFinished: it cannot be made or written.
     """
     place = Path(folder)
     if "\0" in folder:
@@ -82,7 +82,7 @@ def require_folder(folder: str) -> None:
         raise UsageError(f"{folder}: is a file; allowed: a folder, which is made if it is not there")
     there = next(one for one in (place, *place.absolute().parents) if one.exists())
     if not (there.is_dir() and os.access(there, os.W_OK)):
-        raise OutputError(folder, f"cannot be written (there is no folder that takes it in {str(there)!r})")
+        raise NotFinished(folder, f"cannot be written (there is no folder that takes it in {str(there)!r})")
     old = place / PAGE
     if old.is_file() and f'content="{GENERATOR}"'.encode() not in old.read_bytes()[:BEGINNING]:
         raise UsageError(f"{old}: is no report of this program; give another folder, or move it away")
@@ -95,7 +95,7 @@ def make_folder(folder: str) -> None:
     """Make the folder of a report, if it is not there.
 
     Raises:
-        OutputError: it cannot be made.
+        NotFinished: it cannot be made.
     """
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
@@ -107,8 +107,8 @@ def write_report(folder: str, run: Run) -> None:
     """Write the page and its data; the page is last, so that where it is, its data are.
 
     Raises:
-        MissingPackage: a package of the extra is not there.
-        OutputError: one cannot be written.
+        MissingLibrary: a package of the extra is not there.
+        NotFinished: one cannot be written.
     """
     make_folder(folder)
     data = data_files(run)

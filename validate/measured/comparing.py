@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene
+from pointcoord import MissingLibrary, Scene
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
 from validate.diagnosis import Explanation, explain_evidence
 from validate.diagnosis.evidence import Evidence, Solved
-from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured, Series
@@ -79,7 +78,7 @@ def compare_results(
         factor: how many times the tolerance to hold differences to.
     Raises:
         FileError: no row can be reached.
-        MissingPackage: it needs the extra `validate`.
+        MissingLibrary: it needs the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
     driven = Driven.of(scene, measured)
@@ -212,7 +211,7 @@ def _explained(
     )
     try:
         return explain_evidence(evidence)
-    except MissingPackage:
+    except MissingLibrary:
         # Laws in many digits are an extra that the verdict needs not.
         return ()
 

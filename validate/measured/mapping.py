@@ -206,7 +206,7 @@ def read_results(file: str, map: str | None, scene: Scene) -> Measured:
         map: file that says what the columns are; None where they carry our own names.
     Raises:
         FileError: the file or the map is wrong, or nothing in it can be compared.
-        MissingPackage: Parquet needs pyarrow.
+        MissingLibrary: Parquet needs pyarrow.
     """
     columns = read_columns(file)
     where = columns.source if map is None else shown(map)
@@ -273,7 +273,7 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
 
     Raises:
         FileError: the file cannot be read.
-        MissingPackage: Parquet needs pyarrow.
+        MissingLibrary: Parquet needs pyarrow.
     """
     columns = read_columns(file)
     map = _Map("", MapSaid(), columns, scene)

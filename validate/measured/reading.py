@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from pointcoord import SceneError
 from pointcoord.toml_text import read_file
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.plain_text import shown
 from validate.tables.cells import NUMBER, is_number, joined, lines_of, text_of
 from validate.tables.errors import FileError
@@ -70,7 +70,7 @@ def read_columns(path: str) -> Columns:
 
     Raises:
         FileError: it cannot be read, is empty, or holds what is no table of numbers.
-        MissingPackage: Parquet needs pyarrow.
+        MissingLibrary: Parquet needs pyarrow.
     """
     source = shown(path)
     try:
@@ -91,7 +91,7 @@ def _parquet(path: str, source: str) -> Columns:
     try:
         parquet = import_module("pyarrow.parquet")
     except ImportError as error:
-        raise MissingPackage(".parquet", error, "parquet") from None
+        raise not_there(".parquet", error, "parquet") from None
     try:
         table = parquet.read_table(path)
         found = {name_and_unit(name): table.column(i).to_numpy() for i, name in enumerate(table.column_names)}

@@ -118,7 +118,7 @@ def held_of(
 
     Raises:
         FileError: no row can be reached.
-        MissingPackage: what digits in full and numbers over inputs need, the extra `validate`.
+        MissingLibrary: what digits in full and numbers over inputs need, the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
     driven = Driven.of(scene, measured) if driven is None else driven

@@ -46,7 +46,7 @@ def require_table(target: str) -> None:
     """Refuse a file that cannot be written by its ending, before anything is solved.
 
     Raises:
-        UsageError: it is none of `ENDINGS`. MissingPackage: Parquet needs pyarrow.
+        UsageError: it is none of `ENDINGS`. MissingLibrary: Parquet needs pyarrow.
     """
     require_known_ending(target, ENDINGS)
     if Path(target).suffix == ".parquet":
@@ -59,8 +59,8 @@ def write_table(target: str, blocks: Iterator[Block], group: int = 1) -> None:
     Args:
         group: how many blocks make a group of rows of Parquet, `GROUP` for a motion.
     Raises:
-        UsageError, MissingPackage: see `require_table`.
-        OutputError: the file cannot be written; what was there is whole.
+        UsageError, MissingLibrary: see `require_table`.
+        NotFinished: the file cannot be written; what was there is whole.
         PointcoordError: as the blocks raise it.
     """
     require_table(target)

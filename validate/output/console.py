@@ -7,7 +7,8 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 
-from validate.output.files import OutputError, unwritable, write_content
+from validate.errors import NotFinished
+from validate.output.files import unwritable, write_content
 from validate.output.progress import PATIENCE, PAUSE, Progress, Told
 from validate.output.table import Part, is_terminal, text_for
 from validate.plain_text import one_line
@@ -18,7 +19,7 @@ STANDARD_OUTPUT = "standard output"
 class Console:
     """Standard output and standard error of one run.
 
-    Whatever writes on standard output raises OutputError where that does not take it.
+    Whatever writes on standard output raises NotFinished where that does not take it.
 
     Attributes:
         quiet: whether only results that were asked for and errors are said.
@@ -94,7 +95,7 @@ class Console:
         """Point standard output to nowhere, so that what is left in its buffer cannot fail again at the end.
 
         Raises:
-            OutputError: it is not only that its reader has gone.
+            NotFinished: it is not only that its reader has gone.
         """
         self._reader_gone = True
         with suppress(OSError, ValueError, AttributeError):
@@ -105,7 +106,7 @@ class Console:
             return
         if isinstance(error, OSError):
             raise unwritable(STANDARD_OUTPUT, error) from None
-        raise OutputError(STANDARD_OUTPUT, "is closed") from None
+        raise NotFinished(STANDARD_OUTPUT, "is closed") from None
 
     def complain(self, message: str) -> None:
         """One line on standard error."""

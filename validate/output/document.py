@@ -205,7 +205,7 @@ class Journal:
         """Write what is finished.
 
         Raises:
-            OutputError: it cannot be written.
+            NotFinished: it cannot be written.
         """
         if self.target not in (None, "-") and (began := time.monotonic()) >= self._next:
             self._write(None, False)
@@ -216,7 +216,7 @@ class Journal:
         """Write it when a block ends, however it ends, with the status that the block sets.
 
         Raises:
-            OutputError: it cannot be written; and whatever ends the block.
+            NotFinished: it cannot be written; and whatever ends the block.
         """
 
         def write(ending: Ending) -> None:

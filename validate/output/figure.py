@@ -6,7 +6,7 @@ import io
 from textwrap import fill
 from typing import Any
 
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.plain_text import shown
 
 try:
@@ -14,7 +14,7 @@ try:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 except ImportError as error:
-    raise MissingPackage("validate.output.figure", error, "plot") from None
+    raise not_there("validate.output.figure", error, "plot") from None
 
 # Okabe and Ito, Color Universal Design, 2008; yellow is left out, being too light for lines on paper.
 ORANGE, SKY, GREEN, BLUE, RED, PINK = (

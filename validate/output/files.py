@@ -13,21 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from validate.errors import UsageError
-
-
-class OutputError(Exception):
-    """A result cannot be written where it was asked for.
-
-    Args:
-        target: the file, or `standard output`.
-        problem: why not.
-    """
-
-    def __init__(self, target: str, problem: str) -> None:
-        self.target = target
-        self.problem = problem
-        super().__init__(f"{target}: {problem}")
+from validate.errors import NotFinished, UsageError
 
 
 def require_known_ending(target: str, endings: Iterable[str]) -> None:
@@ -40,17 +26,17 @@ def require_known_ending(target: str, endings: Iterable[str]) -> None:
         raise UsageError(f"{target}: has no known ending; allowed: {', '.join(endings)}")
 
 
-def unwritable(target: str, error: OSError) -> OutputError:
+def unwritable(target: str, error: OSError) -> NotFinished:
     """The error of a target that the operating system does not let us write."""
     hint = "; make room, or write elsewhere" if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
-    return OutputError(target, f"cannot be written ({error.strerror or error}){hint}")
+    return NotFinished(target, f"cannot be written ({error.strerror or error}){hint}")
 
 
 def require_writable(target: str) -> None:
     """Refuse a file that cannot be written, before anything is solved; what is there stays as it is.
 
     Raises:
-        OutputError: it cannot be.
+        NotFinished: it cannot be.
     """
     try:
         if not _is_special(target):
@@ -70,7 +56,7 @@ def write_whole(target: str, write: Callable[[BinaryIO], object]) -> None:
     A pipe or a device has no place to rename into and is written as it is.
 
     Raises:
-        OutputError: it cannot be written; what was there is whole.
+        NotFinished: it cannot be written; what was there is whole.
     """
     try:
         if _is_special(target):
@@ -97,7 +83,7 @@ def write_content(target: str, content: str | bytes) -> None:
     """Write a file of a content at hand, see `write_whole`.
 
     Raises:
-        OutputError: it cannot be written; what was there is whole.
+        NotFinished: it cannot be written; what was there is whole.
     """
     # The name of a file may hold bytes that are no text.
     data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content

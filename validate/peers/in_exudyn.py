@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.peers.linkage import Linkage, axes_along
 from validate.peers.program import Program
 from validate.spanning_tree.cut import CHASSIS, Joint, Place, car_directions
@@ -29,7 +29,7 @@ try:
     exudyn: Any = import_module("exudyn")
     items: Any = import_module("exudyn.itemInterface")
 except ImportError as error:
-    raise MissingPackage("exudyn", error, "peers") from error
+    raise not_there("exudyn", error, "peers") from error
 
 TURNS = (exudyn.JointType.RevoluteX, exudyn.JointType.RevoluteY, exudyn.JointType.RevoluteZ)
 MOVES = ("Velocity", "Acceleration", "AngularVelocity", "AngularAcceleration")

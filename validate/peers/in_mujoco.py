@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.peers.linkage import Linkage
 from validate.peers.program import Program
 from validate.spanning_tree.cut import CHASSIS, Place
@@ -19,7 +19,7 @@ from validate.spanning_tree.cut import CHASSIS, Place
 try:
     import mujoco
 except ImportError as error:
-    raise MissingPackage("mujoco", error, "peers") from error
+    raise not_there("mujoco", error, "peers") from error
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.peers.linkage import Linkage
 from validate.peers.program import Program
 from validate.spanning_tree.cut import CHASSIS, Joint, Place
@@ -20,7 +20,7 @@ from validate.spanning_tree.cut import CHASSIS, Joint, Place
 try:
     import pinocchio
 except ModuleNotFoundError as error:
-    raise MissingPackage("relative", error) from None
+    raise not_there("relative", error) from None
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.peers.errors import InputError
+from validate.errors import NoAnswer
 from validate.spanning_tree.cut import CHASSIS, Place, SpanningTree, across, cut
 from validate.spanning_tree.wheels import Wheels, knuckles
 
@@ -109,14 +109,14 @@ class Linkage:
         Args:
             laws: every input's value and two time derivatives, (N, 3), rad or mm per s^d.
         Raises:
-            InputError: an input is missing, is no number, or is outside of what it can be.
+            NoAnswer: an input is missing, is no number, or is outside of what it can be.
         """
         for name, law in laws.items():
             _require(name, law, np.asarray(np.isfinite(law).all(axis=1)), "finite numbers and rates")
         found = []
         for driven in self.tree.driven:
             if driven.input not in laws:
-                raise InputError(driven.input, "missing", "; ".join(one.input for one in self.tree.driven))
+                raise _refused(driven.input, "missing", "; ".join(one.input for one in self.tree.driven))
             law = laws[driven.input]
             if driven.kind in BETWEEN:
                 least, most, words = BETWEEN[driven.kind]
@@ -130,14 +130,20 @@ def _require(name: str, law: Array, right: NDArray[np.bool_], allowed: str) -> N
     if not right.all():
         wrong = int(np.argmin(right))
         bad = law[wrong][~np.isfinite(law[wrong])]
-        raise InputError(name, float(bad[0] if bad.size else law[wrong, 0]), allowed, wrong)
+        raise _refused(name, float(bad[0] if bad.size else law[wrong, 0]), allowed, wrong)
+
+
+def _refused(name: str, value: float | str, allowed: str, instant: int | None = None) -> NoAnswer:
+    """The refusal of an input by its value."""
+    where = "" if instant is None else f" at instant number {instant}"
+    return NoAnswer(f"input {name!r}", f"is {value}{where}", allowed, name=name, value=value, instant=instant)
 
 
 def linkage_of(plain: Mapping[str, Any]) -> Linkage:
     """The joints and loops of a flat mechanism.
 
     Raises:
-        HardpointsError: it makes no mechanism.
+        NoAnswer: it makes no mechanism.
     """
     tree = cut(plain)
     return Linkage(

@@ -41,7 +41,7 @@ def mjcf_of(plain: Mapping[str, Any], title: str) -> str:
     """The MJCF file of a flat mechanism; inputs that are joints of it have actuators.
 
     Raises:
-        HardpointsError: it is no mechanism.
+        NoAnswer: it is no mechanism.
     """
     linkage = _in_metres(_with_joints_driven(_z_up(plain)))
     spec = spec_of(linkage)

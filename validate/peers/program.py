@@ -28,11 +28,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgecon, dgesv
 
-from validate.peers.errors import PoseError
+from validate.errors import NoAnswer
 from validate.peers.linkage import UNIT_ROUNDOFF, Linkage
 from validate.peers.motion import Poses, Rates
 from validate.spanning_tree.determined import blocks, independent_rows
-from validate.spanning_tree.errors import HardpointsError
 
 Array = NDArray[np.float64]
 
@@ -128,8 +127,8 @@ class Program(ABC):
         Args:
             tolerance: Newton's method ends with a correction of all joints below it, rad and car sizes.
         Raises:
-            HardpointsError: it is no mechanism that its inputs drive.
-            PoseError: it cannot be closed, or only as another assembly.
+            NoAnswer: it is no mechanism that its inputs drive.
+            NoAnswer: it cannot be closed, or only as another assembly.
         """
         counted, drawn = Counter[str](), self.linkage.drawn_inputs
         self.put(self.as_drawn)
@@ -139,10 +138,10 @@ class Program(ABC):
         rows = independent_rows(unknown)
         if len(rows) < count:
             words = f"is free to move as drawn: {len(rows)} independent rows for {count} unknowns"
-            raise HardpointsError("the mechanism", words, FREE)
+            raise NoAnswer("the mechanism", words, FREE)
         both = np.concatenate([self.unknown, self.driven])
         if len(independent_rows(jacobian[:, both])) > count:
-            raise HardpointsError("an input", "does not move the mechanism beside the others", FREE)
+            raise NoAnswer("an input", "does not move the mechanism beside the others", FREE)
         self.rows = slice(None) if len(rows) == len(jacobian) else rows
         if count:  # an arm on one hinge, which is driven, has no loop
             # All three rows of a loop: that one of them is zero as drawn may be chance.
@@ -165,7 +164,7 @@ class Program(ABC):
             tolerance: see `closed`.
             start: whose last pose the first one is solved from.
         Raises:
-            PoseError: a pose is not reached without meeting another assembly; `partial` has those before.
+            NoAnswer: a pose is not reached without meeting another assembly; `partial` has those before.
         """
         counted, count = Counter[str](), len(inputs)
         coordinates = np.empty((count, start.coordinates.shape[1]))
@@ -174,7 +173,7 @@ class Program(ABC):
         self.put(start.coordinates[-1])
         self.jacobian, self.way = self.misses()[1], np.zeros(len(self.unknown) + len(self.driven))
 
-        def refusal(problem: str, i: int, reached: Array) -> PoseError:
+        def refusal(problem: str, i: int, reached: Array) -> NoAnswer:
             error = self._refusal(problem, i, inputs[i], reached)
             error.partial = self._named(inputs, coordinates, places, steps, counted).first(i) if i else None
             return error
@@ -197,7 +196,7 @@ class Program(ABC):
         Args:
             series: of each drive its input with two time derivatives, (N, drives, 3).
         Raises:
-            PoseError: the rates are not determined at a pose; `partial` has those before.
+            NoAnswer: the rates are not determined at a pose; `partial` has those before.
         """
         count, names = len(poses.inputs), list(self.linkage.points)
         bodies = list(self.linkage.bodies)
@@ -346,12 +345,24 @@ class Program(ABC):
         with np.errstate(divide="ignore"):
             return float(sizes[0] / sizes[-1]), tuple(dict.fromkeys(strong))
 
-    def _refusal(self, problem: str, instant: int | None, wanted: Array, reached: Array) -> PoseError:
+    def _refusal(self, problem: str, instant: int | None, wanted: Array, reached: Array) -> NoAnswer:
         """Why a pose is none, told at the one that was solved last."""
         condition, links = self._folded()
         told = self.linkage.tree.told
-        words = f"{problem}, for {' and '.join(', '.join(links).rsplit(', ', 1))} hold each other"
-        return PoseError(words, instant, told(wanted), told(reached), condition, links)
+        asked, last = told(wanted), told(reached)
+        each = (", ".join(f"{name} = {value:.10g}" for name, value in one.items()) for one in (asked, last))
+        return NoAnswer(
+            "the drawing" if instant is None else f"instant number {instant}",
+            f"{problem}, for {' and '.join(', '.join(links).rsplit(', ', 1))} hold each other: wanted "
+            f"{'; reached '.join(each)}, where the condition number is {condition:.3g}",
+            "inputs on this side of it, or other hardpoints",
+            name="",
+            instant=instant,
+            wanted=asked,
+            reached=last,
+            condition=condition,
+            links=links,
+        )
 
     def _named(
         self,

@@ -132,7 +132,7 @@ def compare_table(table: Table) -> Published:
     """A table beside both models, held to its own printed digits.
 
     Raises:
-        FormulationError: a model refuses the car; MissingPackage: it is not installed.
+        FormulationError: a model refuses the car; MissingLibrary: it is not installed.
         FileError: the table's rows are not in even steps.
     """
     printed = read_columns(str(FOLDER / f"{table.name}.csv"))

@@ -4,19 +4,16 @@ Third and independent: it shares no code with the formulations it judges. Where 
 "error" it means the distance from these numbers.
 """
 
-from validate.extras import MissingPackage
+from validate.extras import not_there
 
 try:
     from validate.reference.design import Design as Design
-    from validate.reference.errors import AmbiguousAssemblyError as AmbiguousAssemblyError
-    from validate.reference.errors import BadInputError as BadInputError
     from validate.reference.errors import InfeasibleError as InfeasibleError
     from validate.reference.errors import NoReferenceError as NoReferenceError
     from validate.reference.errors import NotDecidedError as NotDecidedError
     from validate.reference.errors import SingularPoseError as SingularPoseError
-    from validate.reference.errors import TooManyStepsError as TooManyStepsError
     from validate.reference.instant import Instant as Instant
     from validate.reference.solve import instants_of as instants_of
     from validate.reference.solve import pose_exists as pose_exists
 except ModuleNotFoundError as error:
-    raise MissingPackage("validate.reference", error) from None
+    raise not_there("validate.reference", error) from None

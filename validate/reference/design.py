@@ -14,7 +14,7 @@ from validate.reference.car_data import car_data, corners
 from validate.reference.chassis import ChassisMotion
 from validate.reference.drives import compiled
 from validate.reference.equations import Equations, equations_in
-from validate.reference.errors import BadInputError
+from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
 from validate.reference.mechanism import Mechanism
@@ -115,8 +115,8 @@ class Design:
         """Take over a description, mm.
 
         Raises:
-            BadInputError: a number is not finite, a rod or a body has no extent, or freedoms and inputs are
-                not as many.
+            NoReferenceError: a number is not finite, a rod or a body has no extent, or freedoms and inputs
+                are not as many.
         """
         table = {name: exact_vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
         up, right = exact_vector(plain["up"], "up"), exact_vector(plain["right"], "right")
@@ -168,9 +168,9 @@ def values_only(known: Known) -> Known:
 
 
 def exact_vector(numbers: Sequence[object], what: str) -> Vector:
-    """Three numbers as fractions; `BadInputError` if there are not three."""
+    """Three numbers as fractions; `NoReferenceError` if there are not three."""
     if len(numbers) != 3:
-        raise BadInputError(what, numbers, "three numbers")
+        raise NoReferenceError(what, f"is {numbers!r}", "three numbers")
     return each(lambda number: as_fraction(number, what), (numbers[0], numbers[1], numbers[2]))
 
 
@@ -187,7 +187,7 @@ def balls(jet: Jet) -> Jet:
 def _unit(points: Collection[Vector], origin: Vector) -> Fraction:
     size = max(abs(x) for p in points for x in minus(p, origin))
     if size == 0:
-        raise BadInputError("points", "all in one place", "points with some distance between them")
+        raise NoReferenceError("points", "are all in one place", "points with some distance between them")
     power = size.numerator.bit_length() - size.denominator.bit_length()
     return Fraction(2**power) if power >= 0 else Fraction(1, 2**-power)
 
@@ -208,7 +208,7 @@ def _chosen(mechanism: Mechanism) -> tuple[int, ...]:
     rows, size = len(mechanism.rows), mechanism.size
     if rows < size:
         allowed = f"{size} rows: drive {size - rows} more of what can move"
-        raise BadInputError("the equations", f"{rows} rows for {size} unknowns", allowed)
+        raise NoReferenceError("the equations", f"are {rows} rows for {size} unknowns", allowed)
     if rows == size:
         return tuple(range(size))
     from scipy.linalg import qr  # few mechanisms need it, and it takes long to import
@@ -222,5 +222,5 @@ def _chosen(mechanism: Mechanism) -> tuple[int, ...]:
     rank = int((np.abs(np.diag(triangle)) > SAME_ROW).sum())
     if rank < size:
         allowed = f"inputs and joints that leave no freedom; {size - rank} are left as drawn"
-        raise BadInputError("the equations", f"{rank} independent rows for {size} unknowns", allowed)
+        raise NoReferenceError("the equations", f"are {rank} independent rows for {size} unknowns", allowed)
     return tuple(sorted(int(row) for row in taken[:size]))

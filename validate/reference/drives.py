@@ -26,7 +26,7 @@ from flint import arb
 
 from validate.reference.car_data import directions
 from validate.reference.chassis import ChassisMotion
-from validate.reference.errors import BadInputError
+from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet, angle
 from validate.reference.mechanism import CHASSIS, Drive, Exact, Mechanism, Table
@@ -42,7 +42,7 @@ def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     drawn = minus(mechanism.table[end], mechanism.table[pivot])
     d2, height = dot(drawn, drawn), dot(drawn, along)
     if d2 == 0:
-        raise BadInputError(f"the distance from {end} to {pivot}", 0, "more than 0")
+        raise NoReferenceError(f"the distance from {end} to {pivot}", "is 0", "more than 0")
     mechanism.row(name, dot(minus(mechanism.place(end), mechanism.place(pivot)), along) - mechanism.number())
 
     def angle(numbers: Sequence[arb]) -> arb:
@@ -61,7 +61,7 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
     body, on, table = spec["angle"], spec["on"], mechanism.table
     both = [point for point in mechanism.plain["bodies"][body] if point in mechanism.plain["bodies"][on]]
     if len(both) != 2:
-        raise BadInputError(f"inputs.{name}: angle", body, f"a body hinged on {on}")
+        raise NoReferenceError(f"inputs.{name}: angle", f"is {body!r}", f"a body hinged on {on}")
     n = minus(table[both[1]], table[both[0]])
     e, nn = across(n)[0], dot(n, n)
     turning, held = mechanism.bodies[body].turned(e), mechanism.bodies[on]
@@ -154,7 +154,7 @@ def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     axis = minus(table[centre], table[inner])
     l2, m, high = dot(axis, axis), dot(axis, up), dot(table[centre], up)
     if l2 == 0:
-        raise BadInputError(f"the distance from {inner} to {centre}", 0, "more than 0")
+        raise NoReferenceError(f"the distance from {inner} to {centre}", "is 0", "more than 0")
     share2, grounded = r * r / l2, spec.get("over") == "ground"
     seen, lift = (mechanism.number(), mechanism.number(), mechanism.number()), mechanism.number()
 
@@ -225,7 +225,7 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
     """The equations of a description with its inputs, see `Mechanism`.
 
     Raises:
-        BadInputError: something in the description cannot be.
+        NoReferenceError: something in the description cannot be.
     """
     mechanism = Mechanism(plain, table, unit, hangs)
     for name, spec in plain["inputs"].items():

@@ -12,21 +12,25 @@ from flint import arb
 
 
 class NoReferenceError(Exception):
-    """Base of every failure of `validate.reference`."""
+    """There is no proven number: something given cannot be used, or does not tell which assembly is meant,
+    or a way is too long for the time that a reference may take. What the program does about the other
+    reasons has classes of their own.
 
-
-class BadInputError(NoReferenceError):
-    """A point, input or setting cannot be used.
-
-    Attributes:
-        what: the name of the entry.
-        value: what was given.
-        allowed: what is allowed, in words.
+    Args:
+        what: the entry, the choice that is open, the way or the claim.
+        problem: what is wrong with it, with the value.
+        allowed: what would be right, or what to try.
+        value: what was given or reached, if it is a number by itself.
     """
 
-    def __init__(self, what: str, value: object, allowed: str) -> None:
-        self.what, self.value, self.allowed = what, value, allowed
-        super().__init__(f"{what} is {value!r}; allowed is {allowed}")
+    def __init__(self, what: str, problem: str, allowed: str, value: object = None) -> None:
+        self.what, self.problem, self.allowed, self.value = what, problem, allowed, value
+        super().__init__(f"{what} {problem}; allowed: {allowed}")
+
+    @property
+    def reason(self) -> str:
+        """In words without numbers."""
+        return self.what if type(self) is NoReferenceError else type(self).__name__
 
 
 class InfeasibleError(NoReferenceError):
@@ -45,29 +49,17 @@ class InfeasibleError(NoReferenceError):
         self.way, self.share, self.inputs = way, share, inputs
         there = ", ".join(f"{name} = {float(value):.9g}" for name, value in inputs.items())
         super().__init__(
-            f"{way} turns back at a fold after {share:.9g} of it (needed 1), at {there}: beyond there is no "
-            "pose of this assembly; ask for inputs nearer those of the drawing"
+            way,
+            f"turns back at a fold after {share:.9g} of it (needed 1), at {there}: beyond there is no pose "
+            "of this assembly",
+            "inputs nearer those of the drawing",
         )
-
-
-class AmbiguousAssemblyError(NoReferenceError):
-    """Nothing says which of several assemblies is wanted.
-
-    Attributes:
-        what: the choice that is open.
-        value: how clear the choice is.
-        limit: how clear it must be.
-    """
-
-    def __init__(self, what: str, value: float, limit: float, remedy: str) -> None:
-        self.what, self.value, self.limit = what, value, limit
-        super().__init__(f"{what}: {value:.3g}, limit {limit:.3g}; {remedy}")
 
 
 class NotDecidedError(NoReferenceError):
     """A certificate does not hold at the present number of digits; more digits may help.
 
-    Attributes:
+    Args:
         what: the claim that could not be proven.
         value: the size that was reached.
         limit: the size that was needed.
@@ -76,8 +68,7 @@ class NotDecidedError(NoReferenceError):
     def __init__(self, what: str, value: object, limit: object) -> None:
         # A ball of 400 digits is no message: six say where the proof stands.
         value, limit = (x.str(6) if isinstance(x, arb) else str(x) for x in (value, limit))
-        self.what, self.value, self.limit = what, value, limit
-        super().__init__(f"{what}: {value}, limit {limit}")
+        super().__init__(what, f"is {value}", limit, value)
 
 
 class SingularPoseError(NoReferenceError):
@@ -85,27 +76,14 @@ class SingularPoseError(NoReferenceError):
 
     Attributes:
         digits: the greatest number of digits tried.
-        reason: the last `NotDecidedError`.
+        doubt: the last `NotDecidedError`.
     """
 
-    def __init__(self, digits: int, reason: NotDecidedError) -> None:
-        self.digits, self.reason = digits, reason
+    def __init__(self, digits: int, doubt: NotDecidedError) -> None:
+        self.digits, self.doubt = digits, doubt
         super().__init__(
-            f"no certificate with {digits} digits ({reason}); the pose, or one on the way to it, is at a dead"
-            " point or a toggle: move an input"
-        )
-
-
-class TooManyStepsError(NoReferenceError):
-    """A way is given up: its proven steps are too short for the time that a reference may take.
-
-    Attributes:
-        way: in words. share: how much of it was done, 0 to 1. steps: that it took.
-    """
-
-    def __init__(self, way: str, share: float, steps: int) -> None:
-        self.way, self.share, self.steps = way, share, steps
-        super().__init__(
-            f"{way} is given up after {steps} proven steps and {share:.3g} of it (needed 1): nothing is said "
-            "of the pose; ask for inputs nearer those of the drawing"
+            "the pose",
+            f"has no certificate with {digits} digits ({doubt}): it, or one on the way to it, is at a dead "
+            "point or a toggle",
+            "inputs off that place",
         )

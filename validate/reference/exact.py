@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from flint import arb, ctx, fmpq
 
-from validate.reference.errors import BadInputError, NotDecidedError, SingularPoseError
+from validate.reference.errors import NoReferenceError, NotDecidedError, SingularPoseError
 
 MOST_DIGITS = 400  # of the arithmetic: enough for an arm 1e-100 rad from its dead point
 
@@ -21,14 +21,15 @@ def as_fraction(value: Any, what: str) -> Fraction:
     """The given number as a fraction, exactly: binary numbers (float, mpmath's mpf) are what they are.
 
     Raises:
-        BadInputError: not a real number, or not finite.
+        NoReferenceError: not a real number, or not finite.
     """
     try:
         if isinstance(value, numbers.Integral):
             return Fraction(int(value))
         return Fraction(*(int(part) for part in value.as_integer_ratio()))
     except (AttributeError, ValueError, OverflowError):  # infinities and not-a-number have no ratio
-        raise BadInputError(what, value, "a finite real number (int, float, Fraction or mpf)") from None
+        allowed = "a finite real number (int, float, Fraction or mpf)"
+        raise NoReferenceError(what, f"is {value!r}", allowed, value) from None
 
 
 def as_ball(value: Fraction | int) -> arb:

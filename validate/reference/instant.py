@@ -83,7 +83,7 @@ def prove_instant(
         effects: names of those that are wanted.
     Raises:
         NotDecidedError: a proof fails with the present digits.
-        BadInputError: there is no such effect.
+        NoReferenceError: there is no such effect.
     """
     still, unit, least = values_only(known), as_ball(design.unit), as_ball(Fraction(1, 10**digits))
     pose = start_pose(Way(still.equations, still.numbers, still.numbers), followed.unknown, arb(0))
@@ -133,8 +133,10 @@ def _require_others(design: Design, enclosure: Sequence[arb], known: Known, leas
         missed = row.of_kind(as_ball).at(values)
         if not missed.contains(0):
             raise NoReferenceError(
-                f"the row {name!r}, which depends on the others in the drawing, is violated "
-                f"here by {missed.str(6)}, needed 0; the mechanism is locked, or not drawn exactly enough"
+                f"the row {name!r}",
+                f"depends on the others in the drawing and is violated here by {missed.str(6)}: the "
+                "mechanism is locked, or not drawn exactly enough",
+                "0",
             )
         if not missed.abs_upper() < least:
             raise NotDecidedError(f"the row {name!r}", missed, least)

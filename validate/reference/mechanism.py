@@ -37,7 +37,7 @@ from typing import Any
 from flint import arb
 
 from validate.reference.car_data import directions
-from validate.reference.errors import BadInputError
+from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial, ordered, polynomial
@@ -145,7 +145,7 @@ class Mechanism:
             gap = minus(*(self.place(end) for end in ends))
             drawn = minus(*(table[end] for end in ends))
             if dot(drawn, drawn) == 0:
-                raise BadInputError(f"the length of {name}", 0, "more than 0")
+                raise NoReferenceError(f"the length of {name}", "is 0", "more than 0")
             self.rods[name] = len(self.rows)
             self.row(name, dot(gap, gap) - dot(drawn, drawn))
 
@@ -262,7 +262,9 @@ class Mechanism:
     def _close_hinge(self, name: str, other: str, both: Sequence[str], apart: Vector) -> None:
         axis = minus(self.table[both[1]], self.table[both[0]])
         if dot(axis, axis) == 0:
-            raise BadInputError(f"the hinge of {name} and {other}", "both points in one place", "a line")
+            raise NoReferenceError(
+                f"the hinge of {name} and {other}", "has both points in one place", "a line"
+            )
         first, second = (self.bodies[other].turned(side) for side in across(axis))
         self.closing[both[1]] = len(self.rows), first, second
         for side in (first, second):
@@ -273,13 +275,13 @@ class Mechanism:
         """A body on a hinge of the chassis."""
         n, start = near_one(minus(self.table[b], self.table[a])), self.table[a]
         if n is None:
-            raise BadInputError(f"the hinge of {name}", f"{a} and {b} in one place", "a line")
+            raise NoReferenceError(f"the hinge of {name}", f"has {a} and {b} in one place", "a line")
         nn, axis = dot(n, n), n
         beside = {point: cross(axis, minus(self.table[point], start)) for point in self.plain["bodies"][name]}
         seen = max(beside, key=lambda point: float(dot(beside[point], beside[point])))
         g = beside[seen]
         if dot(g, g) == 0:
-            raise BadInputError(f"the points of {name}", "all on one line", "a point beside the hinge")
+            raise NoReferenceError(f"the points of {name}", "are all on one line", "a point beside the hinge")
         h = times(cross(g, n), Fraction(1) / nn)  # from the hinge to the point seen, square to it
         cosine, sine = times(h, 1 / dot(h, h)), times(g, 1 / dot(g, g))
 
@@ -304,7 +306,7 @@ class Mechanism:
         normal = cross(one, two)
         area = dot(normal, normal)
         if area == 0:
-            raise BadInputError(f"the points of {name}", "all on one line", "a triangle")
+            raise NoReferenceError(f"the points of {name}", "are all on one line", "a triangle")
         # Rows that give 1 with one, two and the normal, each 0 with the others.
         duals = [times(g, 1 / area) for g in (cross(two, normal), cross(normal, one), normal)]
 
@@ -328,7 +330,7 @@ class Mechanism:
         if along is None:
             along = near_one(minus(self.table[slide["along"]], self.table[through]))
             if along is None:
-                raise BadInputError(f"slides.{name}: along", f"{slide['along']} in {through}", "a line")
+                raise NoReferenceError(f"slides.{name}: along", f"is {slide['along']} in {through}", "a line")
             squared = dot(along, along)
         line, start = self.bodies[body].turned(along), self.bodies[body].place(self.table[through])
         shorter, shares = times(line, 1 / dot(along, along)), list[Polynomial]()
@@ -357,7 +359,7 @@ class Mechanism:
         points = set(slide["points"])
         holders = [b for b in self.bodies if b != slide["body"] and points <= set(self.plain["bodies"][b])]
         if not holders:
-            raise BadInputError(f"slides.{name}: turns", False, "points of one other body")
+            raise NoReferenceError(f"slides.{name}: turns", "is False", "points of one other body")
         other = self.bodies[holders[0]]
         (u, v), (u2, v2) = ([body.turned(side) for side in across(along)] for body in (one, other))
         # The axis of the turn from the one body to the other has no component along the line: what is drawn

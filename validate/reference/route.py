@@ -18,10 +18,9 @@ from flint import arb
 
 from validate.reference.design import Design, Driven, balls
 from validate.reference.errors import (
-    AmbiguousAssemblyError,
     InfeasibleError,
+    NoReferenceError,
     NotDecidedError,
-    TooManyStepsError,
 )
 from validate.reference.exact import MOST_DIGITS, as_ball, centre_of, with_more_digits
 from validate.reference.fold import fold_ahead, pose_before
@@ -54,7 +53,7 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
     Args:
         clearness: how far a second assembly must be from the drawing, in parts of the mechanism's size.
     Raises:
-        AmbiguousAssemblyError: the drawing lies (nearly) at a singular pose.
+        NoReferenceError: the drawing lies (nearly) at a singular pose.
         InfeasibleError, SingularPoseError: it does not close without passing one.
     """
 
@@ -70,7 +69,8 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
                 raise
         if not 0.0 < clear >= clearness:
             what = "how far the drawing is from another assembly"
-            raise AmbiguousAssemblyError(what, clear, clearness, REMEDY)
+            allowed = f"{clearness:.3g} or more of the mechanism's size; {REMEDY}"
+            raise NoReferenceError(what, f"is {clear:.3g}", allowed, clear)
         pose = _led(way, pose, design, "closing the drawing")
         if not mechanism.handed(pose.box, numbers):
             raise NotDecidedError("the handedness of the zero found", "not positive", "> 0")
@@ -83,7 +83,7 @@ def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
     """The assembly that a way from the closed drawing leads to: straight, or else input by input in turn.
 
     Raises:
-        AmbiguousAssemblyError: the drawing lies (nearly) at a singular pose.
+        NoReferenceError: the drawing lies (nearly) at a singular pose.
         InfeasibleError: proven that each of these ways meets a fold before its end; of the straight one.
         SingularPoseError: a way meets a singular pose, or one so near that 400 digits do not tell.
     """
@@ -132,13 +132,17 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
     """The pose at the end of a way.
 
     Raises:
-        TooManyStepsError: it takes more than `MOST_STEPS`.
+        NoReferenceError: it takes more than `MOST_STEPS`.
     """
     longest, tried, steps = arb(1), FOLDS_FROM, 0
     while pose.t < 1:
         steps += 1
         if steps > MOST_STEPS:
-            raise TooManyStepsError(what, float(pose.t), MOST_STEPS)
+            problem = (
+                f"is given up after {MOST_STEPS} proven steps and {float(pose.t):.3g} of it (needed 1): "
+                "nothing is said of the pose"
+            )
+            raise NoReferenceError(what, problem, "inputs nearer those of the drawing", MOST_STEPS)
         there = next_pose(way, pose, longest)
         step = float(there.t - pose.t)
         pose, longest = there, arb(4 * step)

@@ -7,7 +7,7 @@ from itertools import takewhile
 
 from validate.reference.design import Design, Driven
 from validate.reference.effects.registry import ANGLES
-from validate.reference.errors import BadInputError, InfeasibleError, SingularPoseError
+from validate.reference.errors import InfeasibleError, NoReferenceError, SingularPoseError
 from validate.reference.exact import MOST_DIGITS, with_more_digits
 from validate.reference.instant import Instant, prove_instant
 from validate.reference.route import CLEAR, Assembly, moved, reached
@@ -43,9 +43,8 @@ def instants_of(
     Returns:
         The instants, mm, s, rad.
     Raises:
-        BadInputError: something given cannot be used.
+        NoReferenceError: something given cannot be used, or the drawing lies at a singular pose.
         InfeasibleError: proven that the ways from the drawing meet a fold.
-        AmbiguousAssemblyError: the drawing lies at a singular pose.
         SingularPoseError: no proof with 400 digits.
 
     >>> arm = Design.from_plain({  # level, so that the wheel moves straight up at first
@@ -85,7 +84,7 @@ def _proven(design: Design, here: Assembly, driven: Driven, digits: int, effects
     """Tried with twice the digits until the proofs hold, the last time with 400.
 
     Raises:
-        BadInputError: `digits` is not from 15 to 200.
+        NoReferenceError: `digits` is not from 15 to 200.
         SingularPoseError: they do not hold with 400.
     """
 
@@ -93,6 +92,6 @@ def _proven(design: Design, here: Assembly, driven: Driven, digits: int, effects
         return prove_instant(design, design.known(driven), here.pose, digits, effects)
 
     if not LEAST_PROMISED <= digits <= MOST_PROMISED:
-        raise BadInputError("digits", digits, f"{LEAST_PROMISED} to {MOST_PROMISED}")
+        raise NoReferenceError("digits", f"is {digits}", f"{LEAST_PROMISED} to {MOST_PROMISED}")
     doubled = (digits << doublings for doublings in range(MOST_DIGITS))
     return with_more_digits(attempt, [*takewhile(lambda n: n < MOST_DIGITS, doubled), MOST_DIGITS])

@@ -39,7 +39,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.spanning_tree.errors import HardpointsError
+from validate.errors import NoAnswer
 
 Array = NDArray[np.float64]
 
@@ -199,13 +199,11 @@ def unit_vector(vector: Array, start: str, end: str) -> Array:
     """Unit vector from one point to another.
 
     Raises:
-        HardpointsError: they are at one place.
+        NoAnswer: they are at one place.
     """
     size = float(np.linalg.norm(vector))
     if size == 0.0:
-        raise HardpointsError(
-            start, f"is where {end} is, so that their line has no direction", "points apart"
-        )
+        raise NoAnswer(start, f"is where {end} is, so that their line has no direction", "points apart")
     return np.asarray(vector / size)
 
 
@@ -230,7 +228,7 @@ def cut(plain: Mapping[str, Any]) -> SpanningTree:
     """The tree of a flat mechanism.
 
     Raises:
-        HardpointsError: points that must be apart are at one place or on one line, or the car has no size.
+        NoAnswer: points that must be apart are at one place or on one line, or the car has no size.
     """
     return _Cutter(plain).tree()
 
@@ -352,7 +350,7 @@ class _Cutter:
         for one, other in combinations(self.bodies, 2):
             shared = tuple(p for p in self.bodies[one] if p in self.bodies[other])
             if len(shared) > 2:
-                raise HardpointsError(f"{one} and {other}", f"share {len(shared)} points", "one or two")
+                raise NoAnswer(f"{one} and {other}", f"share {len(shared)} points", "one or two")
             if len(shared) == 2:
                 p, q = shared
                 axis = unit_vector(self.drawn[q] - self.drawn[p], p, q)
@@ -380,9 +378,7 @@ class _Cutter:
             if np.any(np.cross(axis, self.drawn[p] - self.drawn[start])):
                 return
         p = self.bodies[body][-1]
-        raise HardpointsError(
-            p, f"lies on the hinge of {body}, as all of its points do", "a place beside that line"
-        )
+        raise NoAnswer(p, f"lies on the hinge of {body}, as all of its points do", "a place beside that line")
 
     def _taken(self, edges: list[_Edge]) -> list[_Edge]:
         """The joints of the tree (Kruskal): driven ones first, then by the number of their coordinates."""
@@ -476,7 +472,7 @@ class _Cutter:
     def _distance(self, one: str, other: str, without: str) -> float:
         length = float(np.linalg.norm(self.drawn[one] - self.drawn[other]))
         if length == 0.0:
-            raise HardpointsError(other, f"is where {one} is, so that {without}", "points apart")
+            raise NoAnswer(other, f"is where {one} is, so that {without}", "points apart")
         return length
 
     def _slide(self, name: str, place: Place, axis: Array) -> Place:
@@ -561,7 +557,7 @@ class _Cutter:
         joint = self._between("hinge", body, on)
         if joint is None:
             words = f"turns {body} on {on}, which is no hinge of the tree"
-            raise HardpointsError(name, words, "a hinge in no closed loop")
+            raise NoAnswer(name, words, "a hinge in no closed loop")
         p, q = (p for p in self.bodies[body] if p in self.bodies[on])
         along = float(np.sign(joint.axis @ (self.drawn[q] - self.drawn[p])))
         sign = along if joint.body == body else -along
@@ -641,14 +637,12 @@ class _Cutter:
         up = self.directions["up"]
         holder = next((b for b in self.holders[inner] if b in self.holders[centre]), None)
         if holder is None or not self.radius > 0.0:
-            raise HardpointsError(
+            raise NoAnswer(
                 name, f"needs a wheel with {inner} and {centre}", "points of one body, and a wheel_radius"
             )
         axle = unit_vector(self.drawn[centre] - self.drawn[inner], inner, centre)
         if not abs(float(up @ axle)) < 1.0:
-            raise HardpointsError(
-                name, "has a wheel that lies flat, with no lowest point", "an upright wheel"
-            )
+            raise NoAnswer(name, "has a wheel that lies flat, with no lowest point", "an upright wheel")
         hub = self.at[centre]
         down = float(up @ axle) * axle - up
         down = down / float(np.linalg.norm(down))
@@ -686,17 +680,17 @@ def _measure(points: Mapping[str, Array]) -> tuple[Array, float]:
     """A place near the car from which differences are exact, (3,), mm, and a power of two, its size, mm.
 
     Raises:
-        HardpointsError: the car has no size, or one that no number has the square of.
+        NoAnswer: the car has no size, or one that no number has the square of.
     """
     stack = np.array(list(points.values()))
     if not np.isfinite(stack).all():
-        raise HardpointsError("hardpoints", "are not all numbers", "finite numbers")
+        raise NoAnswer("hardpoints", "are not all numbers", "finite numbers")
     largest = float(np.abs(stack).max())
     if not largest < 2.0**1000:
-        raise HardpointsError("hardpoints", f"lie {largest:.3g} mm away", "less than 1e300 mm")
+        raise NoAnswer("hardpoints", f"lie {largest:.3g} mm away", "less than 1e300 mm")
     size = float(np.ptp(stack, axis=0).max())
     if not size > TINIEST:
-        raise HardpointsError("hardpoints", f"lie within {size:.3g} mm", f"more than {TINIEST:g} mm")
+        raise NoAnswer("hardpoints", f"lie within {size:.3g} mm", f"more than {TINIEST:g} mm")
     unit = float(np.ldexp(1.0, np.frexp(size)[1] - 1))
     grid = 8.0 * unit
     return np.asarray(np.trunc(stack.mean(axis=0) / grid) * grid + 0.0), unit

@@ -105,8 +105,10 @@ def _answer(ask: Callable[[], Answer]) -> Answer | str:
     """What is asked for, or the name of the error that refuses it."""
     try:
         return ask()
-    except (PointcoordError, NoReferenceError) as error:
+    except PointcoordError as error:
         return type(error).__name__
+    except NoReferenceError as error:
+        return error.reason
 
 
 def measured(rows: Sequence[Row]) -> pd.DataFrame:

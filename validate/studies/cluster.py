@@ -15,11 +15,11 @@ from multiprocessing import resource_tracker
 from typing import Any
 
 from validate.comparison.examined import told_failure
-from validate.errors import UsageError
+from validate.errors import NotFinished, UsageError
 from validate.extras import needed
 from validate.plain_text import one_line, shown
 from validate.studies.store import Store
-from validate.studies.study import Row, Study, StudyStopped, Task, differences, made_by
+from validate.studies.study import Row, Study, Task, differences, made_by
 
 LOCAL = "local"
 HERE = "127.0.0.1"  # nobody else reaches processes of this machine: what they are sent, they run
@@ -45,8 +45,8 @@ def run(
         told: how many of the tasks are recorded, whenever there are more.
     Raises:
         UsageError: a worker runs another program, or several tasks at once.
-        StudyStopped: the scheduler is gone; a task ends its workers one after the other, or raises an error.
-        OutputError: the records cannot be written.
+        NotFinished: the scheduler is gone; a task ends its workers one after the other, or raises an error.
+        NotFinished: the records cannot be written.
     """
     distributed, size = quiet_dask(), max(study.chunk, -(-len(tasks) // MOST))
     chunks = [tuple(tasks[i : i + size]) for i in range(0, len(tasks), size)]
@@ -95,7 +95,7 @@ def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> li
     """The rows of a task, worked out here by one thread.
 
     Raises:
-        UsageError: a package is not there. StudyStopped: the task raised an error.
+        UsageError: a package is not there. NotFinished: the task raised an error.
     """
     began = time.perf_counter()
     try:
@@ -105,7 +105,7 @@ def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> li
         raise UsageError(f"worker {worker}: {error}") from error
     except Exception as error:
         words = f"{type(error).__name__}: {told_failure(error)}"
-        raise StudyStopped(f"{task.part} {task.number}: {words}") from error
+        raise NotFinished(f"{task.part} {task.number}", words) from error
     every = {**task._asdict(), "seconds": time.perf_counter() - began, "worker": worker}
     return [{**every, **row} for row in rows]
 
@@ -114,15 +114,16 @@ def _result(future: Any) -> list[Row]:
     """What came of a future that is finished; it is worked out again if its worker has died since."""
     try:
         return list(future.result())
-    except (UsageError, StudyStopped):
+    except (UsageError, NotFinished):
         raise
     # Whatever Dask says: of a scheduler that is gone, a task that ended its workers one after the other, or a
     # worker that has no such program.
     except Exception as error:
         said = one_line(f"{type(error).__name__}: {error}")
-        raise StudyStopped(
-            f"the cluster does not work any more ({said}); each worker needs pip install "
-            "'pointcoord[validate,cluster]', of this version; the same command goes on"
+        raise NotFinished(
+            "the cluster",
+            f"does not work any more ({said}); each worker needs pip install "
+            "'pointcoord[validate,cluster]', of this version; the same command goes on",
         ) from None
 
 
@@ -133,7 +134,7 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
     Args:
         workers: how many processes of this machine; as many as it has processors for us, if not given.
     Raises:
-        MissingPackage: Dask is not there.
+        MissingLibrary: Dask is not there.
         UsageError: nothing answers, or there is no worker.
     """
     distributed, cluster = quiet_dask(), address
@@ -163,7 +164,7 @@ def quiet_dask() -> Any:
     """The package `distributed`, which says nothing by itself: what matters is said by this program.
 
     Raises:
-        MissingPackage: it is not there.
+        MissingLibrary: it is not there.
     """
     needed("study", "dask", "cluster").config.set({"logging": dict.fromkeys(LOGGERS, "critical")})
     distributed = needed("study", "distributed", "cluster")

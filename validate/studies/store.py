@@ -78,7 +78,7 @@ class Store:
         """Write a file: all rows of some tasks; who was interrupted writes the same again, to the same file.
 
         Raises:
-            OutputError: it cannot be written.
+            NotFinished: it cannot be written.
         """
         pa, parquet = (needed("study", name, "cluster") for name in ("pyarrow", "pyarrow.parquet"))
         columns = {**EVERY, **self.study.columns}

@@ -19,10 +19,6 @@ Row = dict[str, Any]
 PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint")
 
 
-class StudyStopped(Exception):
-    """A study cannot go on: a task raised an error, or the cluster does not work any more."""
-
-
 class Task(NamedTuple):
     """One thing to work out: its number in a part of the study."""
 

@@ -71,5 +71,5 @@ def _unproven(error: NoReferenceError) -> str:
     return (
         "no such pose on the way from the drawing, proven"
         if isinstance(error, InfeasibleError)
-        else f"not provable: {type(error).__name__}"
+        else f"not provable: {error.reason}"
     )

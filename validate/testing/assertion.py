@@ -15,7 +15,6 @@ from validate.comparison.compare import Outcome, compare, compare_solutions
 from validate.comparison.given import given
 from validate.diagnosis import explain_outcome
 from validate.errors import UsageError
-from validate.extras import MissingPackage
 from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.output.report import about, told_row
@@ -25,7 +24,7 @@ from validate.solvers.plain import PlainSolver, as_function, given_to_solver
 
 WHO = "the states"
 # What is said of a test's own arguments; anything else that is raised is a defect of this package.
-TOLD = (AssertionError, PointcoordError, FormulationError, NoReferenceError, UsageError, MissingPackage)
+TOLD = (AssertionError, PointcoordError, FormulationError, NoReferenceError, UsageError)
 MOST_ROWS, MOST_EXPLANATIONS = 8, 3  # in a message; how many more rows there are is said
 
 

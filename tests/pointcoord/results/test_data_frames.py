@@ -68,7 +68,7 @@ def test_a_frame_has_the_columns_of_the_csv_with_the_same_bits(monkeypatch: pyte
 def test_a_library_that_is_not_there_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     pretend(monkeypatch, "pandas")
     motion = simulate(Scene.load("steer"))
-    with pytest.raises(MissingLibrary, match=r"polars, which is not .* 'pointcoord\[polars\]'$"):
+    with pytest.raises(MissingLibrary, match=r"'polars', which is not .* 'pointcoord\[polars\]'$"):
         motion.to_dataframe("polars")
     pretend(monkeypatch)
     with pytest.raises(ImportError, match="pandas or polars"):

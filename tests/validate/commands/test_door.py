@@ -229,14 +229,15 @@ def test_without_pinocchio_what_is_there_is_the_second_model_and_that_is_said(
     assert done.returncode == 0, done.stderr
     assert f"pointcoord and {second}; pointcoord-newton and {second}: 2 scenes" in done.stdout
     assert "2 of 2 scenes agree" in done.stdout
-    assert f"absolute is missing, {second} stands in for it: the absolute model needs" in done.stderr
+    why = "'absolute' needs the package 'pinocchio'"
+    assert f"absolute is missing, {second} stands in for it: {why}" in done.stderr
 
 
 def test_without_pinocchio_hard_cases_are_tried_by_what_is_there(tmp_path: Path) -> None:
     (tmp_path / "pinocchio.py").write_text("raise ModuleNotFoundError(name='pinocchio')\n")
     done = with_fake(tmp_path, "hard", "arm-highest-held")
     assert done.returncode == 0, done.stderr
-    assert "absolute is left out: the absolute model needs Pinocchio" in done.stderr
+    assert "absolute is left out: 'absolute' needs the package 'pinocchio'" in done.stderr
     assert "relative is left out: " in done.stderr
     assert "All as expected" in done.stdout
 

@@ -10,9 +10,10 @@ import pytest
 from pointcoord import PointcoordError, Scene
 from validate.cost.errors import Truth, errors_of, truth_of
 from validate.cost.scenes import NEAR_TOGGLE, own_scene, study_instants
-from validate.cost.way import Answer, NoNumbers, Way
+from validate.cost.way import Answer, Way
 from validate.cost.ways import scipy_solvers
 from validate.cost.ways.registry import OURS, WAYS, ways_named
+from validate.errors import NoAnswer
 
 # What solves each instant, each as finely as it can be set.
 EXACT = [way.name for way in WAYS if way.name not in ("map", "series")]
@@ -96,7 +97,7 @@ def test_a_motion_through_a_fold_is_no_answer(who: str) -> None:
     assert len(solve(whole).numbers["position"]["wheel_centre"]) == len(whole)
     with pytest.raises(Exception, match=r"t = 1\.|instant") as caught:
         solve(scene.instants)
-    assert "Error" in type(caught.value).__name__ or isinstance(caught.value, NoNumbers | PointcoordError)
+    assert "Error" in type(caught.value).__name__ or isinstance(caught.value, NoAnswer | PointcoordError)
 
 
 def answering(change: Callable[[Any], Any]) -> Callable[..., Any]:
@@ -108,8 +109,8 @@ def answering(change: Callable[[Any], Any]) -> Callable[..., Any]:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda it: SimpleNamespace(**{**it, "success": False, "message": "gave\nup"}), "gave up"),
-        (lambda it: SimpleNamespace(**{**it, "fun": it.fun + 1e-3}), r"the equations are left at 0\.001"),
+        (lambda it: SimpleNamespace(**{**it, "success": False, "message": "gave\nup"}), "gives up: gave up"),
+        (lambda it: SimpleNamespace(**{**it, "fun": it.fun + 1e-3}), r"leaves the equations at 0\.001"),
     ],
 )
 def test_a_solver_of_scipy_that_fails_is_told(
@@ -117,7 +118,7 @@ def test_a_solver_of_scipy_that_fails_is_told(
 ) -> None:
     monkeypatch.setattr(scipy_solvers, "root", answering(change))
     scene = own_scene("off-axis-strut")
-    with pytest.raises(NoNumbers, match=rf"scipy\.optimize\.root at t = 0\.0\d+ s: {words}"):
+    with pytest.raises(NoAnswer, match=rf"scipy\.optimize\.root at t = 0\.0\d+ s {words}"):
         answer("scipy-root-jac", scene, scene.instants)
 
 
@@ -131,6 +132,6 @@ def test_an_answer_of_scipy_on_another_side_than_is_drawn_is_refused(monkeypatch
         return np.where(np.arange(len(signs)) == 7, -signs, signs), logs
 
     monkeypatch.setattr(np.linalg, "slogdet", turned)
-    with pytest.raises(NoNumbers, match="another assembly than is drawn"):
+    with pytest.raises(NoAnswer, match="another assembly than is drawn"):
         answer("scipy-root-jac", scene, scene.instants)
     assert seen

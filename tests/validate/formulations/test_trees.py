@@ -8,9 +8,9 @@ import pytest
 from hypothesis import Phase, assume, given, note, settings
 from numpy.typing import NDArray
 
-from pointcoord import Scene, SceneError
+from pointcoord import MissingLibrary, Scene, SceneError
 from validate.comparison.compare import compare
-from validate.extras import MissingPackage
+from validate.extras import not_there
 from validate.formulations.protocol import FormulationError
 from validate.formulations.refusals import DRAWING, INPUT, MOTION, START, why_refused
 from validate.formulations.registry import OUTSIDE, formulation
@@ -78,12 +78,12 @@ def test_a_program_that_is_not_installed_is_told_with_its_package_and_extra(
 ) -> None:
     monkeypatch.setitem(sys.modules, who, None)
     monkeypatch.delitem(sys.modules, f"validate.peers.in_{who}", raising=False)
-    with pytest.raises(MissingPackage) as caught:
+    with pytest.raises(MissingLibrary) as caught:
         formulation(who)
     assert f"needs the package {who!r}, which is not installed" in str(caught.value)
     assert "pip install 'pointcoord[peers]'" in str(caught.value)
-    lacking = MissingPackage(who, ImportError("libGL.so.1: cannot open shared object file"), "peers")
-    assert lacking.package == who
+    lacking = not_there(who, ImportError("libGL.so.1: cannot open shared object file"), "peers")
+    assert lacking.libraries == (who,)
     assert "does not load (libGL.so.1" in str(lacking)
     assert "the system's package" in str(lacking)
 

@@ -11,7 +11,8 @@ from typing import BinaryIO
 
 import pytest
 
-from validate.output.files import OutputError, require_writable, write_whole
+from validate.errors import NotFinished
+from validate.output.files import require_writable, write_whole
 
 
 def put(content: bytes) -> object:
@@ -38,7 +39,7 @@ def test_what_was_there_is_whole_and_nothing_else_is_left(
     target = tmp_path / "x.json"
     if before is not None:
         target.write_bytes(before)
-    with pytest.raises((OutputError, KeyboardInterrupt)):
+    with pytest.raises((NotFinished, KeyboardInterrupt)):
         write_whole(str(target), stops(error))
     assert (target.read_bytes() if target.exists() else None) == before
     assert len(list(tmp_path.iterdir())) == (before is not None)

@@ -130,7 +130,7 @@ def at_height(height: Fraction, rate: int = 0) -> Instant:
 def test_an_exactly_singular_pose_is_an_error_that_says_so() -> None:
     with pytest.raises(SingularPoseError, match="400 digits") as caught:
         at_height(Fraction(300), 1)
-    assert isinstance(caught.value.reason, NotDecidedError)
+    assert isinstance(caught.value.doubt, NotDecidedError)
 
 
 @pytest.mark.parametrize("power", [6, 30, 80])

@@ -15,7 +15,6 @@ from mechanism_drawings import (
 from mpmath import mpf
 
 from validate.reference import (
-    BadInputError,
     Design,
     Instant,
     NoReferenceError,
@@ -65,7 +64,7 @@ def test_a_slider_crank_is_where_its_closed_form_says_after_any_number_of_turns(
 def test_a_description_that_makes_no_mechanism_is_refused_by_name(
     change: dict[str, Any], message: str
 ) -> None:
-    with pytest.raises(BadInputError, match=message):
+    with pytest.raises(NoReferenceError, match=message):
         Design.from_plain({**SLIDER_CRANK, **change})
 
 

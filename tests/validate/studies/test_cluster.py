@@ -18,11 +18,11 @@ from counted_study import counted, without_who_and_how_long, worked_out
 from program import ENVIRONMENT, PROGRAM
 
 from validate.cli import main
-from validate.errors import UsageError
+from validate.errors import NotFinished, UsageError
 from validate.studies import cluster
 from validate.studies.hard_cases import hard
 from validate.studies.store import records
-from validate.studies.study import StudyStopped, made_by
+from validate.studies.study import made_by
 
 
 def cluster_of(threads_per_worker: int = 1, **options: Any) -> Any:
@@ -114,9 +114,7 @@ def test_a_cluster_that_cannot_work_a_study_out_is_refused(
 def test_an_error_of_a_task_names_it_and_leaves_what_was_recorded(address: str, tmp_path: Path) -> None:
     study, other = counted(6, tmp_path / "marks", wrong=5), SimpleNamespace(scheduler_address=address)
     folder = tmp_path / "records"
-    with pytest.raises(
-        StudyStopped, match=r"^all 5: ZeroDivisionError: no square at counted_study\.py:\d+; "
-    ):
+    with pytest.raises(NotFinished, match=r"^all 5: ZeroDivisionError: no square at counted_study\.py:\d+; "):
         ran(study, folder, other)
     assert {task.number for task in records(folder, study).rows()} == {0, 1, 2, 3}
 
@@ -132,7 +130,7 @@ def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
             if done:
                 gone.close()
 
-        with pytest.raises(StudyStopped, match=r"does not work any more .* the same command goes on"):
+        with pytest.raises(NotFinished, match=r"does not work any more .* the same command goes on"):
             ran(study, tmp_path / "records", gone, tell)
     assert 0 < len(records(tmp_path / "records", study).rows()) < 40
 

@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from validate.errors import UsageError
-from validate.output.files import OutputError
+from validate.errors import NotFinished, UsageError
 from validate.studies import store
 from validate.studies.bounds import bounds
 from validate.studies.claims import claims
@@ -75,7 +74,7 @@ def test_nothing_is_put_beside_other_peoples_files(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
     with pytest.raises(UsageError, match="is a file"):
         recorded(tmp_path / "thesis.txt", [0])
-    with pytest.raises(OutputError, match="cannot be written"):
+    with pytest.raises(NotFinished, match="cannot be written"):
         recorded(tmp_path / "thesis.txt" / "below", [0])
 
 

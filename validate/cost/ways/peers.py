@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from validate.cost.way import Answer, Solve, Way, laws_at
+from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import asked_of, require_the_drawn_car
 from validate.formulations.registry import OUTSIDE, WORDS, program_of
 from validate.formulations.trees import linkage_in
 from validate.peers.motion import numbers
-from validate.spanning_tree.errors import PeerError
 
 Array = NDArray[np.float64]
 
@@ -38,11 +38,11 @@ def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
         inputs = linkage.inputs(laws_at(scene, instants))
         try:
             poses = program.poses(inputs.values, tolerance, start)
-        except PeerError as error:
+        except NoAnswer as error:
             if error.instant is None:
                 raise
-            when = f"at t = {instants[error.instant]:.6g} s: {error.problem}"
-            raise PeerError(when, error.instant) from None
+            what = f"at t = {instants[error.instant]:.6g} s, {error.what}"
+            raise NoAnswer(what, error.problem, error.allowed, instant=error.instant) from None
         rates = program.rates(poses, inputs.series) if moves else None
         found = numbers(linkage, inputs, poses, rates, asked_of_the_car(scene))
         return Answer(asked_of(found, scene), poses.counts)

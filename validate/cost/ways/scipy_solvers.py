@@ -21,8 +21,9 @@ from pointcoord.numerics.counters import Work
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.pointwise import Solved, SquareVelocityTerm, with_rates
 from pointcoord.time_functions import TimeFunction
-from validate.cost.way import NoNumbers, Solve, Way
+from validate.cost.way import Solve, Way
 from validate.cost.ways.point_coordinates import by_method
+from validate.errors import NoAnswer
 
 Array = NDArray[np.float64]
 
@@ -51,7 +52,7 @@ def in_scipy(
         with_jacobian: whether it is given the Jacobian, or takes differences of the equations for it.
         size: its relative tolerance; of least_squares all three.
     Raises:
-        NoNumbers: it ends without success, or came to another assembly: the sign of the Jacobian's
+        NoAnswer: it ends without success, or came to another assembly: the sign of the Jacobian's
             determinant changes where two of them meet.
     """
     system, n = mechanism.map, mechanism.map.unknowns
@@ -74,14 +75,17 @@ def in_scipy(
         left = float(np.abs(found.fun).max())
         # A least sum of squares may be none of the equations' roots.
         if not (found.success and left <= 10.0 * size + NOISE):
-            words = f"the equations are left at {left:.3g}" if found.success else str(found.message)
-            raise NoNumbers(f"scipy.optimize.{solver} at t = {instant:.6g} s: {' '.join(words.split())}")
+            words = f"leaves the equations at {left:.3g}"
+            if not found.success:
+                words = f"gives up: {' '.join(str(found.message).split())}"
+            who = f"scipy.optimize.{solver} at t = {instant:.6g} s"
+            raise NoAnswer(who, words, f"an end with the equations below {10.0 * size + NOISE:.3g}")
         y[i] = at(found.x)
         residuals, jacobians = residuals + int(found.nfev), jacobians + int(found.get("njev") or 0)
     signs = np.linalg.slogdet(system.jacobian(y))[0]
     for instant in times[signs != signs[0]][:1]:
-        words = "it came to another assembly than is drawn"
-        raise NoNumbers(f"scipy.optimize.{solver} at t = {instant:.6g} s: {words}")
+        who, allowed = f"scipy.optimize.{solver} at t = {instant:.6g} s", "the one that is drawn"
+        raise NoAnswer(who, "comes to another assembly than is drawn", allowed)
     work = Work(residuals=residuals, factorisations=jacobians)
     return with_rates(system, y, known, times, derivative, term, work, np.full(len(times), np.inf))
 

@@ -15,7 +15,7 @@ from validate.reference.design import Design, Known
 from validate.reference.drives import travel_per_radian
 from validate.reference.effects.car import Car, DrawnCar, Effect, Line, lines_of
 from validate.reference.effects.registry import EFFECTS
-from validate.reference.errors import BadInputError
+from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import value_of
 from validate.reference.kinematics import Solved, with_rates
@@ -40,13 +40,13 @@ def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
     """The numbers that names mean and the car can have; without a prefix each part has one of a wheel's.
 
     Raises:
-        BadInputError: there is no such effect.
+        NoReferenceError: there is no such effect.
     """
     found: dict[str, Number] = {}
     for name in names:
         part, dot, base = name.rpartition(".")
         if base not in EFFECTS:
-            raise BadInputError("effect", name, "a name of `effects.registry`")
+            raise NoReferenceError("effect", f"is {name!r}", "a name of `effects.registry`")
         effect, pair = EFFECTS[base], pair_of(design)
         of_both = ((name, pair),) if pair else ()
         of_each = ((prefix + base, (prefix,)) for prefix in ([part + dot] if dot else design.corners))
