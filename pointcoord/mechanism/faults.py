@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from pointcoord.wording import meant, shown
+from pointcoord.errors import SceneError
+from pointcoord.wording import meant, shown, shown_key
 
 # What pydantic says in Python's terms, and a file in its own.
 WORDS = {
@@ -36,6 +37,11 @@ class TableFault(ValueError):
     def under(self, *place: str | int) -> TableFault:
         """The same of tables that stand at a place of others."""
         return TableFault((*place, *self.place), self.problem, self.allowed)
+
+    def of_file(self, source: str, others: int = 0) -> SceneError:
+        """The error of a file, by its name, in which this is the fault and so many others are too."""
+        more = f" (and {others} more)" if others else ""
+        return SceneError(source, ".".join(map(shown_key, self.place)), self.problem + more, self.allowed)
 
 
 def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str | int] = ()) -> TableFault:

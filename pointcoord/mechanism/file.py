@@ -10,7 +10,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, StrictBool
 
-from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
 from pointcoord.mechanism.compiled import Compiler, Place
@@ -263,8 +262,7 @@ def read_tables(path: Path) -> dict[str, Any]:
     try:
         MechanismFile.of(tables, path.stem)
     except TableFault as fault:
-        place = ".".join(map(str, fault.place))
-        raise SceneError(str(path), place, fault.problem, fault.allowed) from None
+        raise fault.of_file(str(path)) from None
     return tables
 
 

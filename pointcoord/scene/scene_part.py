@@ -23,9 +23,7 @@ from pydantic import (
     model_validator,
 )
 
-from pointcoord.errors import SceneError
 from pointcoord.mechanism.faults import faults_of, known_keys
-from pointcoord.wording import shown_key
 
 Place = tuple[int | str, ...]
 
@@ -100,7 +98,8 @@ class Part(BaseModel):
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            raise scene_error(error, source) from None
+            first, *others = faults_of(error)
+            raise first.of_file(source, len(others)) from None
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
@@ -146,10 +145,3 @@ class Part(BaseModel):
             return super().model_copy(deep=deep)
         changed = {**self._as_given(), **update}
         return self.checked(copy.deepcopy(changed) if deep else changed, f"a changed {type(self).__name__}")
-
-
-def scene_error(error: ValidationError, source: str) -> SceneError:
-    """What pydantic found in a part as one line: the first fault, and a count of the rest."""
-    first, *others = faults_of(error)
-    more = f" (and {len(others)} more)" if others else ""
-    return SceneError(source, ".".join(map(shown_key, first.place)), first.problem + more, first.allowed)

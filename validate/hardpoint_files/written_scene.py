@@ -13,7 +13,6 @@ from pointcoord.drawing_stands import Standing
 from pointcoord.effects.angle import Angle
 from pointcoord.effects.car_number import BY_TRAVEL
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.errors import SceneError
 from pointcoord.mechanism import mechanism_file
 from pointcoord.mechanism.faults import TableFault
 from pointcoord.mechanism.file import AS_DRAWN, MechanismFile
@@ -117,7 +116,7 @@ def driven_inputs(
         travel = heights[topology.wheel_centre]
         return tuple(travel if name in others else name for name in topology.required_inputs)
     except TableFault as fault:
-        raise SceneError(source, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
+        raise fault.of_file(source) from None
 
 
 def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
