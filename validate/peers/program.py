@@ -127,8 +127,7 @@ class Program(ABC):
         Args:
             tolerance: Newton's method ends with a correction of all joints below it, rad and car sizes.
         Raises:
-            NoAnswer: it is no mechanism that its inputs drive.
-            NoAnswer: it cannot be closed, or only as another assembly.
+            NoAnswer: it is no mechanism that its inputs drive, or does not close as the assembly drawn.
         """
         counted, drawn = Counter[str](), self.linkage.drawn_inputs
         self.put(self.as_drawn)

@@ -45,8 +45,8 @@ def run(
         told: how many of the tasks are recorded, whenever there are more.
     Raises:
         UsageError: a worker runs another program, or several tasks at once.
-        NotFinished: the scheduler is gone; a task ends its workers one after the other, or raises an error.
-        NotFinished: the records cannot be written.
+        NotFinished: the scheduler is gone; a task ends its workers one after the other, or raises an error;
+            the records cannot be written.
     """
     distributed, size = quiet_dask(), max(study.chunk, -(-len(tasks) // MOST))
     chunks = [tuple(tasks[i : i + size]) for i in range(0, len(tasks), size)]
@@ -122,7 +122,7 @@ def _result(future: Any) -> list[Row]:
         said = one_line(f"{type(error).__name__}: {error}")
         raise NotFinished(
             "the cluster",
-            f"does not work any more ({said}); each worker needs pip install "
+            f"it does not work any more ({said}); each worker needs pip install "
             "'pointcoord[validate,cluster]', of this version; the same command goes on",
         ) from None
 
