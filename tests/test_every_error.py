@@ -8,6 +8,7 @@ import importlib
 import inspect
 import pickle
 import pkgutil
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
@@ -136,6 +137,14 @@ SAYS: dict[str, tuple[str, ...]] = {
 }
 
 
+PAGE = (Path(pointcoord.__file__).with_name("README.md")).read_text(encoding="utf-8")
+# The data of each error, as the page about Python lists them.
+DATA = {
+    name: set(re.findall(r"`(\w+)`", data))
+    for name, data in re.findall(r"^\| `(\w+)` \| .* \| (.*) \|$", PAGE.partition("## Errors")[2], flags=re.M)
+}
+
+
 def every_error_class() -> dict[str, type[BaseException]]:
     """All exception classes that the three packages define, by module and name."""
     classes: dict[str, type[BaseException]] = {}
@@ -182,6 +191,7 @@ def test_every_error_class_is_met_by_some_test() -> None:
     assert {kind for kind in CLASSES.values() if kind.__module__ == "pointcoord.errors"} == here | {
         pointcoord.PointcoordError
     }
+    assert set(DATA) == {kind.__name__ for kind in here}
 
 
 @pytest.mark.parametrize("name", MET)
@@ -196,7 +206,7 @@ def test_an_error_is_one_line_that_says_what_to_try_and_comes_back_from_another_
     assert "\n" not in str(error)
     for words in SAYS[name]:
         assert words in str(error)
-    assert vars(error)
+    assert DATA[kind.__name__] == vars(error).keys() - {"allowed", "advice", "partial"}
     again = pickle.loads(pickle.dumps(error))
     assert type(again) is type(error)
     assert (str(again), again.args) == (str(error), error.args)
