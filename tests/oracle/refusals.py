@@ -30,6 +30,14 @@ KINDS = {
 KIND_OF = {name: kind for kind, names in KINDS.items() for name in names}
 
 
+# What a program that does not answer begins its reason with. Where that is anything else, such as the name
+# of a point or a body, the scene is at fault.
+OF_PROGRAMS = {"input ": "an input", "instant number ": "a pose", "the drawing ": "a pose"}
+
+
 def kind_of(reason: str) -> str:
     """The kind of a reason; a name that is of no kind is its own."""
-    return KIND_OF.get(reason.partition(":")[0], reason.partition(":")[0])
+    name, _, words = reason.partition(": ")
+    if name == "NoAnswer":
+        return next((kind for start, kind in OF_PROGRAMS.items() if words.startswith(start)), "the scene")
+    return KIND_OF.get(name, name)
