@@ -35,7 +35,8 @@ from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, path_of_part
 from pointcoord.solve.follower import follow
 from pointcoord.solve.status import Status
-from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Settings, build_chain
+from pointcoord.solve.step_rule import COARSEST, FINEST, Settings
+from pointcoord.solve.taylor import MOST_SEGMENTS, SOLVED, build_chain
 from pointcoord.time_functions import TimeFunction
 from pointcoord.wording import shown
 

@@ -15,7 +15,8 @@ from pointcoord.results.readout import ENOUGH, Readout
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.dense_output import SeriesRows, evaluate
 from pointcoord.solve.series_in_inputs import InputSeries
-from pointcoord.solve.taylor import Chain, last_magnitudes
+from pointcoord.solve.step_rule import last_magnitudes
+from pointcoord.solve.taylor import Chain
 from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:

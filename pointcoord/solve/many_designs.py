@@ -19,7 +19,8 @@ from pointcoord.errors import PointcoordError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import assembled, closed_drawings
 from pointcoord.solve.series_in_inputs import follow_by_inputs
-from pointcoord.solve.taylor import Chain, Settings, build_chains
+from pointcoord.solve.step_rule import Settings
+from pointcoord.solve.taylor import Chain, build_chains
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]

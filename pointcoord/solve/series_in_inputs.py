@@ -37,15 +37,8 @@ from pointcoord.numerics.power_series import expand_moving
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.follower import follow
 from pointcoord.solve.place import starting_place
-from pointcoord.solve.taylor import (
-    MOST,
-    SEGMENT,
-    SOLVED,
-    Segment,
-    Settings,
-    confirmed,
-    gone_on,
-)
+from pointcoord.solve.step_rule import MOST, SEGMENT, Settings, degrees_lacking
+from pointcoord.solve.taylor import SOLVED, Segment, confirmed
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -282,7 +275,9 @@ class _Boxed:
             known = self.known_series(order, columns)[:, some]
             with np.errstate(all="ignore"):
                 series = expand_moving(system, factors.taken(some), y[some], known, driven, self.inputs)
-                lacking = self.lacking(series[..., : system.unknowns], order)
+                lacking = degrees_lacking(
+                    series[..., : system.unknowns], self.inputs, order, self.ranges.rates, self.settings
+                )
             # The few that need many more degrees than the others are followed in time.
             further = lacking[order + lacking <= STANDS_OUT * (order + np.median(lacking))].max(initial=0.0)
             if not further > 0.0 and len(some) == len(y):
@@ -291,41 +286,3 @@ class _Boxed:
                 break
             order += int(np.ceil(SLOWER * further))
         return None
-
-    def lacking(self, series: Array, order: int) -> Array:
-        r"""How many degrees more it takes if terms go on to fall, 0 if none, (designs,).
-
-        Where degrees fall to a part f from one to the next, and e is what the last one, p, comes to at least
-        as those before it do, what is left out comes to no more, in the d-th rate of s, than
-
-            sum_{j > 0} (p + j)^d f^j e <= (p + 1)^d f (1 + f) / (1 - f)^(d + 1) e.
-
-        With v and a the largest rates of s it is e for d = 0, v times that for d = 1 and v^2 times that for
-        d = 2 and a times that for d = 1. With 1 + f at most 2, it is held to half the tolerance of the size
-        of each: of the mechanism, v c_1, and a c_1 or 2 v^2 c_2.
-
-        Args:
-            series: of the unknown coordinates, powers first, shape (powers, designs, unknowns).
-        """
-        every, (v, a) = powers(self.inputs, order), self.ranges.rates.T
-        edges = [every.first_of(degree) for degree in range(order + 1)]
-        terms = np.abs(series)
-        logs = np.log(np.add.reduceat(terms, edges, axis=0).max(axis=-1)).T
-        logs[:, 0] = 0.0
-        turned = (v**every.exponents).prod(axis=-1)
-        first, again, second = (
-            (terms[edges[k] : edges[k + 1]].max(axis=-1) * by[:, None]).max(axis=0)
-            for k, by in ((1, v), (1, a), (2, 2.0 * turned[edges[2] : edges[3]]))
-        )
-        fall = 0.5 * np.maximum(logs[:, -4:-2].max(axis=-1) - logs[:, -2:].max(axis=-1), 0.0)
-        gap, fastest, bent = -np.expm1(-fall), v.max() * (order + 1), a.max() * (order + 1)
-        allowed = [
-            gap,
-            first / fastest * gap**2,
-            np.maximum(again, second) / (fastest**2 / gap + bent) * gap**2,
-        ][: self.settings.derivative + 1]
-        excess = gone_on(logs)[:, 1] - fall - np.log(0.25 * self.settings.tolerance * np.min(allowed, axis=0))
-        more = excess / fall
-        # Of p + n degrees the factors are larger by (1 + n / p)^d.
-        more += self.settings.derivative * np.log1p(np.maximum(more, 0.0) / order) / fall
-        return np.where(np.isnan(more), np.inf, np.where(excess > 0.0, more, 0.0))

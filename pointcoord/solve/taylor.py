@@ -1,19 +1,8 @@
 r"""A motion as a chain of short power series.
 
-A segment is as long as its last two terms allow: at its end they, and what they contribute to the
-derivatives that are asked for, are below the tolerance relative to the size of that derivative. The
-terms that were left out are smaller still. The end is then solved by Newton, which starts the next
-segment without inherited error and shows what the error was; a segment that missed, or that ended on
-another branch (see `branch`), is halved.
-
-All series are of one order p, the one that costs least for the tolerance e. A series of terms that fall as
-rho^-k, cut where its last one is e, has the length h(p) = rho exp(-B / p), B = -ln e (Jorba and Zou, Exp.
-Math. 14 (2005) 99). A segment of order p costs as much as SEGMENT + p orders do, which is least per second at
-
-    p = (B + sqrt(B^2 + 4 B SEGMENT)) / 2.
-
-Jorba and Zou's own order, B / 2 + 1, is the best where the cost of an order grows with it and a segment costs
-nothing beside them; here a chain of it takes 2 to 9 times as long.
+A segment is as long as its last two terms allow (see `step_rule`). The end is then solved by Newton, which
+starts the next segment without inherited error and shows what the error was; a segment that missed, or that
+ended on another branch (see `branch`), is halved.
 
 What stands still while the inputs do as their laws say is solved once, to rounding, and is a constant of
 every series (see `partial_map`).
@@ -23,8 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache, partial
-from math import perm
+from functools import cached_property, partial
 from typing import Self
 
 import numpy as np
@@ -43,6 +31,7 @@ from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
 from pointcoord.solve.place import Place, starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
+from pointcoord.solve.step_rule import COARSEST, SAFE, Settings, lengths_by_sizes, log_sizes, order_for
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -51,31 +40,18 @@ Numbers = NDArray[np.intp]
 # A motion stops where a segment is this much shorter than the whole: near a singular pose lengths
 # shrink in proportion to the time that is left, so its place is then known to as many digits.
 SHORTEST = 1e-15
-# A smaller truncation than this, relative to a derivative's size, drowns in the rounding of its sum.
-FINEST = 4.0 * EPS
-# A larger one could take a neighbouring branch for the same motion: the end of a segment shows that the
-# series left out far less than the distance to any other assembly there, but nothing looks between the ends.
-COARSEST = 1e-5
 # A motion of more segments would take more than some ten seconds; it is refused with that reason.
 MOST_SEGMENTS = 2000
 # Segments after which it is told how many there will be.
 TELLING = 64
 # A pose with a smaller condition number is far from any lock.
 REGULAR = 1e3
-# Orders, at most: beyond 40 little is gained at any tolerance. Up to SAFE the rates of an input stay numbers
-# however fast it is, 1e12 per second and more.
-MOST, SAFE = 40, 20
-# What a segment costs beside its orders, in orders: fitted to the times of thirty chains of 3 to 100 segments
-# and of orders from 8 to 40.
-SEGMENT = 25.0
 # Unit of time of a series, s, at least, and how small at most: raised to its order it stays above 2^-SMALLEST
 # and so far above the smallest number, 2^-1022, that no coefficient is lost in a motion however short.
 SHORTEST_UNIT, SMALLEST = 2.0**-50, 1000
 # Coefficients up to this size leave room for a length in mm and for its derivatives. Where a unit of time is
 # so long that those of a whole series are larger, a shorter one is found from its first few.
 LARGEST, FEW = 2.0**900, 8
-# A series of fewer terms, of a single instant or of a car at rest, does not show how terms fall.
-SHORT = 6
 # A member of many whose terms allow less than this share of what the middle one's do goes on without them: it
 # would take twice as long to follow all of them by its segments as to follow it once more.
 STANDS_OUT = 0.5
@@ -127,28 +103,6 @@ class Chain:
         return self.segments[-1].stop
 
 
-@dataclass(frozen=True)
-class Settings:
-    """How a chain is cut.
-
-    Attributes:
-        tolerance: allowed truncation, in the mechanism's units, between FINEST and COARSEST; for a derivative
-            the same fraction of that derivative's size.
-        derivative: highest time derivative that will be evaluated.
-        hopeful: whether a chain goes on to the most segments where its first ones tell that it needs more.
-    """
-
-    tolerance: float
-    derivative: int
-    hopeful: bool = True
-
-    @property
-    def kept(self) -> Settings:
-        """The same with a tolerance that can be kept."""
-        kept = min(max(self.tolerance, FINEST), COARSEST)
-        return self if kept == self.tolerance else replace(self, tolerance=kept)
-
-
 def build_chain(
     mechanism: Mechanism,
     functions: Mapping[str, TimeFunction],
@@ -198,12 +152,6 @@ def build_chains(
         if len(kept) < len(members):
             waiting.append(np.delete(members, kept))
     return found
-
-
-def order_for(tolerance: float) -> int:
-    """The order of the series that cost least per second for a tolerance; see the formula above."""
-    b = -np.log(tolerance)
-    return int(min(np.ceil(0.5 * (b + np.sqrt(b * (b + 4.0 * SEGMENT)))), MOST))
 
 
 @dataclass(frozen=True)
@@ -376,7 +324,7 @@ class _Course:
 
     def lengths(self, segment: Segment) -> Array:
         """How long each member's terms allow a segment to be, s, (members,); infinite where they end."""
-        logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
+        logs = log_sizes(segment.coefficients[..., : self.part.system.unknowns])
         return lengths_by_sizes(logs, self.settings) * segment.scale
 
     def series_about(self, joint: _Joint) -> Segment:
@@ -516,109 +464,6 @@ def confirmed(
         return Confirmed(good, None, Work())
     ahead, work = factors_at(system, reached, SOLVED * tolerance)
     return Confirmed(good & on_branch(system, series, s, reached, ahead), ahead, work)
-
-
-def lengths_by_sizes(logs: Array, settings: Settings) -> Array:
-    r"""Lengths of segments in their own time unit, (members,).
-
-    With c_k the largest k-th coefficient, the d-th derivative of either of the last two terms at s is
-    k!/(k-d)! c_k s^(k-d); it must not exceed half the tolerance times the size of the d-th derivative,
-    max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1). A term j stays below a multiple a of an
-    earlier one k up to s = (a c_k / c_j)^(1/(j-k)), so that the longest s is the least of the greatest of
-    these. Last terms that are missing or small by chance are taken for what the ones before them come to
-    (see `gone_on`).
-
-    Args:
-        logs: logarithms of the coefficients, (members, orders).
-    """
-    logs = logs.copy()
-    logs[:, 0] = 0.0
-    logs[:, -2:] = gone_on(logs)
-    room, exponents = _room(logs.shape[-1], settings.derivative, settings.tolerance)
-    # Of two terms that are missing both there is nothing to compare, and without last terms there is no end.
-    with np.errstate(invalid="ignore", over="ignore"):
-        ends = (logs[:, None, None, :] - logs[:, None, -2:, None] + room) * exponents
-        longest = np.fmin.reduce(np.fmax.reduce(ends, axis=-1), axis=(1, 2))
-        return np.where(np.isnan(longest), np.inf, np.exp(longest))
-
-
-@lru_cache(maxsize=256)
-def _room(count: int, derivative: int, tolerance: float) -> tuple[Array, Array]:
-    """Logarithms of what two last terms j have beside all terms k, (derivatives, 2, terms), and 1 / (j - k).
-
-    Minus infinity where a term does not count: j itself and later ones, and for d = 0 all but the first,
-    which stands for the mechanism's size.
-    """
-    falling, order = _falling(count, derivative), np.arange(count)
-    with np.errstate(invalid="ignore"):
-        room = np.log(0.5 * tolerance) + falling[:, None, :] - falling[:, -2:, None]
-    ahead = order[-2:, None] - order
-    room[np.broadcast_to(ahead <= 0, room.shape) | np.isnan(room)] = -np.inf
-    room[0, :, 1:] = -np.inf
-    return room, 1.0 / np.maximum(ahead, 1.0)
-
-
-def gone_on(logs: Array) -> Array:
-    """Logarithms of the last two coefficients, at least what those before them come to, (members, 2).
-
-    Every other term is missing where an input is at rest, all but each n-th where it begins as t^n, and close
-    to such a place they are small; a pair of singular places beside the axis makes terms swing. The last two
-    then tell nothing of those that follow. So each term of the last half of a series goes on as terms fell
-    from the largest of the half before it to the largest of that one. Terms that end for good, of which the
-    last half has none, stay missing.
-    """
-    if logs.shape[-1] < SHORT:
-        return logs[:, -2:]
-    later, fall = logs[:, logs.shape[-1] // 2 :], _fall(logs)
-    last = later - fall[:, None] * np.arange(later.shape[-1] - 1.0, -1.0, -1.0)
-    return np.stack([last[:, :-1].max(axis=-1) + fall, last.max(axis=-1)], axis=-1)
-
-
-def _fall(logs: Array) -> Array:
-    """How much the logarithms of terms fall from one to the next over the last half, (members,)."""
-    middle, members = logs.shape[-1] // 2, np.arange(len(logs))
-    before, after = 1 + logs[:, 1:middle].argmax(axis=-1), middle + logs[:, middle:].argmax(axis=-1)
-    with np.errstate(invalid="ignore"):
-        fall = (logs[members, before] - logs[members, after]) / (after - before)
-    # Of terms that do not fall, or that begin here, the length that they allow says more.
-    return np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)
-
-
-def last_magnitudes(series: Array, length: float = 1.0) -> Array:
-    """Magnitudes of the last two terms, at least what the ones before come to, (2, size) (see `gone_on`).
-
-    How terms fall is looked at where the segment ends, whatever unit of time the coefficients are in: in a
-    longer unit those of a series that serves well may rise.
-
-    Args:
-        series: coefficients, (order + 1, size).
-        length: of the segment, in their unit of time.
-    """
-    sizes = np.abs(series)
-    if len(sizes) < SHORT:
-        return sizes[-2:]
-    later, unit = sizes[len(sizes) // 2 :], np.log(length)
-    fall = float(_fall(_log_sizes(series) + unit * np.arange(len(sizes)))[0]) + unit
-    ahead = np.exp(-fall * np.arange(len(later) - 1.0, -1.0, -1.0))[:, None]
-    return np.stack([(later[:-1] * ahead[1:]).max(axis=0), (later * ahead).max(axis=0)])
-
-
-@lru_cache(maxsize=256)
-def _falling(count: int, derivative: int) -> Array:
-    """log k!/(k-d)! for d up to a derivative and k below a count, minus infinity for k < d, (d, k).
-
-    The power of s is that of the term itself in every row: a common factor of a row changes no comparison.
-    """
-    rows = [[float(perm(k, d)) for k in range(count)] for d in range(derivative + 1)]
-    with np.errstate(divide="ignore"):
-        return np.asarray(np.log(np.array(rows)))
-
-
-def _log_sizes(series: Array) -> Array:
-    """Logarithm of the largest coefficient of each order, (members, orders)."""
-    size = np.abs(series).max(axis=-1).reshape(-1, series.shape[-2])
-    with np.errstate(divide="ignore"):
-        return np.asarray(np.log(size))
 
 
 def power_of_two(length: float) -> float:

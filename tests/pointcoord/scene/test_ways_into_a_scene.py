@@ -23,7 +23,7 @@ from pointcoord import PointcoordError, Scene, SceneError, simulate
 from pointcoord.errors import visible
 from pointcoord.results.even_instants import even_instants
 from pointcoord.simulation import TRUNCATION_SHARE, scene_mechanism
-from pointcoord.solve.taylor import COARSEST, FINEST
+from pointcoord.solve.step_rule import COARSEST, FINEST
 from pointcoord.toml_text import LARGEST, read_stream
 
 BOUNCE = Scene.load("bounce")

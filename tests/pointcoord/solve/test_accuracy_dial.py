@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pointcoord import AssemblyError, Motion, MotionNotMapped, Scene, simulate
 from pointcoord.method import METHODS
 from pointcoord.simulation import TRUNCATION_SHARE
-from pointcoord.solve import taylor
+from pointcoord.solve import step_rule, taylor
 from validate.strategies import scenes
 
 Array = NDArray[np.float64]
@@ -94,7 +94,7 @@ def test_what_is_left_out_is_within_the_tolerance_what_is_proven_and_what_is_cla
 
 def cost(motion: Motion) -> float:
     """Of a chain in orders: what a segment costs beside its orders counts as SEGMENT of these."""
-    return motion.work.segments * taylor.SEGMENT + motion.work.series_orders
+    return motion.work.segments * step_rule.SEGMENT + motion.work.series_orders
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_a_coarser_tolerance_is_kept_without_waste_and_costs_less(name: str) -> 
     costs = [cost(motion) for motion in motions]
     # Orders are whole numbers and a motion is a whole number of segments: one more or less of either a step.
     for coarse, fine in pairwise(costs):
-        assert coarse <= fine + taylor.SEGMENT + taylor.MOST
+        assert coarse <= fine + step_rule.SEGMENT + step_rule.MOST
     # Of as many segments the orders alone are fewer: (25 + 26) / (25 + 40).
     assert costs[0] <= 0.8 * costs[-1]
     assert motions[0].work.factorisations <= motions[-1].work.factorisations

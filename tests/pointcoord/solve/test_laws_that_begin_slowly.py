@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from pointcoord import Motion, Scene, simulate
 from pointcoord.bounds.solved_coordinates import Summed
-from pointcoord.solve.taylor import last_magnitudes
+from pointcoord.solve.step_rule import last_magnitudes
 
 SLOW = {
     "t^3": [0.0, 0.0, 1.0],
