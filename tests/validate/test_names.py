@@ -64,7 +64,7 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
         "paper.py": {"wheel_centre"},
         "sweep.py": {"wheel_centre"},
         "written_scene.py": {"wheel_centre"},
-        "importing.py": {"wheel_centre", "camber", "toe", "axle"},
+        "one_wheel.py": {"wheel_centre", "camber", "toe", "axle"},
         "hardpoints.py": {"camber", "toe"},
         "mjcf_mechanism.py": {"knuckle", "travel", "wheel_travel"},
         "motion.py": {"wheel_centre"},

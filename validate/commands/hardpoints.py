@@ -11,15 +11,8 @@ from validate.commands.usage import TOML, Command, require_results, to_be_filled
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.format import formats
-from validate.hardpoint_files.importing import (
-    NAMED,
-    PARTS,
-    SIDES,
-    Choices,
-    Imported,
-    import_hardpoints,
-    names_of,
-)
+from validate.hardpoint_files.importing import Imported, import_hardpoints, names_of
+from validate.hardpoint_files.one_wheel import NAMED, PARTS, SIDES, Choices
 from validate.output.console import Console
 from validate.plain_text import shown, some_of
 from validate.tables.units import LENGTHS

@@ -7,9 +7,7 @@ rounded.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,23 +16,15 @@ from validate.errors import UsageError
 from validate.hardpoint_files.contents import Place
 from validate.tables.units import LENGTHS
 
-# Which of the scene's coordinates a direction is, and its sign there.
 DIRECTIONS = {
-    "rearward": (0, 1),
-    "forward": (0, -1),
-    "right": (1, 1),
-    "left": (1, -1),
-    "up": (2, 1),
-    "down": (2, -1),
+    "rearward": (1, 0, 0),
+    "forward": (-1, 0, 0),
+    "right": (0, 1, 0),
+    "left": (0, -1, 0),
+    "up": (0, 0, 1),
+    "down": (0, 0, -1),
 }
-
-
-def vector_along(word: str) -> NDArray[np.float64]:
-    """A direction by its name in the scene's axes, (3,)."""
-    at, sign = DIRECTIONS[word]
-    return np.asarray(sign * np.eye(3)[at])
-
-
+"""In the scene's axes."""
 ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".join(DIRECTIONS)
 
 
@@ -45,16 +35,16 @@ class Axes:
     directions: tuple[str, ...]
 
     @classmethod
-    def of(cls, words: str | Sequence[str]) -> Axes:
+    def of(cls, words: str) -> Axes:
         """Axes from their words.
 
         Raises:
             UsageError: they are not three directions at right angles.
         """
-        found = re.findall(r"[^\s,;]+", words.lower()) if isinstance(words, str) else list(words)
-        if sorted(DIRECTIONS.get(word, (-1, 0))[0] for word in found) != [0, 1, 2]:
-            text = words if isinstance(words, str) else ",".join(found)
-            raise UsageError(f"axes are {text!r}; allowed: {ALLOWED}; each line of the car once")
+        found = re.findall(r"[^\s,;]+", words.lower())
+        ways = [DIRECTIONS.get(word, (0, 0, 0)) for word in found]
+        if len(ways) != 3 or not np.linalg.det(ways):
+            raise UsageError(f"axes are {words!r}; allowed: {ALLOWED}; each line of the car once")
         return cls(tuple(found))
 
     @property
@@ -73,17 +63,14 @@ class Axes:
         return bool(np.linalg.det(self.matrix) > 0.0)
 
     @property
-    def matrix(self) -> NDArray[np.float64]:
+    def matrix(self) -> NDArray[np.int_]:
         """The scene's coordinates from the file's, (3, 3)."""
-        return np.stack([vector_along(word) for word in self.directions], axis=1)
+        return np.array([DIRECTIONS[word] for word in self.directions]).T
 
     def to_scene(self, place: Place, unit: str) -> Place:
         """A place in the file's axes and unit as x rearward, y right, z up, mm."""
-        turned = [Decimal(0)] * 3
-        for word, number in zip(self.directions, place, strict=True):
-            at, sign = DIRECTIONS[word]
-            turned[at] = number * sign * LENGTHS[unit] + 0
-        return turned[0], turned[1], turned[2]
+        x, y, z = self.matrix.astype(object) @ place * LENGTHS[unit] + 0
+        return x, y, z
 
 
 OUR_AXES = Axes(("rearward", "right", "up"))

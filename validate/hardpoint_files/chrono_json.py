@@ -1,6 +1,7 @@
 """A suspension of Project Chrono, or a vehicle that names some: JSON, with comments as Chrono allows them.
 
-A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`.
+A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`. It is
+one of the left wheel, whatever its sign says.
 A vehicle names the files of its suspensions from Chrono's folder of data, and puts each suspension at a
 place of its chassis (WheeledVehicle.cpp). What steers an axle is not read: here it is a straight rack.
 """
@@ -10,7 +11,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import Decimal, DecimalException
 from math import cos, radians, sin
 from pathlib import Path
@@ -38,75 +39,6 @@ STEERED = "the tie rod's inner end runs along a straight rack across the car, wh
 _COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*[\s\S]*?\*/')
 
 
-@dataclass(frozen=True)
-class _Json:
-    """A file, and what it holds."""
-
-    source: str
-    data: Mapping[str, Any]
-
-    @classmethod
-    def of(cls, text: str, source: str) -> _Json:
-        """A file of such a text.
-
-        Raises:
-            FileError: it is no JSON, or no table.
-        """
-        # Comments leave the line breaks in them.
-        clean = _COMMENT.sub(lambda f: f[0] if f[0][0] == '"' else "\n" * f[0].count("\n") + " ", text)
-        try:
-            data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=Decimal)
-        except (ValueError, RecursionError, DecimalException) as error:
-            line = getattr(error, "lineno", 0)
-            raise FileError(source, line, f"is no JSON: {getattr(error, 'msg', error)}", FORM) from None
-        if not isinstance(data, dict):
-            raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
-        return cls(source, data)
-
-    @property
-    def kind(self) -> str:
-        """Its type and template, in words."""
-        kind, template = (short(str(self.data.get(key))) for key in ("Type", "Template"))
-        return f"is a file of Chrono's of Type {kind} and Template {template}"
-
-    @property
-    def is_suspension(self) -> bool:
-        """Whether it is a suspension of some kind."""
-        return self.data.get("Type") == "Suspension" and bool(self.data.get("Template"))
-
-    def refuse(self, told: str, allowed: str) -> FileError:
-        return FileError(self.source, 0, told, allowed)
-
-    def named(self, name: object) -> _Json:
-        """The suspension that it names, from the nearest folder above it that has a file of that name."""
-        if not isinstance(name, str):
-            raise self.refuse(f"has no {SUSPENSION} of an axle", "the name of a file")
-        paths = (folder / name for folder in Path(self.source).absolute().parents)
-        path = next((path for path in paths if path.is_file()), None)
-        if path is None:
-            told = f"names {short(name)}, which is in none of the folders above it"
-            allowed = "a vehicle in Chrono's folder of data with the files that it names"
-            raise self.refuse(told, f"{allowed}, or a suspension's own file")
-        data = read_file(path, f"the path of a file that {self.source} names")
-        found = _Json.of(data.decode("utf-8-sig", "replace"), str(path))
-        if not found.is_suspension:
-            raise found.refuse(f"{found.kind}, and {self.source} has it as a suspension", KINDS)
-        return found
-
-    def place(self, value: object, name: str) -> Place:
-        """Three coordinates."""
-        if not isinstance(value, list):
-            raise self.refuse(f"{short(name)} has {short(str(value))}", "a list of three numbers")
-        return place_of(value, self.source, 0, name)
-
-    def angle(self, key: str) -> float:
-        """An angle at a key, rad; 0 if it is not there."""
-        value = number_of(self.data.get(key, 0), self.source, 0, key)
-        if not abs(value) < 90:
-            raise self.refuse(f"{key} is {value}", "an angle below 90 deg")
-        return radians(float(value))
-
-
 def read(text: str, source: str) -> Contents:
     """The points of a suspension, or of those that a vehicle names, and where their spin axes point.
 
@@ -115,51 +47,106 @@ def read(text: str, source: str) -> Contents:
             file that is not there.
         SceneError: a file that it names cannot be read.
     """
-    file = _Json.of(text, source)
-    if not file.is_suspension:
-        return _vehicle(file)
-    framed = "points are in the frame of the suspension, which the car's own file puts somewhere"
-    points, axle = _suspension(file, framed)
-    return Contents(tuple(points), {"": axle})
+    data = _table(text, source)
+    if _is_suspension(data):
+        framed = "points are in the frame of the suspension, which the car's own file puts somewhere"
+        points, axle = _suspension(data, source, framed)
+        return Contents(tuple(points), {"": axle})
+    if data.get("Type") == "Vehicle" and isinstance(data.get(AXLES), list):
+        return _vehicle(data[AXLES], source)
+    raise FileError(source, 0, _kind(data), KINDS)
 
 
-def _suspension(file: _Json, note: str) -> tuple[list[FilePoint], Axle]:
+def _table(text: str, source: str) -> Mapping[str, Any]:
+    """A table in JSON, its numbers with their digits.
+
+    Raises:
+        FileError: it is none.
+    """
+    # Comments leave the line breaks in them.
+    clean = _COMMENT.sub(lambda f: f[0] if f[0][0] == '"' else "\n" * f[0].count("\n") + " ", text)
+    try:
+        data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=Decimal)
+    except (ValueError, RecursionError, DecimalException) as error:
+        line = getattr(error, "lineno", 0)
+        raise FileError(source, line, f"is no JSON: {getattr(error, 'msg', error)}", FORM) from None
+    if not isinstance(data, dict):
+        raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
+    return data
+
+
+def _kind(data: Mapping[str, Any]) -> str:
+    """The type and template of a file, in words."""
+    kind, template = (short(str(data.get(key))) for key in ("Type", "Template"))
+    return f"is a file of Chrono's of Type {kind} and Template {template}"
+
+
+def _is_suspension(data: Mapping[str, Any]) -> bool:
+    return data.get("Type") == "Suspension" and bool(data.get("Template"))
+
+
+def _suspension(data: Mapping[str, Any], source: str, note: str) -> tuple[list[FilePoint], Axle]:
     """The points of a suspension, and its spin axis."""
     points = [
-        FilePoint(f"{part}: {key}", file.place(value, f"{part}: {key}"))
-        for part, keys in file.data.items()
+        FilePoint(f"{part}: {key}", _place(value, source, f"{part}: {key}"), side="left")
+        for part, keys in data.items()
         if isinstance(keys, dict)
         for key, value in keys.items()
         if key == "COM" or key.startswith("Location")
     ]
-    camber, toe = (file.angle(key) for key in (CAMBER, TOE))
+    angles = {key: number_of(data.get(key, 0), source, 0, key) for key in (CAMBER, TOE)}
+    for key, value in angles.items():
+        if not abs(value) < 90:
+            raise FileError(source, 0, f"{key} is {value}", "an angle below 90 deg")
+    camber, toe = (radians(float(value)) for value in angles.values())
     # The left spindle's own y axis: R_z(-toe) R_x(-camber) e_y in Chrono's axes (ChDoubleWishbone.cpp).
     axis = (sin(toe) * cos(camber), cos(toe) * cos(camber), -sin(camber))
-    taken = " and ".join(f"{key} {file.data.get(key, 'not given, which is 0')}" for key in (CAMBER, TOE))
-    return points, Axle(str(file.data["Template"]), {}, SpinAxis(axis, taken), (note, STEERED))
+    taken = " and ".join(f"{key} {data.get(key, 'not given, which is 0')}" for key in angles)
+    return points, Axle(str(data["Template"]), {}, SpinAxis(axis, taken), (note, STEERED))
 
 
-def _vehicle(file: _Json) -> Contents:
+def _vehicle(axles: Sequence[Any], source: str) -> Contents:
     """The suspensions of a vehicle, each in the frame of its chassis, by axle."""
-    axles = file.data.get(AXLES)
-    if file.data.get("Type") != "Vehicle" or not isinstance(axles, list):
-        raise file.refuse(file.kind, KINDS)
     if not axles or not all(isinstance(axle, dict) for axle in axles):
-        raise file.refuse(f"has no {AXLES}", f"one with {SUSPENSION} each")
-    places = [file.place(axle.get(PLACE), f"{PLACE} of axle {i}") for i, axle in enumerate(axles, 1)]
+        raise FileError(source, 0, f"has no {AXLES}", f"one with {SUSPENSION} each")
+    places = [_place(axle.get(PLACE), source, f"{PLACE} of axle {i}") for i, axle in enumerate(axles, 1)]
     points: list[FilePoint] = []
     read: dict[str, Axle] = {}
     for label, axle, place in zip(_labels(places), axles, places, strict=True):
         if place[1]:
             told = f"{PLACE} of its {label} axle has y {place[1]}, beside the middle of the car"
-            raise file.refuse(told, "y 0")
-        own = file.named(axle.get(SUSPENSION))
+            raise FileError(source, 0, told, "y 0")
+        data, path = _named(axle.get(SUSPENSION), source)
         into = f"moved by its {PLACE} {[float(n) for n in place]} m into the frame of the chassis"
-        theirs, read[label] = _suspension(own, f"points are those of {own.source}, {into}")
+        theirs, read[label] = _suspension(data, path, f"points are those of {path}, {into}")
         for point in theirs:
             x, y, z = (a + b for a, b in zip(point.place, place, strict=True))
             points.append(replace(point, part=label, place=(x, y, z)))
     return Contents(tuple(points), read)
+
+
+def _named(name: object, source: str) -> tuple[Mapping[str, Any], str]:
+    """The suspension that a vehicle names, from the nearest folder above it that has such a file."""
+    if not isinstance(name, str):
+        raise FileError(source, 0, f"has no {SUSPENSION} of an axle", "the name of a file")
+    paths = (folder / name for folder in Path(source).absolute().parents)
+    path = next((path for path in paths if path.is_file()), None)
+    if path is None:
+        told = f"names {short(name)}, which is in none of the folders above it"
+        allowed = "a vehicle in Chrono's folder of data with the files that it names"
+        raise FileError(source, 0, told, f"{allowed}, or a suspension's own file")
+    text = read_file(path, f"the path of a file that {source} names").decode("utf-8-sig", "replace")
+    data = _table(text, str(path))
+    if not _is_suspension(data):
+        raise FileError(str(path), 0, f"{_kind(data)}, and {source} has it as a suspension", KINDS)
+    return data, str(path)
+
+
+def _place(value: object, source: str, name: str) -> Place:
+    """Three coordinates."""
+    if not isinstance(value, list):
+        raise FileError(source, 0, f"{short(name)} has {short(str(value))}", "a list of three numbers")
+    return place_of(value, source, 0, name)
 
 
 def _labels(places: Sequence[Place]) -> list[str]:
@@ -167,6 +154,5 @@ def _labels(places: Sequence[Place]) -> list[str]:
     if len(places) == 1:
         return [""]
     if len(places) == 2 and places[0][0] != places[1][0]:
-        ahead = places[0][0] > places[1][0]
-        return ["front", "rear"] if ahead else ["rear", "front"]
+        return ["front", "rear"] if places[0][0] > places[1][0] else ["rear", "front"]
     return [str(number) for number, _ in enumerate(places, 1)]

@@ -27,7 +27,6 @@ class FilePoint:
         line: where it is, counted from 1; 0 where a file has no lines to speak of.
         side: the wheel that the file says it belongs to, left or right; empty if it does not say.
         part: the axle that the file says it belongs to, front or rear; empty if it does not say.
-        corner: the plain words in a column of corners; empty if there is none.
         section: the heading that it stands under; empty if there is none.
     """
 
@@ -36,7 +35,6 @@ class FilePoint:
     line: int = 0
     side: str = ""
     part: str = ""
-    corner: str = ""
     section: str = ""
 
     def of(self, part: str, side: str) -> bool:

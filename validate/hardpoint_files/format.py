@@ -40,7 +40,6 @@ class Format(BaseModel):
         known_by: a pattern by which the beginning of a file shows it; empty fits every file.
         axes: of a file, by a pattern of names that tell them; empty if every file has them.
         unit: of a file that does not say.
-        side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
         angles: for our names, a pattern of its own words for a static angle.
         names: what it calls our points in every suspension that has them.
         suspensions: the same by our type of suspension. called: our type, by a pattern of its own words for
@@ -61,7 +60,6 @@ class Format(BaseModel):
     called: dict[str, str] = {}
     notes: dict[str, str] = {}
     names: dict[str, tuple[str, ...]] = {}
-    side: str = ""
     angles: dict[str, str] = {}
     titles: dict[str, tuple[str, ...]] = {}
     wheels: dict[str, tuple[str, str]] = {}

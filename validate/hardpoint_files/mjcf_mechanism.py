@@ -8,16 +8,17 @@
     three slides and a ball joint
 
 A body of one point is that point, and one that two ball joints hold is a rod. A body that holds nothing but
-one other body hands its joints on to it; between two joints of one body there is a body more. Points are the
-sites; where a joint has none, one is made.
+one other body stands between that one's joints and its own; there is such a body between two joints of one
+body too. Points are the sites; where a joint has none, one is made.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -25,10 +26,13 @@ from numpy.typing import NDArray
 
 from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import PAIR_ROLES, ROLES
-from validate.hardpoint_files.axes import DIRECTIONS, vector_along
-from validate.hardpoint_files.mjcf import WORLD, Connect, Mjcf, MjcfJoint
+from validate.hardpoint_files.axes import DIRECTIONS
+from validate.hardpoint_files.contents import Place
+from validate.hardpoint_files.mjcf import Equality, HomePose
+from validate.hardpoint_files.written_scene import Drawing, ScenePoint
 from validate.spanning_tree.cut import across
 from validate.tables.errors import FileError
+from validate.tables.units import LENGTHS
 
 Array = NDArray[np.float64]
 
@@ -36,6 +40,8 @@ Array = NDArray[np.float64]
 NEAR = 1e-5
 # Of the model's size: how far from a joint's first point its second one is made.
 ARM = 0.125
+# Of a metre: a tenth of what rounding leaves of a car's coordinates, so that 0.57 m is 570 mm.
+DIGITS = 15
 TRAVEL = "wheel_travel"
 
 
@@ -49,39 +55,40 @@ class _Point:
 
 
 @dataclass(frozen=True)
-class MjcfMechanism:
-    """A mechanism of a model.
-
-    Attributes:
-        points: by name, where each is, (3,), m, and what it comes from.
-        tables: of a mechanism file. side: of the wheel. facts: what is not as in the model.
+class _Joint:
+    """A joint: the body that it carries and the one that it is on, where it is, (3,), m, and along or about
+    which unit vector, (3,).
     """
 
-    points: Mapping[str, tuple[Array, str]]
-    tables: Mapping[str, Mapping[str, Any]]
-    side: str
-    facts: tuple[str, ...]
+    name: str
+    kind: str
+    body: str
+    parent: str
+    at: Array
+    axis: Array
+
+    @property
+    def source(self) -> str:
+        return f"joint {self.name}"
 
 
-def mechanism_of(model: Mjcf, source: str) -> MjcfMechanism:
-    """The mechanism of a model.
+def drawing_of(pose: HomePose) -> Drawing:
+    """What a model draws: a mechanism of its own.
 
     Raises:
         FileError: two sites that must meet are apart in the home pose.
     """
-    return _Builder(model, source).mechanism()
+    return _Builder(pose).drawing()
 
 
 class _Builder:
     """A mechanism while it is made."""
 
-    def __init__(self, model: Mjcf, source: str) -> None:
-        self.model, self.source = model, source
-        places = [at for _, at in model.sites.values()]
-        places += [joint.at for body in model.bodies.values() for joint in body.joints]
-        places += [at for connect in model.connects for at in connect.places]
+    def __init__(self, pose: HomePose) -> None:
+        self.pose = pose
+        places = [*pose.sites, *pose.anchors, *(at for one in pose.connects for at in one.places)]
         self.size = float(np.ptp(places, axis=0).max()) or 1.0 if places else 1.0
-        self.facts = list(model.ignored)
+        self.facts = [*pose.ignored()]
         self.names: set[str] = {CHASSIS}
         self.points: dict[str, _Point] = {}
         self.slides: dict[str, dict[str, Any]] = {}
@@ -90,14 +97,14 @@ class _Builder:
         self.on_axes: set[str] = set()
         self.bodies = self._merged()
 
-    def _merged(self) -> dict[str, str]:
-        """By name of a body in the model, that of ours: without a joint, or welded, several are one."""
-        found: dict[str, str] = {WORLD: CHASSIS}
-        for body in self.model.bodies.values():
-            found[body.name] = self._named(body.name) if body.joints else found[body.parent]
-        for one, other in self.model.welds:
-            kept, gone = sorted((found[one], found[other]), key=lambda name: name != CHASSIS)
-            found = {name: kept if own == gone else own for name, own in found.items()}
+    def _merged(self) -> list[str]:
+        """By number of a body in the model, our name: without a joint, or welded, several are one."""
+        pose, found = self.pose, list[str]([CHASSIS])
+        for body, joints in enumerate(pose.joints[1:], 1):
+            found.append(self._named(pose.name("body", body)) if joints else found[pose.parents[body]])
+        for weld in pose.welds:
+            kept, gone = sorted((found[body] for body in weld.bodies), key=lambda name: name != CHASSIS)
+            found = [kept if own == gone else own for own in found]
         return found
 
     def _named(self, wish: str) -> str:
@@ -108,54 +115,79 @@ class _Builder:
         self.names.add(name)
         return name
 
-    def mechanism(self) -> MjcfMechanism:
-        model = self.model
-        closing = {end for connect in model.connects for end in connect.sites}
-        for name, (body, at) in model.sites.items():
-            if name not in closing:
+    def drawing(self) -> Drawing:
+        pose = self.pose
+        closing = {site for connect in pose.connects for site in connect.sites}
+        for site, (body, at) in enumerate(zip(pose.site_bodies, pose.sites, strict=True)):
+            if site not in closing:
+                name = pose.name("site", site)
                 self._made(name, at, {self.bodies[body]}, f"site {name}")
-        chains = [one for one in self._chains() if one[0] != one[1]]
-        for body, parent, joint in chains:
+        joints = [joint for joint in self._joints() if joint.body != joint.parent]
+        for joint in joints:
             if joint.kind == "hinge":
-                self._hinge(joint, body, parent)
+                self._hinge(joint)
             elif joint.kind == "ball":
-                self._shared(joint.name, joint.at, {body, parent}, f"joint {joint.name}")
-        for connect in model.connects:
+                self._shared(joint.name, joint.at, {joint.body, joint.parent}, joint.source)
+        for connect in pose.connects:
             self._connect(connect)
         # Last what slides: whether a body is more than a point shows by then.
-        for body, parent, joint in chains:
+        for joint in joints:
             if joint.kind == "slide":
-                self._slide(joint, body, parent)
+                self._slide(joint)
         return self._tables()
 
-    def _chains(self) -> list[tuple[str, str, MjcfJoint]]:
-        """Every joint with the body that it carries and the one that it is on."""
-        model, found, handed = self.model, [], dict[str, tuple[str, tuple[tuple[str, MjcfJoint], ...]]]()
-        children = Counter(body.parent for body in model.bodies.values())
-        used = {body for body, _ in model.sites.values()}
-        used |= {body for connect in model.connects for body in connect.bodies}
-        used |= {body for pair in model.welds for body in pair}
-        for body in model.bodies.values():
-            parent, before = handed.get(body.parent, (body.parent, ()))
-            between = [self._named(f"{body.name} {joint.name}") for joint in body.joints[:-1]]
-            chain = (*before, *zip((*between, self.bodies[body.name]), body.joints, strict=False))
-            if body.name not in used and children[body.name] == 1:
-                handed[body.name] = parent, chain
-            elif body.name not in used and body.name not in children:
-                # Such as a wheel that spins.
-                self.facts.append(f"body {body.name} holds no site, body or loop, and is left out")
-            elif not _is_free([joint for _, joint in chain]):
-                base = self.bodies[parent]
-                for own, joint in chain:
-                    found.append((own, base, joint))
-                    base = own
-        return found
+    def _joints(self) -> Iterator[_Joint]:
+        """The joints of bodies that are not free; between two joints of one body there is a body more."""
+        pose = self.pose
+        for parent, chain in self._chains():
+            if self._is_free([joint for _, joint in chain]):
+                continue
+            base = self.bodies[parent]
+            for body, joint in chain:
+                name, at, axis = pose.name("joint", joint), pose.anchors[joint], pose.axes[joint]
+                is_last = joint == pose.joints[body][-1]
+                carried = self.bodies[body] if is_last else self._named(f"{pose.name('body', body)} {name}")
+                yield _Joint(name, pose.kinds[joint], carried, base, at, axis)
+                base = carried
+
+    def _chains(self) -> Iterator[tuple[int, list[tuple[int, int]]]]:
+        """For each body that holds something, the next such body above it, and the joints from there down,
+        each with the body that it is of.
+
+        A body that holds nothing, such as a wheel that spins, is left out.
+        """
+        pose = self.pose
+        holding = {0, *pose.site_bodies}
+        holding |= {body for equality in (*pose.connects, *pose.welds) for body in equality.bodies}
+        needed = set(holding)
+        for body in reversed(range(1, len(pose.parents))):
+            needed |= {pose.parents[body]} if body in needed else set()
+        children = Counter(pose.parents[body] for body in needed if body)
+        # One that holds nothing but one other body is on the way to that one.
+        ends = {body for body in needed if body in holding or children[body] > 1}
+        for body, parent in enumerate(pose.parents):
+            if body not in needed:
+                self.facts.append(f"body {pose.name('body', body)} holds no site or loop, and is left out")
+            elif body in ends:
+                chain = [(body, joint) for joint in pose.joints[body]]
+                while parent not in ends:
+                    chain = [*((parent, joint) for joint in pose.joints[parent]), *chain]
+                    parent = pose.parents[parent]
+                yield parent, chain
+
+    def _is_free(self, joints: Sequence[int]) -> bool:
+        """Whether joints leave a body all of its six freedoms."""
+        kinds = {joint: self.pose.kinds[joint] for joint in joints}
+        if sorted(kinds.values()) != ["ball", "slide", "slide", "slide"]:
+            return [*kinds.values()] == ["free"]
+        axes = self.pose.axes[[joint for joint, kind in kinds.items() if kind == "slide"]]
+        return bool(abs(np.linalg.det(axes)) > NEAR)
 
     # Points.
 
     def _made(self, wish: str, at: Array, bodies: set[str], source: str) -> str:
         name = self._named(wish)
-        self.points[name] = _Point(at, bodies, source)
+        self.points[name] = _Point(at, {*bodies}, source)
         return name
 
     def _shared(self, wish: str, at: Array, bodies: set[str], source: str) -> str:
@@ -167,14 +199,22 @@ class _Builder:
                 return name
         return self._made(wish, at, bodies, source)
 
-    def _on(self, joint: MjcfJoint, names: Iterable[str]) -> list[str]:
-        """The first and the last point of these on the axis of a joint; one if there are no two."""
+    def _pair(self, wish: str, joint: _Joint, names: Iterable[str], bodies: set[str]) -> list[str]:
+        """Two points of bodies on the axis of a joint: the farthest of those named, or else new ones."""
         along = {name: float((self.points[name].at - joint.at) @ joint.axis) for name in names}
         lines = {name: joint.at + size * joint.axis for name, size in along.items()}
         near = [n for n, at in lines.items() if np.linalg.norm(self.points[n].at - at) <= NEAR * self.size]
         ends = sorted(near, key=lambda name: along[name])
         far = len(ends) > 1 and along[ends[-1]] - along[ends[0]] > NEAR * self.size
-        return [ends[0], ends[-1]] if far else ends[:1]
+        pair = [ends[0], ends[-1]] if far else ends[:1]
+        for name in pair:
+            self.points[name].bodies |= bodies
+        if not pair:
+            pair = [self._made(wish, joint.at, bodies, joint.source)]
+        if len(pair) < 2:
+            end = self.points[pair[0]].at + ARM * self.size * joint.axis
+            pair.append(self._made(f"{wish}_end", end, bodies, joint.source))
+        return pair
 
     def _of(self, body: str) -> list[str]:
         """A body's points, those of the hinge that carries it in the hinge's order."""
@@ -183,48 +223,38 @@ class _Builder:
 
     # Joints.
 
-    def _hinge(self, joint: MjcfJoint, body: str, parent: str) -> None:
-        source = f"joint {joint.name}"
-        theirs = [n for n, p in self.points.items() if len(p.bodies & {body, parent}) == 1]
-        pair = self._on(joint, theirs)
-        for name in pair:
-            self.points[name].bodies |= {body, parent}
-        if not pair:
-            pair = [self._made(f"{joint.name}_axis", joint.at, {body, parent}, source)]
-        if len(pair) < 2:
-            end = self.points[pair[0]].at + ARM * self.size * joint.axis
-            pair.append(self._made(f"{joint.name}_axis_end", end, {body, parent}, source))
-        self.first[body] = pair
-        self.on_axes |= {body, parent}
-        on = {} if parent == CHASSIS else {"on": parent}
-        if body != CHASSIS:
-            self.inputs[joint.name] = {"angle": body, **on, "from": "drawing"}
+    def _hinge(self, joint: _Joint) -> None:
+        ours = {joint.body, joint.parent}
+        theirs = [name for name, point in self.points.items() if len(point.bodies & ours) == 1]
+        self.first[joint.body] = self._pair(f"{joint.name}_axis", joint, theirs, ours)
+        self.on_axes |= ours
+        on = {} if joint.parent == CHASSIS else {"on": joint.parent}
+        if joint.body != CHASSIS:
+            self.inputs[joint.name] = {"angle": joint.body, **on, "from": "drawing"}
 
-    def _connect(self, connect: Connect) -> None:
+    def _connect(self, connect: Equality) -> None:
         one, other = (self.bodies[body] for body in connect.bodies)
         first, second = connect.places
         apart = float(np.linalg.norm(second - first))
         if apart > NEAR * self.size:
             told = f"joins places that are {1e3 * apart:.4g} mm apart in the home pose"
-            raise FileError(self.source, f"connect {connect.name}", told, "places that meet as drawn")
+            raise FileError(self.pose.path, f"connect {connect.name}", told, "places that meet as drawn")
         if one != other:
             self._shared(connect.name, first, {one, other}, f"connect {connect.name}")
 
-    def _slide(self, joint: MjcfJoint, body: str, parent: str) -> None:
-        source, own = f"joint {joint.name}", self._of(body)
+    def _slide(self, joint: _Joint) -> None:
+        body, parent, own = joint.body, joint.parent, self._of(joint.body)
         is_point = len(own) == 1 and body not in self.on_axes
-        on = own if is_point else self._on(joint, [n for n in own if parent not in self.points[n].bodies])
-        ends = on or [self._made(joint.name, joint.at, {body}, source)]
+        only = [name for name in own if parent not in self.points[name].bodies]
+        ends = own if is_point else self._pair(joint.name, joint, only, {body})
         start, step = self.points[ends[0]].at, ARM * self.size * joint.axis
-        if len(ends) > 1 and self.points[ends[0]].bodies & self.points[ends[1]].bodies - {body}:
+        if not is_point and self.points[ends[0]].bodies & self.points[ends[1]].bodies - {body}:
             # Of a hinge about the line: its two points do not say which of its bodies is kept from turning.
             # A step either way there may be a point that was made already.
-            ends[1] = self._made(f"{joint.name}_end", start - 2.0 * step, {body}, source)
-        if not is_point and len(ends) < 2:
-            ends.append(self._made(f"{joint.name}_end", start + step, {body}, source))
-        words = [word for word in DIRECTIONS if np.array_equal(vector_along(word), joint.axis)]
+            ends[1] = self._made(f"{joint.name}_end", start - 2.0 * step, {body}, joint.source)
+        words = [word for word, way in DIRECTIONS.items() if np.array_equal(way, joint.axis)]
         # Along a direction the travel is 0 as drawn. A line through two points needs these apart.
-        through = self._shared(f"{joint.name}_zero", start if words else start - step, {parent}, source)
+        through = self._shared(f"{joint.name}_zero", start if words else start - step, {parent}, joint.source)
         line = {"body": parent, "through": through, "along": words[0] if words else ends[-1]}
         name = self._named(f"{joint.name}_slide")
         self.on_axes |= {body, parent}
@@ -237,7 +267,7 @@ class _Builder:
 
     # Tables.
 
-    def _tables(self) -> MjcfMechanism:
+    def _tables(self) -> Drawing:
         bodies: dict[str, list[str]] = {CHASSIS: self._of(CHASSIS)}
         rods: dict[str, list[str]] = {}
         for body in dict.fromkeys(body for point in self.points.values() for body in sorted(point.bodies)):
@@ -250,15 +280,14 @@ class _Builder:
                 bodies[body] = [*own, *self._beside(body, own)]
         roles = self._roles(bodies)
         wheel = {TRAVEL: {"height": roles["wheel_axis"][1]}} if "wheel_axis" in roles else {}
-        named = {joint: self.model.actuated.get(joint, joint) for joint in self.inputs}
-        driven = {named[joint]: self.inputs[joint] for joint in self.model.actuated if joint in self.inputs}
-        others = {named[joint]: one for joint, one in self.inputs.items() if named[joint] not in driven}
+        actuated = {joint: name for joint, name in self.pose.actuated.items() if joint in self.inputs}
+        driven = {name: self.inputs[joint] for joint, name in actuated.items()}
+        others = {joint: one for joint, one in self.inputs.items() if joint not in {**actuated, **driven}}
         inputs = {_word(name): one for name, one in {**driven, **wheel, **others}.items()}
-        tables: dict[str, Mapping[str, Any]] = {"bodies": bodies, "rods": rods, "slides": self.slides}
-        tables |= {"inputs": inputs, "roles": roles}
-        points = {name: (point.at, point.source) for name, point in self.points.items()}
-        side = "right" if self.model.texts.get("side") == "right" else "left"
-        return MjcfMechanism(points, tables, side, tuple(self.facts))
+        tables = {"bodies": bodies, "rods": rods, "slides": self.slides, "inputs": inputs, "roles": roles}
+        side = "right" if self.pose.texts.get("side") == "right" else "left"
+        points = [ScenePoint(name, _in_mm(one.at), one.source) for name, one in self.points.items()]
+        return Drawing(self.pose.path, "mechanism", side, tuple(points), tuple(self.facts), tables=tables)
 
     def _beside(self, body: str, own: list[str]) -> list[str]:
         """A point more, of a body whose points lie in one line."""
@@ -275,22 +304,19 @@ class _Builder:
         """Roles that texts of the model name, of bodies and points that are there."""
         found: dict[str, Any] = {}
         for role in ROLES:
-            words = [_word(word) for word in self.model.texts.get(role, "").split()]
+            words = [_word(word) for word in self.pose.texts.get(role, "").split()]
             known = bodies if role == "knuckle" else self.points
             if words and all(word in known for word in words):
                 found[role] = words if role in PAIR_ROLES else words[0]
         return found
 
 
+def _in_mm(at: Array) -> Place:
+    """A place in m as a decimal one, mm."""
+    x, y, z = (Decimal(repr(round(number, DIGITS))) * LENGTHS["m"] for number in at.tolist())
+    return x, y, z
+
+
 def _word(name: str) -> str:
     """A name of letters, digits and underscores."""
     return re.sub(r"\W+", "_", name).strip("_") or "unnamed"
-
-
-def _is_free(joints: Sequence[MjcfJoint]) -> bool:
-    """Whether joints leave a body all of its six freedoms."""
-    kinds = sorted(joint.kind for joint in joints)
-    if kinds != ["ball", "slide", "slide", "slide"]:
-        return kinds == ["free"]
-    axes = np.array([joint.axis for joint in joints if joint.kind == "slide"])
-    return bool(abs(np.linalg.det(axes)) > NEAR)

@@ -8,7 +8,7 @@ that follow.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from validate.hardpoint_files.contents import Contents, FilePoint, place_of, plain, short
@@ -43,13 +43,13 @@ def read(
     source: str,
     titles: Mapping[str, Sequence[str]],
     said: Mapping[str, str | int],
-    corners: Collection[str] = (),
+    wheels: Mapping[str, tuple[str, str]],
 ) -> Contents:
     """The points of a table.
 
     Args:
         titles: what columns are called. said: titles or numbers of the columns that the user means.
-        corners: headings that say which wheel or axle the points below them are of.
+        wheels: side and axle, by what a column of corners or a heading over the points says of them.
     Raises:
         FileError: titles are not as they must be, a point has no name, or there is no point.
     """
@@ -62,23 +62,22 @@ def read(
     columns = _said(rows, said, source) if said else _titled(rows, known, source)
     points, others, section = list[FilePoint](), list[str](), ""
     ahead = (plain(row[0]) for _, row in reversed(rows[: max(columns.row, 0)]))
-    over = next((words for words in ahead if words in corners), "")
+    over = next((words for words in ahead if words in wheels), "")
     for line, row in rows[columns.row + 1 :]:
         name, *cells = (row[at] if at < len(row) else "" for at in (columns.at[key] for key in NEEDED))
         if (not name or is_number(name)) and all(map(is_number, filter(None, row))):
             raise FileError(source, line, "has coordinates without a name", ROW)
         if not all(map(is_number, cells)):
             if not any(cells):
-                section, over = ("", plain(name)) if plain(name) in corners else (name, over)
+                section, over = ("", plain(name)) if plain(name) in wheels else (name, over)
             others += [f"{short(name)} on line {line}"] if name and any(cells) else []
             continue
         if not columns.said and (count := sum(map(is_number, row))) > 3:
             told = f"has {count} numbers for {short(name)}, in columns without a title"
             raise FileError(source, line, told, f"three, {SAY}")
         corner = columns.at.get("corner", len(row))
-        where = plain(row[corner]) if corner < len(row) else over
-        place = place_of(cells, source, line, name)
-        points.append(FilePoint(name, place, line, corner=where, section=section))
+        side, part = wheels.get(plain(row[corner]) if corner < len(row) else over, ("", ""))
+        points.append(FilePoint(name, place_of(cells, source, line, name), line, side, part, section))
     if not points:
         raise FileError(source, 0, "has no points", ROW)
     return Contents(tuple(points), unit=columns.unit, lines=tuple(others))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import floor, isinf
 from pathlib import Path
@@ -13,11 +13,11 @@ from pointcoord.drawing_stands import Standing
 from pointcoord.effects.angle import Angle
 from pointcoord.effects.car_number import BY_TRAVEL
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file
 from pointcoord.mechanism.faults import TableFault
 from pointcoord.mechanism.file import AS_DRAWN, MechanismFile
 from pointcoord.mechanism.inputs import Height
-from pointcoord.mechanism.structure import CLOSING
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
 from validate.toml_written import key_of, value_of
@@ -36,13 +36,11 @@ class ScenePoint:
 
     Attributes:
         name: ours. place: x rearward, y right, z up, mm. source: where it comes from, in words.
-        derived: whether it follows from others and is not in the file.
     """
 
     name: str
     place: Place
     source: str
-    derived: bool = False
 
     @property
     def mirrored(self) -> ScenePoint:
@@ -51,72 +49,79 @@ class ScenePoint:
         return replace(self, place=(x, -y + 0, z))
 
     @property
+    def coordinates(self) -> tuple[float, float, float]:
+        """The same as doubles."""
+        x, y, z = map(float, self.place)
+        return x, y, z
+
+    @property
     def written(self) -> str:
         """Its coordinates as TOML, with the digits they have."""
         numbers = (f"{number.normalize() + 0:f}" for number in self.place)
         return f"[{', '.join(numbers)}]"
 
 
+@dataclass(frozen=True)
+class Drawing:
+    """What a file draws.
+
+    Attributes:
+        source: the file. kind: a shipped mechanism, or what tables are to be called. side: of the wheel.
+        points: of the scene. others: those of the file that are none of ours.
+        facts: what was taken for granted, in words.
+        tables: of a mechanism file, for what is no shipped mechanism.
+    """
+
+    source: str
+    kind: str
+    side: str
+    points: tuple[ScenePoint, ...]
+    facts: tuple[str, ...]
+    others: tuple[FilePoint, ...] = ()
+    tables: Mapping[str, Any] | None = None
+
+
 Laws = Mapping[str, tuple[Mapping[str, Any], str]]
 """Of each input its law as in a scene, and the same for people."""
 
 
-def scene_of(
-    source: str,
-    kind: str,
-    side: str,
-    points: Iterable[ScenePoint],
-    tables: Mapping[str, Any] | None = None,
-) -> Scene:
-    """A scene of points that stands still; its inputs have no meaning yet.
+def scene_of(drawing: Drawing) -> Scene:
+    """A scene of a drawing that stands still; its inputs have no meaning yet.
 
-    Args:
-        kind: a shipped mechanism, or what tables are to be called. tables: of a mechanism file.
     Raises:
         SceneError: the points make no car, or the tables no mechanism.
     """
-    places = {point.name: [float(number) for number in point.place] for point in points}
-    content: dict[str, Any] = {
-        "title": shown(f"{kind} from {Path(source).name}"),
+    kind, places = drawing.kind, {point.name: point.coordinates for point in drawing.points}
+    try:
+        file = mechanism_file(kind) if drawing.tables is None else MechanismFile.of(drawing.tables, kind)
+        driven = driven_inputs(file, file.topology(points=places))
+    except TableFault as fault:
+        raise fault.of_file(drawing.source) from None
+    content = {
+        "title": shown(f"{kind} from {Path(drawing.source).name}"),
         "tolerance": TOLERANCE,
-        "mechanism": {**(tables or {"type": kind}), "side": side, "points": places},
-        "inputs": {},
+        "mechanism": {**(drawing.tables or {"type": kind}), "side": drawing.side, "points": places},
+        "inputs": {name: {"constant": 1.0} for name in driven},
         "time": {"start": 0.0, "stop": 0.0, "samples": 1},
     }
-    driven = driven_inputs(source, kind, tables, places)
-    content["inputs"] = {name: {"constant": 1.0} for name in driven}
-    scene = Scene.from_mapping(content, source)
+    scene = Scene.from_mapping(content, drawing.source)
     # Angles of lines, rates and accelerations; a table seldom says the wheel's radius, or has a damper.
-    had = [EFFECTS[effect] for effect in scene.mechanism.effects]
     plain = [
-        e
-        for e in had
-        if e.derivative <= 2 and all(isinstance(number, Angle) for number in getattr(e, "numbers", ()))
+        effect
+        for effect in map(EFFECTS.__getitem__, scene.mechanism.effects)
+        if effect.derivative <= 2 and all(isinstance(one, Angle) for one in getattr(effect, "numbers", ()))
     ]
     parts = {e.name for e in plain for o in plain if e.own_names and {*e.own_names} < {*o.own_names}}
     return scene.model_copy(update={"effects": [e.name for e in plain if e.name not in parts]})
 
 
-def driven_inputs(
-    source: str, kind: str, tables: Mapping[str, Any] | None, places: Mapping[str, Sequence[float]]
-) -> tuple[str, ...]:
-    """The first inputs that hold every freedom, with the travel of the wheel for what moves it."""
-    drawn = None if tables is None else {name: (x, y, z) for name, (x, y, z) in places.items()}
-    try:
-        file = mechanism_file(kind) if tables is None else MechanismFile.of(tables, kind)
-        topology = file.topology(points=drawn)
-        others = topology.driven_along(BY_TRAVEL)
-        heights = {
-            one.height: name
-            for name, one in file.structures[AS_DRAWN].inputs.items()
-            if isinstance(one, Height)
-        }
-        if len(others) != 1 or topology.wheel_centre not in heights:
-            return topology.required_inputs
-        travel = heights[topology.wheel_centre]
-        return tuple(travel if name in others else name for name in topology.required_inputs)
-    except TableFault as fault:
-        raise fault.of_file(source) from None
+def driven_inputs(file: MechanismFile, topology: Topology) -> tuple[str, ...]:
+    """The inputs that hold every freedom, with the travel of the wheel for what moves it."""
+    drawn, moving = file.structures[AS_DRAWN].inputs, topology.driven_along(BY_TRAVEL)
+    travel = {one.height: name for name, one in drawn.items() if isinstance(one, Height)}
+    if len(moving) != 1 or topology.wheel_centre not in travel:
+        return topology.required_inputs
+    return tuple(travel[topology.wheel_centre] if n in moving else n for n in topology.required_inputs)
 
 
 def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
@@ -144,42 +149,28 @@ def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
     return laws, Scene.from_mapping(content, drawn.title)
 
 
-def scene_text(
-    source: str,
-    format_words: str,
-    drawn: Scene,
-    points: Iterable[ScenePoint],
-    laws: Laws,
-    facts: Sequence[str],
-    others: Sequence[FilePoint],
-) -> str:
+def scene_text(drawing: Drawing, drawn: Scene, laws: Laws, format_words: str) -> str:
     """The scene as a file; a mechanism that is not a shipped one stands in it."""
-    part = drawn.mechanism
-    tables = {} if part.type else {name: getattr(part, name) for name in CLOSING if getattr(part, name)}
-    rows = [(point.name, point.written, point.source) for point in points]
+    tables = drawing.tables or {}
+    rows = [(point.name, point.written, point.source) for point in drawing.points]
     first, second = (max(len(row[i]) for row in rows) for i in (0, 1))
     lines = [
-        f"# Imported from {shown(Path(source).name)}, a {format_words}.",
-        *(f"# {shown(fact)}." for fact in facts),
+        f"# Imported from {shown(Path(drawing.source).name)}, a {format_words}.",
+        *(f"# {shown(fact)}." for fact in drawing.facts),
         f"title = {value_of(drawn.title)}",
         f"effects = {value_of(drawn.effects)}",
         f"tolerance = {drawn.tolerance:g}",
         *("", "[mechanism]"),
-        *([f"type = {value_of(part.type)}"] if part.type else []),
-        f"side = {value_of(part.side)}",
+        *([] if tables else [f"type = {value_of(drawing.kind)}"]),
+        f"side = {value_of(drawing.side)}",
         *("", "[mechanism.points]    # mm"),
         *(f"{name.ljust(first)} = {place.ljust(second)}    # {shown(words)}" for name, place, words in rows),
-        *(f"# not used: {shown(point.source)}" for point in others),
+        *(f"# not used: {shown(point.source)}" for point in drawing.others),
     ]
     for name, table in tables.items():
-        lines += [
-            "",
-            f"[mechanism.{name}]",
-            *(f"{key_of(key)} = {value_of(one)}" for key, one in table.items()),
-        ]
-    lines += [
-        "",
-        "[inputs]",
-        *(f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()),
-    ]
+        if table:
+            lines += ["", f"[mechanism.{name}]"]
+            lines += [f"{key_of(key)} = {value_of(one)}" for key, one in table.items()]
+    lines += ["", "[inputs]"]
+    lines += [f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()]
     return "\n".join(lines) + "\n"

@@ -72,9 +72,12 @@ def test_a_strut_of_chrono_has_its_axis_and_the_angles_that_it_says(
     part = found.scene.mechanism
     assert (part.type, part.side) == ("macpherson", "left")
     derived = {"strut_rod_end", "wheel_axis_inner"}
-    assert {point.name for point in found.points if point.derived} == derived
+    assert {point.name for point in found.points if point.source.startswith("from ")} == derived
     for name in {*points} - derived - {"rack_centre"}:
         assert part.points[name] == points[name], name
+    # Anywhere on the strut's line will do, and halfway is far from both ends.
+    both = np.add(part.points["strut_top"], part.points["strut_lower"])
+    assert np.array_equal(2.0 * np.array(part.points["strut_rod_end"]), both)
     # The spindle's y axis after Chrono's turns, by matrices: about x by -camber, then about z by -toe.
     c, t = radians(float(camber or 0)), radians(float(toe or 0))
     about_x = np.array([[1, 0, 0], [0, cos(c), sin(c)], [0, -sin(c), cos(c)]])
@@ -172,10 +175,12 @@ def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_know
     parts = ("lacks tie_rod_inner", "wheel_centre", "'CHAS_TiePnt'", "'Rack End' on line", "'Hub' on line")
     assert [part for part in parts if part not in str(caught.value)] == []
     names = tmp_path / "names.toml"
-    names.write_text('[names]\ntie_rod_inner = "rack end"\nwheel_centre = [0, -718.0, 210]\n')
+    # What is given goes before what the file has by a name that is known.
+    given = "wheel_centre = [0, -718.0, 210]\nlower_arm_rear = [-90, -257, 78]\n"
+    names.write_text(f'[names]\ntie_rod_inner = "rack end"\n{given}')
     found = imported(tmp_path, text, names=str(names))
     assert drawn(found) == CAR
-    assert [point.name for point in found.others] == ["Hub", "NSMA_PPAttPnt"]
+    assert [point.name for point in found.others] == ["CHAS_LowAft", "Hub", "NSMA_PPAttPnt"]
 
 
 @pytest.mark.parametrize(
@@ -212,7 +217,7 @@ NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle"
         ),
         (table(), {"side": "left"}, "a left wheel by --side, but wheel_centre lies"),
         (table(ending=" FL"), {}, "a left wheel by the file"),
-        (chrono("double_wishbone", MIRRORED, 1), {}, "a left wheel by its format"),
+        (chrono("double_wishbone", MIRRORED, 1), {}, "a left wheel by the file"),
         (table(ASIDE), {}, "--side right if y is not counted from the middle"),
         (lotus_report(), {"part": "rear"}, "has no points of axle rear"),
         (NO_SPINDLE, {}, "lacks wheel_axis_inner.* --camber and --toe will do"),
@@ -233,6 +238,16 @@ NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle"
         (table() + "CHAS_LowAft,1,2,3\n", {}, "line 13: has lower_arm_rear twice, 'CHAS_LowAft' on line 3"),
         (table(titles="Point,X,Y\n"), {}, "line 1: has no columns of z"),
         (table(titles="Point,X (m),Y (mm),Z (m)\n"), {}, "line 1: says units .'m', 'mm'."),
+        ("A,1,2,3,4,5,6", {}, "has 6 numbers for 'A'"),
+        (
+            table(titles="Punkt,Hoch,Quer,Laengs\n"),
+            {},
+            "line 1: has titles that are not known: 'Punkt, Hoch, Quer, Laengs'",
+        ),
+        ("Point Hoch Quer Laengs\nA 1 2 3", {}, "line 1: .* not known: 'Point Hoch Quer Laengs'"),
+        ("Point,X,Y,Z,X,Y,Z\nA,1,2,3,4,5,6", {}, "line 1: has 2 columns of x"),
+        ("-3.5,529,122.84\n-45,190,129.9", {}, "line 1: has coordinates without a name"),
+        ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", {}, "line 3: has numbers with points and with commas"),
         ("", {}, "has no points"),
         ("PK\x03\x04\x00\x00", {}, "is no text"),
         (LEFT_CHRONO.replace("]", ",", 1), {}, "is no JSON"),

@@ -164,7 +164,9 @@ def test_columns_that_are_not_known_are_those_that_the_user_names(tmp_path: Path
         imported(tmp_path, text, names=str(names))
     names.write_text('[table]\nname = "Point"\nx = 3\ny = 4\nz = 5\ncorner = "Ecke"\n')
     choices = {"axes": OURS, "part": "rear", "side": "left", "names": str(names)}
-    assert drawn(imported(tmp_path, corners("Ecke"), **choices)) == WHEELS["rear", "left"]
+    found = imported(tmp_path, corners("Ecke") + "\nfr,Battery,1,2,3", **choices)
+    assert drawn(found) == WHEELS["rear", "left"]
+    assert [point.name for point in found.others] == ["Battery"]
 
 
 def test_a_file_of_names_that_is_not_there_is_written_to_be_filled_in(
@@ -286,19 +288,3 @@ def test_hardpoints_of_adams_car_are_known_by_their_names_with_their_axes_and_si
         assert {name: drawn(found)[name] for name in ADAMS} == given
         assert found.scene.mechanism.side == side
         assert "by names such as" in found.facts[0]
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("A,1,2,3,4,5,6", "has 6 numbers for 'A'"),
-        ("\n".join(["Punkt,Hoch,Quer,Laengs", *rows()]), "line 1: .* not known: 'Punkt, Hoch, Quer, Laengs'"),
-        ("Point Hoch Quer Laengs\nA 1 2 3", "line 1: .* not known: 'Point Hoch Quer Laengs'"),
-        ("Point,X,Y,Z,X,Y,Z\nA,1,2,3,4,5,6", "line 1: has 2 columns of x"),
-        ("-3.5,529,122.84\n-45,190,129.9", "line 1: has coordinates without a name"),
-        ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", "line 3: has numbers with points and with commas"),
-    ],
-)
-def test_a_table_that_cannot_be_read_is_told_in_one_line(text: str, words: str, tmp_path: Path) -> None:
-    with pytest.raises(FileError, match=words):
-        imported(tmp_path, text, axes=OURS)
