@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene, simulate
 from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import Measured, understood
+from validate.measured.poses import Driven
 from validate.measured.reading import columns_of_text
 from validate.measured.tolerances import Held, held_of
 
@@ -41,9 +42,8 @@ def compared(text: str, content: Mapping[str, Any], scene: Scene, **more: Any) -
 
 def held(text: str, content: Mapping[str, Any], scene: Scene, accuracy: float | None = None) -> list[Held]:
     """The same before anything is judged or explained: every column beside ours."""
-    return held_of(
-        understood(columns_of_text(text, "mine.csv"), content, scene, "map.toml"), scene, accuracy
-    )[0]
+    data = understood(columns_of_text(text, "mine.csv"), content, scene, "map.toml")
+    return held_of(data, Driven.of(scene, data), accuracy)[0]
 
 
 def disagreeing(

@@ -19,7 +19,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -39,11 +39,21 @@ from validate.plain_text import shown
 Array = NDArray[np.float64]
 
 FORMAT, VERSION = "pointcoord baseline", 1
+PARTS = ("times", "condition", "numbers", "claims")
+"""Of a solution, what stands in arrays of their own."""
 ALLOWED = "a file that --save-baseline wrote"
 NEVER = np.empty(0)  # the instants at which a run gives what it does not give
 
-Standing = Literal["compared", "new", "not solved now", "another car", "another motion"]
+Standing = Literal["compared", "new", "gone", "not solved now", "another car", "another motion"]
+UNTOLD = ("new", "gone", "not solved now")
+"""Of these a baseline says nothing; of others that are not compared there is no verdict."""
 MoveVerdict = Literal["agrees", "moved", "not tested", "new", "gone"]
+WHY: Mapping[MoveVerdict, str] = {
+    "moved": "by more than both error bounds together",
+    "new": "not in the baseline",
+    "gone": "in the baseline and not given now",
+    "not tested": "one error bound is too wide to test the other",
+}
 
 
 @dataclass(frozen=True)
@@ -107,23 +117,31 @@ class Since:
         """
         if self.moved or self.lost:
             return ExitStatus.DISAGREE
-        if self.standing in ("new", "not solved now"):
-            return ExitStatus.AGREE
-        untested = any(move.verdict == "not tested" for move in self.moves)
-        return (
-            ExitStatus.AGREE
-            if self.compared and not untested and not self.replaced
-            else ExitStatus.NO_VERDICT
-        )
+        tested = self.compared and all(move.verdict != "not tested" for move in self.moves)
+        told = self.standing in UNTOLD or (tested and not self.replaced)
+        return ExitStatus.AGREE if told else ExitStatus.NO_VERDICT
 
 
 @dataclass(frozen=True)
-class SavedScene:
-    """A scene as a baseline has it; see the file's description."""
+class Kept:
+    """What a baseline keeps of a scene; see the file's description."""
 
     mechanism: Mapping[str, Any]
     motion: str
     solutions: tuple[Solution, ...]
+
+    @classmethod
+    def of(cls, scene: Scene, outcomes: Iterable[Outcome]) -> Kept:
+        """Of a scene that was compared: each formulation's solution once, as a comparison takes it."""
+        solutions: dict[str, Solution] = {}
+        for solution in (solution for outcome in outcomes for solution in outcome.solutions):
+            solutions.setdefault(solution.formulation, solution)
+        motion = json.dumps(scene.model_dump(mode="json", include={"inputs", "time"}), sort_keys=True)
+        return cls(
+            mechanism=scene.mechanism.model_dump(mode="json"),
+            motion=hashlib.sha256(motion.encode()).hexdigest(),
+            solutions=tuple(usable(solution, scene.instants) for solution in solutions.values()),
+        )
 
 
 @dataclass(frozen=True)
@@ -136,7 +154,7 @@ class Baseline:
 
     target: str
     program: str
-    scenes: Mapping[str, SavedScene]
+    scenes: Mapping[str, Kept]
 
     def since(self, name: str, scene: Scene, outcomes: Sequence[Outcome], factor: float = 1.0) -> Since:
         """What of a scene moved.
@@ -144,20 +162,19 @@ class Baseline:
         Args:
             outcomes: all that the scene was compared in now. factor: how many times the bound is allowed.
         """
-        then = self.scenes.get(name)
+        then, now = self.scenes.get(name), Kept.of(scene, outcomes)
         if then is None:
             return Since(name, "new", f"{name} is not in the baseline")
-        if other := ", ".join(_differing(then.mechanism, _mechanism(scene))):
+        if other := ", ".join(_differing(then.mechanism, now.mechanism)):
             return Since(name, "another car", f"{name} is another car than in the baseline: {other}")
-        if _motion(scene) != then.motion:
+        if now.motion != then.motion:
             words = f"{name} has other inputs or another time than in the baseline"
             return Since(name, "another motion", words)
         if not outcomes:
             return Since(name, "not solved now", f"{name} is in the baseline and has no comparison now")
-        moves = tuple(_moves(name, scene, then.solutions, outcomes, factor))
-        before = {solution.formulation for solution in then.solutions}
-        now = {solution.formulation for outcome in outcomes for solution in outcome.solutions}
-        lacking, others = (", ".join(sorted(some)) for some in (before - now, now - before))
+        moves = tuple(_moves(name, scene, then.solutions, now.solutions, factor))
+        before, after = ({one.formulation for one in kept.solutions} for kept in (then, now))
+        lacking, others = (", ".join(sorted(some)) for some in (before - after, after - before))
         if not lacking or not others:
             return Since(name, "compared", "", moves)
         words = (
@@ -167,7 +184,7 @@ class Baseline:
         return Since(name, "compared", words, moves, replaced=True)
 
 
-def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[str]) -> dict[str, Any]:
+def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[Since]) -> dict[str, Any]:
     """A run against its baseline as plain data."""
     return {
         "file": baseline.target,
@@ -187,18 +204,18 @@ def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[str
             }
             for since in found
         ],
-        "gone": list(gone),
+        "gone": [since.scene for since in gone],
     }
 
 
 def _moves(
-    name: str, scene: Scene, then: Sequence[Solution], outcomes: Sequence[Outcome], factor: float
+    name: str, scene: Scene, then: Sequence[Solution], now: Sequence[Solution], factor: float
 ) -> Iterator[Move]:
-    before, now = ({one.formulation: one for one in some} for some in (then, solutions_of(scene, outcomes)))
-    for formulation in dict.fromkeys((*now, *before)):
+    before, after = ({one.formulation: one for one in some} for some in (then, now))
+    for formulation in dict.fromkeys((*after, *before)):
         # A run that has no such formulation has no number of it.
         nothing = Solution(formulation, NEVER, {}, Accuracy(NEVER))
-        one, two = before.get(formulation, nothing), now.get(formulation, nothing)
+        one, two = before.get(formulation, nothing), after.get(formulation, nothing)
         asked = {q: tuple({**one.numbers.get(q, {}), **two.numbers.get(q, {})}) for q in QUANTITIES}
         for row in compare_solutions(scene, one, two, name, asked, factor).rows:
             yield Move(row, _verdict(row, one))
@@ -208,26 +225,6 @@ def _verdict(row: Comparison, then: Solution) -> MoveVerdict:
     if row.verdict == "not given":
         return "gone" if row.name in then.numbers.get(row.quantity, ()) else "new"
     return "moved" if row.verdict == "disagrees" else row.verdict
-
-
-def solutions_of(scene: Scene, outcomes: Iterable[Outcome]) -> tuple[Solution, ...]:
-    """Each formulation's solution once, as a comparison takes it."""
-    found: dict[str, Solution] = {}
-    for solution in (solution for outcome in outcomes for solution in outcome.solutions):
-        if solution.formulation not in found:
-            found[solution.formulation] = usable(solution, scene.instants)
-    return tuple(found.values())
-
-
-def _mechanism(scene: Scene) -> dict[str, Any]:
-    """The car as plain data: everything of it that is solved for."""
-    return dict(scene.mechanism.model_dump(mode="json"))
-
-
-def _motion(scene: Scene) -> str:
-    """A digest of what drives the car, and when."""
-    content = scene.model_dump(mode="json", include={"inputs", "time"})
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def _differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
@@ -240,50 +237,39 @@ def _differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]
             yield key
 
 
-class Recorder:
-    """Gathers scenes for a baseline; one of 100 instants takes half a megabyte."""
+def written(scenes: Mapping[str, Kept]) -> bytes:
+    """The file of a baseline, of scenes by name; one of 100 instants takes half a megabyte."""
+    arrays: dict[str, Any] = {}
 
-    def __init__(self) -> None:
-        self._scenes: dict[str, dict[str, Any]] = {}
-        self._arrays: list[Array] = []
+    def number_of(array: Array) -> int:
+        arrays[f"a{len(arrays)}"] = array
+        return len(arrays) - 1
 
-    def __len__(self) -> int:
-        return len(self._scenes)
+    def plain(one: Solution) -> dict[str, Any]:
+        parts = one.times, one.accuracy.condition, one.numbers, one.accuracy.claims
+        numbered = (_each(part, number_of) for part in parts)
+        return {"formulation": one.formulation, **dict(zip(PARTS, numbered, strict=True))}
 
-    def add(self, name: str, scene: Scene, outcomes: Sequence[Outcome]) -> None:
-        """Take in a scene that was compared; one that was not has no numbers to keep."""
-        if not outcomes or name in self._scenes:
-            return
-        solutions = [
-            {
-                "formulation": solution.formulation,
-                "times": solution.times,
-                "condition": solution.accuracy.condition,
-                "numbers": solution.numbers,
-                "claims": solution.accuracy.claims,
-            }
-            for solution in solutions_of(scene, outcomes)
-        ]
-        known = {"scene": name, "mechanism": _mechanism(scene), "motion": _motion(scene)}
-        self._scenes[name] = {**known, "solutions": [self._numbered(one) for one in solutions]}
+    kept = [
+        {
+            "scene": name,
+            "mechanism": one.mechanism,
+            "motion": one.motion,
+            "solutions": [*map(plain, one.solutions)],
+        }
+        for name, one in scenes.items()
+    ]
+    head = json.dumps({"program": program_version(), "scenes": kept})
+    stream = io.BytesIO()
+    np.savez_compressed(stream, **arrays, format=FORMAT, version=VERSION, head=head)
+    return stream.getvalue()
 
-    def _numbered(self, content: Any) -> Any:
-        """The same with the number of each array in its place."""
-        if isinstance(content, Mapping):
-            return {key: self._numbered(value) for key, value in content.items()}
-        if not isinstance(content, np.ndarray):
-            return content
-        self._arrays.append(content)
-        return len(self._arrays) - 1
 
-    def content(self) -> bytes:
-        """The file of a baseline."""
-        head = {"program": program_version(), "scenes": list(self._scenes.values())}
-        arrays: dict[str, Any] = {f"a{i}": array for i, array in enumerate(self._arrays)}
-        arrays |= {"format": FORMAT, "version": VERSION, "head": json.dumps(head)}
-        stream = io.BytesIO()
-        np.savez_compressed(stream, **arrays)
-        return stream.getvalue()
+def _each(content: Any, change: Callable[[Any], Any]) -> Any:
+    """Arrays by quantity and name, or one, each changed into its number in the file or back."""
+    if isinstance(content, Mapping):
+        return {key: _each(value, change) for key, value in content.items()}
+    return change(content)
 
 
 def read_baseline(target: str) -> Baseline:
@@ -306,29 +292,22 @@ def read_baseline(target: str) -> Baseline:
         raise _unusable(target, f"is of version {version}", f"version {VERSION}; save it again")
     try:
         head = json.loads(str(found["head"]))
-        scenes = {one["scene"]: _scene(one, found) for one in head["scenes"]}
+        scenes = {one["scene"]: _kept(one, found) for one in head["scenes"]}
         return Baseline(target, str(head["program"]), scenes)
     except Exception as error:  # likewise of a head that is not ours
         raise _unusable(target, f"does not hold a whole baseline ({shown(str(error))})") from None
 
 
-def _scene(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SavedScene:
-    def filled(content: Any) -> Any:
-        """The same with each array in the place of its number."""
-        if isinstance(content, Mapping):
-            return {key: filled(value) for key, value in content.items()}
-        return arrays[f"a{content}"] if isinstance(content, int) else content
-
-    found = [filled(one) for one in head["solutions"]]
-    solutions = tuple(
-        Solution(one["formulation"], one["times"], one["numbers"], Accuracy(one["condition"], one["claims"]))
-        for one in found
-    )
-    for solution in solutions:
+def _kept(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Kept:
+    solutions = []
+    for one in head["solutions"]:
+        times, condition, numbers, claims = (_each(one[part], lambda n: arrays[f"a{n}"]) for part in PARTS)
+        solution = Solution(one["formulation"], times, numbers, Accuracy(condition, claims))
         given(solution, solution.times)
         if unknown := solution.numbers.keys() - QUANTITIES.keys():
             raise ValueError(f"{sorted(unknown)[0]} is no quantity")
-    return SavedScene(head["mechanism"], head["motion"], solutions)
+        solutions.append(solution)
+    return Kept(head["mechanism"], head["motion"], tuple(solutions))
 
 
 def _unusable(target: str, problem: str, allowed: str = ALLOWED) -> UsageError:

@@ -26,7 +26,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from validate.ci.baseline import Move, Since
+from validate.ci.baseline import UNTOLD, WHY, Move, Since
 from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
@@ -65,28 +65,20 @@ def junit(record: Record) -> bytes:
 
 def _suites(record: Record) -> Iterator[Suite]:
     factor = {"tolerance_factor": repr(record.factor)}
-    baseline = {"baseline": "" if record.baseline is None else record.baseline.target}
     for examined in record.examined:
+        scene = {"scene": examined.name}
         for outcome in examined.outcomes:
             first, second = (solution.formulation for solution in outcome.solutions)
-            given = len(outcome.solutions[0].times)
-            properties = {
-                "scene": examined.name,
-                "first": first,
-                "second": second,
-                "instants": str(given if outcome.compared is None else outcome.compared),
-                **factor,
-            }
+            instants = len(outcome.solutions[0].times) if outcome.compared is None else outcome.compared
+            pair = {"first": first, "second": second, "instants": str(instants)}
             cases = [*(_compared(row, outcome) for row in outcome.rows), *_unusable(outcome)]
-            yield f"{examined.name}: {first} and {second}", properties, cases
+            yield f"{examined.name}: {first} and {second}", {**scene, **pair, **factor}, cases
         if faults := [*_faults(examined)]:
-            yield examined.name, {"scene": examined.name}, faults
-    for since in record.since:
+            yield examined.name, scene, faults
+    baseline = {"baseline": "" if record.baseline is None else record.baseline.target}
+    for since in (*record.since, *record.gone):
         properties = {"scene": since.scene, **baseline, **factor}
         yield f"{since.scene}: since the baseline", properties, [*_since(since)]
-    for name in record.gone:
-        case = _Case("in the run", "skipped", "gone", f"{name} is in the baseline and not in this run")
-        yield f"{name}: since the baseline", {"scene": name, **baseline}, [case]
     for name in record.not_run:
         yield name, {"scene": name}, [_Case("run", "skipped", "not run", f"not run: {record.stopped}")]
 
@@ -160,25 +152,19 @@ def _faults(examined: Examined) -> Iterator[_Case]:
 
 
 def _since(since: Since) -> Iterator[_Case]:
-    if since.standing == "new" or since.standing == "not solved now":
-        yield _Case("in the baseline", "skipped", since.standing, since.words)
-    elif since.standing != "compared" or since.replaced:
+    if since.words:
         standing = "another formulation" if since.replaced else since.standing
-        yield _Case("in the baseline", "error", standing, since.words)
+        yield _Case("in the baseline", "skipped" if standing in UNTOLD else "error", standing, since.words)
     for move in since.moves:
         yield _moved(move, move in since.lost)
 
 
 def _moved(move: Move, lost: bool) -> _Case:
-    row = move.row
-    words = {
-        "agrees": "",
-        "new": "new: the baseline has no such numbers",
-        "gone": "gone: the baseline has such numbers, and this run has none",
-        "not tested": "not tested: one error bound is too wide to test the other",
-        "moved": f"moved by more than both error bounds together: {told_row(row)}",
-    }
-    kind = "failure" if lost or move.verdict == "moved" else "" if move.verdict == "agrees" else "skipped"
-    out = () if move.verdict in ("new", "gone") else _numbers(row, "moved", "bound")
+    row, verdict = move.row, move.verdict
     name = f"{move.formulation}: {about(row.quantity, row.name)}"
-    return _Case(name, kind, move.verdict, words[move.verdict], out)
+    out = () if verdict in ("new", "gone") else _numbers(row, "moved", "bound")
+    if verdict == "agrees":
+        return _Case(name, out=out)
+    more = f": {told_row(row)}" if verdict == "moved" else ""
+    kind = "failure" if lost or verdict == "moved" else "skipped"
+    return _Case(name, kind, verdict, f"{verdict}: {WHY[verdict]}{more}", out)

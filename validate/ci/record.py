@@ -6,15 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pointcoord import Scene
-from validate.ci.baseline import Baseline, Since, baseline_data
+from validate.ci.baseline import Baseline, Kept, Since, baseline_data
 from validate.comparison.compare import Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding, findings
 from validate.exit_status import ExitStatus, combined
-from validate.formulations.protocol import Accuracy, Solution
 from validate.output.report import examined_data, finding_data, paper_data
 from validate.paper.tables import PaperRow
 
@@ -36,6 +33,7 @@ class Record:
         scenes: those of them that could be read, by name.
         files: of results, by the name of the scene whose car they are held to.
         paper: the paper's printed tables beside ours.
+        kept: what a baseline of this run is made of, by the name of the scene; None where none is asked for.
         stopped: why the rest was not run.
     """
 
@@ -47,11 +45,16 @@ class Record:
     scenes: dict[str, Scene] = field(default_factory=dict)
     files: dict[str, DataOutcome] = field(default_factory=dict)
     paper: Sequence[PaperRow] = ()
+    kept: dict[str, Kept] | None = None
     stopped: str = CUT_OFF
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
-        """Take in a scene; the numbers themselves are let go."""
-        self.examined.append(_without_numbers(examined))
+        """Take in a scene; the numbers themselves are let go, but for a baseline."""
+        if self.kept is not None and scene is not None and examined.outcomes:
+            self.kept.setdefault(examined.name, Kept.of(scene, examined.outcomes))
+        printed = None if examined.printed is None else _emptied(examined.printed)
+        outcomes = tuple(map(_emptied, examined.outcomes))
+        self.examined.append(replace(examined, outcomes=outcomes, printed=printed))
         if scene is not None:
             self.scenes[examined.name] = scene
         if since is not None:
@@ -68,10 +71,11 @@ class Record:
         return tuple(self.names[len(self.examined) :])
 
     @property
-    def gone(self) -> tuple[str, ...]:
+    def gone(self) -> tuple[Since, ...]:
         """The scenes of the baseline that are none of the run's."""
         known = {} if self.baseline is None else self.baseline.scenes
-        return tuple(name for name in known if name not in self.names)
+        words = "is gone: it is in the baseline and not in this run"
+        return tuple(Since(name, "gone", f"{name} {words}") for name in known if name not in self.names)
 
     @property
     def outcomes(self) -> Iterator[Outcome]:
@@ -104,21 +108,10 @@ class Record:
         }
 
 
-def _without_numbers(examined: Examined) -> Examined:
-    """What came of a scene, and no more the numbers that it came from."""
-    printed = None if examined.printed is None else _emptied(examined.printed)
-    return replace(examined, outcomes=tuple(map(_emptied, examined.outcomes)), printed=printed)
-
-
 def _emptied(outcome: Outcome) -> Outcome:
+    """A comparison, and no more the numbers that it came from."""
     one, two = (
-        # What is left of an accuracy says whether it was stated, which decides what passes.
-        Solution(
-            solution.formulation,
-            solution.times,
-            {},
-            Accuracy(np.ones(0), blind=solution.accuracy.blind, stated=solution.accuracy.stated),
-        )
+        replace(solution, numbers={}, accuracy=replace(solution.accuracy, claims={}, usual={}))
         for solution in outcome.solutions
     )
     return replace(outcome, solutions=(one, two))
@@ -127,4 +120,5 @@ def _emptied(outcome: Outcome) -> Outcome:
 def ends_the_run(examined: Examined, since: Since | None) -> bool:
     """Whether a scene ends a run that ends at the first fault: it disagrees, has moved, or is refused."""
     disagrees = any(outcome.disagreements for outcome in examined.outcomes)
-    return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved or since.lost))
+    moved = since is not None and since.status is ExitStatus.DISAGREE
+    return disagrees or moved or bool(examined.complaint)

@@ -49,7 +49,7 @@ def summary(record: Record, status: ExitStatus) -> str:
         blocks += _list(f"### {title}", by_scene(record, of))
     if record.baseline is not None:
         lines = [f"{one.scene}: {line}" for one in record.since for line in since_lines(one)]
-        lines += [f"{name} is gone: it is in the baseline and not in this run" for name in record.gone]
+        lines += [one.words for one in record.gone]
         blocks += _list(f"### Since the baseline {markdown(record.baseline.target)}", lines)
     return "\n\n".join(blocks) + "\n"
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import get_args
 
-from validate.ci.baseline import Move, Since
+from validate.ci.baseline import WHY, Move, MoveVerdict, Since
 from validate.ci.record import Record
 from validate.comparison.compare import Verdict
 from validate.comparison.examined import Examined
@@ -29,7 +29,6 @@ from validate.solvers.plain import SolverFailed
 
 NAMED = 10  # scenes that a sentence names of each verdict
 NUMBERS = 8  # numbers in a sentence: the table's notes have them all
-ALONE = {"new": "not in the baseline", "gone": "in the baseline and not given now"}
 NOT_TESTED = "not tested"
 NEXT = {
     "refused": "pointcoord plan {} says how far each input can go and what holds it there",
@@ -102,14 +101,10 @@ def _since(record: Record) -> Iterator[str]:
     held = [since for since in record.since if since.compared]
     moved = [since.scene for since in held if since.moved]
     target = shown(record.baseline.target)
-    if not held:
-        yield f"nothing could be compared with the baseline {target}"
+    if moved:
+        yield f"moved since the baseline {target}: {some_of(moved, NAMED)}"
     else:
-        yield (
-            f"moved since the baseline {target}: {some_of(moved, NAMED)}"
-            if moved
-            else "nothing moved since the baseline"
-        )
+        yield f"nothing {'moved since' if held else 'could be compared with'} the baseline {target}"
     lost = [
         f"{since.scene}: {some_of(whats, NUMBERS)} by {formulation}"
         for since in record.since
@@ -119,7 +114,8 @@ def _since(record: Record) -> Iterator[str]:
         yield f"given then and not now: {'; '.join(lost)}"
     yield from (f"no verdict: {since.words}" for since in record.since if since.replaced)
     if record.gone:
-        yield f"gone, in the baseline and not in this run: {some_of(record.gone, NAMED)}"
+        gone = [since.scene for since in record.gone]
+        yield f"gone, in the baseline and not in this run: {some_of(gone, NAMED)}"
 
 
 HEAD = ("scene", "verdict", "largest share of a tolerance, and where")
@@ -169,7 +165,7 @@ def next_step(record: Record, verbose: bool = False) -> str:
             steps.append(f"mend {solvers[0]} as the message about it says")
         elif why in NEXT:
             steps.append(NEXT[why].format(one.name))
-    if any(since.moved or since.lost for since in record.since):
+    if any(since.status is ExitStatus.DISAGREE for since in record.since):
         steps.append("if the new numbers are right, keep them by --save-baseline FILE")
     return f"Next: {'; '.join(steps)}." if steps else ""
 
@@ -230,12 +226,13 @@ def since_lines(since: Since) -> Iterator[str]:
         yield since.words
     for move in sorted(since.moved, key=lambda move: -move.row.share):
         yield f"MOVED, solved by {move.formulation}: {told_row(move.row)}"
-    shared = {move.formulation for move in since.moves if move.verdict not in ALONE}
-    for verdict, words in {**ALONE, "not tested": "one error bound is too wide to test the other"}.items():
+    shared = {move.formulation for move in since.moves if move.verdict not in ("new", "gone")}
+    untold: tuple[MoveVerdict, ...] = ("new", "gone", "not tested")
+    for verdict in untold:
         found = _by_formulation(move for move in since.moves if move.verdict == verdict)
         for formulation, whats in found.items():
             what = ", ".join(whats) if formulation in shared else "every number"
-            yield f"{verdict}, {words}: {what} by {formulation}"
+            yield f"{verdict}, {WHY[verdict]}: {what} by {formulation}"
     if same := sum(move.verdict == "agrees" for move in since.moves):
         yield f"{counted_as(same, 'number')} did not move"
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pointcoord import Scene
-from validate.ci.baseline import Recorder, Since
+from validate.ci.baseline import Since, written
 from validate.ci.record import Record
 from validate.comparison.examined import Examined
 from validate.errors import NotFinished, UsageError
@@ -81,20 +81,16 @@ class Comparing:
     """A run of comparisons that goes on; `ending.status` is what it ended with.
 
     Attributes:
-        recorder: keeps what a baseline is made of; None where none is asked for.
-        drawings: likewise of a page.
+        drawings: what a page is made of; None where none is asked for.
     """
 
     record: Record
-    recorder: Recorder | None
     journal: Journal
     drawings: Drawings | None
     ending: Ending
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
         """Take in what came of a scene, and write what there is so far."""
-        if scene is not None and self.recorder is not None:
-            self.recorder.add(examined.name, scene, examined.outcomes)
         self.record.add(examined, since, scene)
         # Of a file's scene no motion is solved.
         if self.drawings is not None and examined.name not in self.record.files:
@@ -123,18 +119,18 @@ def comparing(
 
         drawings = Drawings(len(record.names))
     head = Head.of("validate", options.command, options.timings)
-    recorder = None if options.save_baseline is None else Recorder()
+    record.kept = None if options.save_baseline is None else {}
     journal = Journal(
         options.json, head, console, record.data, lambda: share_of_all(record.examined, record.names, noun)
     )
 
     def leave(end: Ending) -> None:
-        _leave_files(options, record, recorder, end, console)
+        _leave_files(options, record, end, console)
 
     mute, brief = console.mute, page is not None and page.with_more is not None
     console.mute = mute or brief
     with journal.closing() as ending, at_the_end(leave):
-        yield Comparing(record, recorder, journal, drawings, ending)
+        yield Comparing(record, journal, drawings, ending)
         ending.status = record.status
         if page is not None and drawings is not None:
             made = page.write(Run(head, record, drawings.kept), console)
@@ -144,9 +140,7 @@ def comparing(
                 console.say(f"{made.sentence}\n{page.place}")
 
 
-def _leave_files(
-    options: argparse.Namespace, record: Record, recorder: Recorder | None, ending: Ending, console: Console
-) -> None:
+def _leave_files(options: argparse.Namespace, record: Record, ending: Ending, console: Console) -> None:
     """Write what services read, however the run ends, if it came to anything; a baseline of a whole run only.
 
     Raises:
@@ -162,12 +156,12 @@ def _leave_files(
         except NotFinished as error:
             problems.append(error)
 
-    if recorder is not None:
-        why = "" if len(recorder) else "no scene was compared"
+    if record.kept is not None:
+        why = "" if record.kept else "no scene was compared"
         if why := why if record.ended else record.stopped:
             console.complain(f"baseline {options.save_baseline}: not written, because {why}")
         else:
-            attempt(options.save_baseline, recorder.content())
+            attempt(options.save_baseline, written(record.kept))
     # Most runs leave no such files.
     if options.junit is not None:
         from validate.ci.junit import junit

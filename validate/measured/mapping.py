@@ -27,15 +27,16 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from textwrap import fill
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from pointcoord import Scene, SceneError
 from pointcoord.effects.conventions import CONVENTIONS, ConventionName
-from pointcoord.mechanism.faults import faults_of
+from pointcoord.mechanism.faults import faults_of, known_keys
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant, shown_key
 from validate.measured.meanings import (
@@ -63,29 +64,35 @@ BY_CHANCE = 1e-3  # of a step or a last digit: what is even to less is hardly so
 # No length, time, angle or rate of a car is larger in our units; the square of what is may be no number. Of a
 # higher derivative the limit is this for every two seconds that it is divided by.
 FARTHEST = 1e12
+NAMED = 5  # numbers of the car, where a message says what there is
 
 
 Number = Annotated[float, Field(strict=True, ge=-FARTHEST, le=FARTHEST)]
 Size = Annotated[Number, Field(ge=0.0)]
 
 
-class ColumnSaid(BaseModel):
-    """What a map says of a column, as the top of this file has it; None what it does not say."""
-
+class _Said(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known(cls, content: object) -> object:
+        return known_keys(content, [key.alias or name for name, key in cls.model_fields.items()])
+
+
+class ColumnSaid(_Said):
+    """What a map says of a column, as the top of this file has it; None what it does not say."""
 
     is_: str | None = Field(default=None, alias="is")
     unit: str | None = None
-    sign: Literal[1, -1] = 1
+    sign: Literal[1, -1] | None = None
     offset: Number = 0.0
     printed: Size | None = None
     accuracy: Size | None = None
 
 
-class MapSaid(BaseModel):
+class MapSaid(_Said):
     """What a map says, likewise."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     rolling_radius: Number = math.nan
     convention: ConventionName | None = None
@@ -102,13 +109,6 @@ class MapSaid(BaseModel):
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            if first["type"] == "extra_forbidden":
-                *place, key = map(str, first["loc"])
-                fields = (ColumnSaid if place else cls).model_fields.items()
-                known = [field.alias or name for name, field in fields]
-                problem = f"no key is called {key!r}{meant(key, known)}"
-                raise FileError(where, ".".join(place), problem, ", ".join(known)) from None
             fault = faults_of(error)[0]
             raise FileError(where, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
 
@@ -134,7 +134,12 @@ class Series:
     said: bool = False
 
     @property
-    def even(self) -> bool:
+    def rounded_unasked(self) -> bool:
+        """Whether it is taken as rounded though no map says so."""
+        return not self.said and bool(self.off.any())
+
+    @property
+    def set_exactly(self) -> bool:
         """Whether its values go in even steps, as those do that are set and not measured.
 
         Programs leave zeros off: -30 is -30.0000000000 beside -26.6666666667, and is written the coarsest.
@@ -142,7 +147,7 @@ class Series:
         """
         there = np.isfinite(self.values)
         values = np.unique(self.values[there])
-        if len(values) < FEWEST:
+        if not self.rounded_unasked or len(values) < FEWEST:
             return False
         steps = np.diff(values)
         return bool(np.ptp(steps) <= BY_CHANCE * min(float(self.off[there].max()), float(steps.min())))
@@ -209,16 +214,13 @@ def read_results(file: str, map: str | None, scene: Scene) -> Measured:
         MissingLibrary: Parquet needs pyarrow.
     """
     columns = read_columns(file)
-    where = columns.source if map is None else shown(map)
-    return understood(columns, {} if map is None else _map_of(map), scene, where)
-
-
-def _map_of(path: str) -> dict[str, Any]:
-    """The content of a map."""
+    if map is None:
+        return understood(columns, {}, scene, columns.source)
     try:
-        return parsed(read_file(path, "the path of a map of columns (TOML)"), shown(path))
+        content = parsed(read_file(map, "the path of a map of columns (TOML)"), shown(map))
     except SceneError as error:
-        raise FileError(shown(path), error.key, error.problem, error.allowed or "TOML") from None
+        raise FileError(shown(map), error.key, error.problem, error.allowed or "TOML") from None
+    return understood(columns, content, scene, shown(map))
 
 
 def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where: str) -> Measured:
@@ -231,27 +233,23 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     """
     map = _Map(where, MapSaid.of(content, where), columns, scene)
     found = map.series()
-    independent = map.independent(found)
-    even = [s.column for s in independent if not s.said and s.off.any() and s.even]
-    independent = tuple(replace(s, off=0.0 * s.off) if s.column in even else s for s in independent)
+    over = map.independent(found)
     numbers = tuple(s for s in found if s.meaning.kind == "number")
     if not numbers:
-        allowed = f"columns such as {', '.join(map.known[:4])}"
+        allowed = f"columns such as {', '.join(map.numbers[:NAMED])}"
         raise FileError(columns.source, "", "holds nothing to compare", allowed)
-    notes = []
-    if out := [name for name, one in map.filled.items() if one is None]:
+    notes, over_names = list[str](), [s.column for s in over]
+    if out := [name for name, one in map.meant.items() if one is None]:
         notes.append(f"ignored: {listed(out)} (name not recognised, without a unit, or as the map says)")
-    if even:
+    if even := [s.column for s in over if s.set_exactly]:
         names = listed(even, " and ")
         notes.append(f"{names}: in even steps, taken as exact; if rounded, say printed = STEP of it in a map")
-    taken = {s.column for s in (*independent, *numbers)}
-    if beside := [s.column for s in found if s.column not in taken]:
-        over = listed((s.column for s in independent), " and ")
-        notes.append(f"{listed(beside)} is not compared: rows are taken by {over}")
+    if beside := [s.column for s in found if s.meaning.kind != "number" and s.column not in over_names]:
+        notes.append(f"{listed(beside)} is not compared: rows are taken by {listed(over_names, ' and ')}")
     for s in numbers:
         if lacking := int(np.isnan(s.values).sum()):
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
-    lost: NDArray[np.bool_] = np.asarray(np.isnan([s.values for s in independent]).any(axis=0))
+    lost: NDArray[np.bool_] = np.asarray(np.isnan([s.values for s in over]).any(axis=0))
     if lost.all():
         raise FileError(columns.source, "", "no row says at which pose it is", "at least one")
     if lost.any():
@@ -259,9 +257,9 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
         notes.append(f"rows that do not say at which pose they are: {int(lost.sum())}, from {first} on")
     return Measured(
         source=columns.source,
-        independent=independent,
+        independent=tuple(replace(s, off=0.0 * s.off) if s.column in even else s for s in over),
         numbers=numbers,
-        held=map.held,
+        held=map.said.held,
         rolling_radius=map.said.rolling_radius,
         rows=columns.rows,
         notes=tuple(notes),
@@ -277,20 +275,17 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
     """
     columns = read_columns(file)
     map = _Map("", MapSaid(), columns, scene)
-    topology = scene.mechanism.topology
-    inputs = ", ".join(f"{INPUT}.{name}" for name in topology.inputs)
     lines = [
         f"# What the columns of {columns.source} are. Fill in what is missing, and take its # away.",
-        f"# is: time, {inputs}, travel.POINT, travel.{CONTACT}, QUANTITY.NAME[.AXIS], ignore",
-        f"#     such as {PLACES}.{topology.wheel_centre}.z, {', '.join(map.known[:5])}",
+        fill(f"is: {map.there_is}", 100, initial_indent="# ", subsequent_indent="#     "),
         "# unit: mm, deg, rad, s and the like. More keys: sign = -1, offset = 0.5, accuracy = 0.001,",
         "#     printed = 0.01 (the unit of the last digit; 0: exact as written)",
         f"# rolling_radius = 300.0    # mm, of travel.{CONTACT}",
         "",
         "[columns]",
     ]
-    for (name, one), unit in zip(map.filled.items(), columns.units, strict=True):
-        said = {"is": one.meaning.words if one else "", "unit": shown(one.unit if one else unit)}
+    for (name, one), unit in zip(map.meant.items(), columns.units, strict=True):
+        said = {"is": one[0].words if one else "", "unit": shown(unit)}
         lines.append(f"{'' if all(said.values()) else '# '}{key_of(shown(name))} = {value_of(said)}")
     return "\n".join(lines) + "\n"
 
@@ -301,25 +296,12 @@ def listed(names: Iterable[str], by: str = ", ") -> str:
 
 
 @dataclass(frozen=True)
-class Column:
-    """What a column is, by a map that says everything of it.
+class _Map:
+    """A map of columns and what it is about.
 
     Attributes:
-        name, at: in the file. unit: as the map or the file says it; empty where neither does.
-        sign: of the map, of a minus before its name, or of the convention. said: what else the map says.
+        where: what to call it in messages.
     """
-
-    name: str
-    at: int
-    meaning: Meaning
-    unit: str
-    sign: int
-    said: ColumnSaid
-
-
-@dataclass(frozen=True)
-class _Map:
-    """A map of columns and what it is about."""
 
     where: str
     said: MapSaid
@@ -336,30 +318,31 @@ class _Map:
         for name in names:
             if name not in known:
                 problem = f"no {what} is called {shown(name)!r}{meant(name, known)}"
-                raise self._wrong(place, problem, ", ".join(known))
-
-    def _wrong(self, place: str, problem: str, allowed: str) -> FileError:
-        """The map is at fault."""
-        return FileError(self.where, place, problem, allowed)
-
-    def _column(self, column: str, problem: str, allowed: str) -> FileError:
-        """A column of the file is at fault."""
-        return FileError(self.columns.source, f"column {shown(column)!r}", problem, allowed)
+                raise FileError(self.where, place, problem, ", ".join(known))
 
     @cached_property
     def meanings(self) -> dict[str, Meaning]:
+        """Everything that a column can be, by its whole name."""
         return meanings_of(self.scene.mechanism.topology)
 
     @property
-    def held(self) -> dict[str, float]:
-        """Inputs and travels that every row has, by their whole names."""
-        return {n if n in self.meanings else f"{INPUT}.{n}": value for n, value in self.said.held.items()}
-
-    @property
-    def known(self) -> tuple[str, ...]:
-        """Names of what can be compared, the car's own numbers first."""
+    def numbers(self) -> tuple[str, ...]:
+        """What can be compared, the car's own numbers first."""
         numbers = [one for one in self.meanings.values() if one.kind == "number"]
         return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
+
+    @property
+    def poses(self) -> str:
+        """What rows can be taken by, in words."""
+        inputs = [f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs]
+        return ", ".join((TIME, *inputs, f"{TRAVEL}.POINT", f"{TRAVEL}.{CONTACT}"))
+
+    @property
+    def there_is(self) -> str:
+        """What a column can be, in words."""
+        centre = self.scene.mechanism.topology.wheel_centre
+        some = ", ".join((*([f"{PLACES}.{centre}.z"] if centre else ()), *self.numbers[:NAMED]))
+        return f"{self.poses}, QUANTITY.NAME[.AXIS] such as {some}, or {IGNORE}"
 
     def _lookup(self, name: str) -> tuple[Meaning | None, int]:
         """Its meaning and sign; of a name that is no whole one of ours, by the convention."""
@@ -370,88 +353,82 @@ class _Map:
         return (found if meant_by == found.name else named(meant_by, self.meanings)), sign
 
     @cached_property
-    def filled(self) -> dict[str, Column | None]:
-        """What each column is; None what is left out.
+    def meant(self) -> dict[str, tuple[Meaning, int] | None]:
+        """What each column is, and its sign: of the map, of a minus before its name, or of the convention.
+
+        None of what is left out.
 
         Raises:
             FileError: the map gives a column a name that there is not.
         """
         every = self.said.columns
-        taken = [self._lookup(name if part.is_ is None else part.is_)[0] for name, part in every.items()]
-        found: dict[str, Column | None] = {}
-        for at, name in enumerate(self.columns.names):
-            part = every.get(name) or ColumnSaid()
-            unit = self.columns.units[at] if part.unit is None else part.unit
+        taken = [self._lookup(part.is_ or name)[0] for name, part in every.items()]
+        found: dict[str, tuple[Meaning, int] | None] = {}
+        for name, file_unit in zip(self.columns.names, self.columns.units, strict=True):
+            part = every.get(name, ColumnSaid())
             meaning, sign = self._lookup(name.removeprefix("-") if part.is_ is None else part.is_)
-            if part.is_ not in (None, IGNORE) and meaning is None:
-                raise self._unknown(name, part.is_)
-            if every and name not in every and (not unit or meaning in taken):
+            if part.is_ is None:
+                sign = -1 if name.startswith("-") else sign
+            elif meaning is None and part.is_ != IGNORE:
+                known = (*self.meanings, IGNORE)
+                near = meant(part.is_, (*known, *{n.partition(".")[2]: n for n in known if "." in n}))
+                problem = f"nothing is called {shown(part.is_)!r}{near}"
+                raise FileError(self.where, f"columns.{name}.is", problem, self.there_is)
+            if every and name not in every and (not file_unit or meaning in taken):
                 meaning = None
-            sign = -1 if name.startswith("-") and part.is_ is None else sign
-            sign = part.sign if "sign" in part.model_fields_set else sign
-            found[name] = None if meaning is None else Column(name, at, meaning, unit, sign, part)
+            found[name] = None if meaning is None else (meaning, part.sign or sign)
         return found
-
-    def _unknown(self, column: str, said: str | None) -> FileError:
-        every, name = (*self.meanings, IGNORE), said or ""
-        hint = meant(name, (*every, *{n.partition(".")[2]: n for n in every if "." in n}))
-        allowed = f"{TIME}, {INPUT}.NAME, {TRAVEL}.POINT, {TRAVEL}.{CONTACT}, QUANTITY.NAME[.AXIS] such as "
-        allowed += f"{', '.join(self.known[:5])}, or {IGNORE}"
-        return self._wrong(f"columns.{column}.is", f"nothing is called {shown(name)!r}{hint}", allowed)
-
-    # Columns in our units.
 
     def series(self) -> list[Series]:
         """Every column that means something, in our units."""
         found: dict[str, Series] = {}
-        for column in self.filled.values():
-            if column is None:
+        for at, (name, one) in enumerate(self.meant.items()):
+            if one is None:
                 continue
-            if (words := column.meaning.words) in found:
-                both = f"columns {shown(found[words].column)!r} and {shown(column.name)!r}"
-                raise self._wrong("columns", f"{both} are both {words}", "one column for each")
-            found[words] = self._in_ours(column)
+            if (words := one[0].words) in found:
+                both = f"columns {shown(found[words].column)!r} and {shown(name)!r}"
+                raise FileError(self.where, "columns", f"{both} are both {words}", "one column for each")
+            found[words] = self._in_ours(at, name, *one)
         if not found:
-            near = next((h for n in self.columns.names if (h := meant(n, self.known))), "")
+            near = next((h for n in self.columns.names if (h := meant(n, self.numbers))), "")
             problem = f"none of {listed(self.columns.names)} is a name that we know{near}"
-            allowed = f"names such as time, {', '.join(self.known[:4])}, or a map of them (--map)"
+            allowed = f"names such as time, {', '.join(self.numbers[:NAMED])}, or a map of them (--map)"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return list(found.values())
 
-    def _in_ours(self, column: Column) -> Series:
-        name, meaning, part = column.name, column.meaning, column.said
+    def _in_ours(self, at: int, name: str, meaning: Meaning, sign: int) -> Series:
+        """A column in our unit."""
+        source, column = self.columns.source, f"column {shown(name)!r}"
         if holds := self.columns.words.get(name):
-            raise self._column(name, f"holds {holds}", f'columns of numbers, or is = "{IGNORE}" in a map')
-        factor = factor_of(column.unit, meaning.unit) if column.unit else None
+            allowed = f'columns of numbers, or is = "{IGNORE}" in a map'
+            raise FileError(source, column, f"holds {holds}", allowed)
+        part = self.said.columns.get(name, ColumnSaid())
+        unit = self.columns.units[at] if part.unit is None else part.unit
+        factor = factor_of(unit, meaning.unit) if unit else None
         if factor is None:
-            problem = f"{shown(column.unit)!r} is no unit of {meaning.words}"
-            problem = problem if column.unit else "its unit is not said, neither behind its name nor in a map"
-            if part.unit is not None:
-                raise self._wrong(f"columns.{name}.unit", problem, allowed_units(meaning.unit))
-            raise self._column(name, problem, allowed_units(meaning.unit))
-        theirs, steps = self.columns.values[column.at], self.columns.steps[column.at]
+            problem = "its unit is not said, neither behind its name nor in a map"
+            problem = f"{shown(unit)!r} is no unit of {meaning.words}" if unit else problem
+            wrong = (source, column) if part.unit is None else (self.where, f"columns.{name}.unit")
+            raise FileError(*wrong, problem, allowed_units(meaning.unit))
+        theirs, steps = self.columns.values[at], self.columns.steps[at]
         with np.errstate(over="ignore"):
-            values = factor * (column.sign * theirs + part.offset)
+            values = factor * (sign * theirs + part.offset)
         farthest = FARTHEST ** max(1.0, meaning.per_second / 2.0)
         for row in np.flatnonzero(np.abs(values) > farthest)[:1].tolist():
-            where = f"{self.columns.rows[row]}, column {shown(name)!r}"
             problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
             allowed = f"at most {farthest:g} {meaning.unit}, or nothing or nan for none"
-            raise FileError(self.columns.source, where, problem, allowed)
-        last = steps if part.printed is None else np.full(len(steps), part.printed)
-        return Series(
-            name, meaning, values, 0.5 * factor * last, factor, part.accuracy, part.printed is not None
-        )
+            raise FileError(source, f"{self.columns.rows[row]}, {column}", problem, allowed)
+        said = part.printed is not None
+        last = np.full(len(steps), part.printed) if said else steps
+        return Series(name, meaning, values, 0.5 * factor * last, factor, part.accuracy, said)
 
-    def independent(self, found: list[Series]) -> tuple[Series, ...]:
+    def independent(self, found: Sequence[Series]) -> tuple[Series, ...]:
         """What the rows are taken by: time, or a travel and inputs."""
         times, travels, inputs = ([s for s in found if s.meaning.kind == k] for k in (TIME, TRAVEL, INPUT))
         if len(travels) > 1 and not times:
             problem = f"{listed(s.column for s in travels)} could each be what rows are taken by"
-            raise self._wrong("columns", problem, f'is = "{IGNORE}" of all but one')
+            raise FileError(self.where, "columns", problem, f'is = "{IGNORE}" of all but one')
         if not (chosen := times or [*travels, *inputs]):
-            names = ", ".join(f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs)
-            allowed = f"a column of {TIME}, {names}, or {TRAVEL}.POINT (in a map)"
-            problem = "no column says at which pose a row is"
+            problem, allowed = "no column says at which pose a row is", f"a column of {self.poses} (in a map)"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return tuple(chosen)

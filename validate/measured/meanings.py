@@ -49,6 +49,16 @@ class Meaning:
         return TIME if self.kind == TIME else f"{self.kind}.{self.name}"
 
     @property
+    def row(self) -> tuple[str, str]:
+        """Under which quantity and name a number is compared, with others of its vector."""
+        return self.quantity, self.name
+
+    @property
+    def drives(self) -> str:
+        """The input that it gives, which is called as the travel where it gives one; time likewise."""
+        return self.words if self.kind == TRAVEL else self.name
+
+    @property
     def of_a_pose(self) -> bool:
         """Whether it is a number of places alone: a coordinate, or an angle of a line."""
         return self.quantity == PLACES or angle_of(self) is not None

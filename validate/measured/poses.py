@@ -20,11 +20,12 @@ from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.file import MECHANISMS, read_tables
+from pointcoord.numerics.rounding import EPS
 from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
 from validate.measured.mapping import Measured, Series
-from validate.measured.meanings import CONTACT, INPUT, PLACES, TIME, TRAVEL, Meaning
+from validate.measured.meanings import CONTACT, PLACES, TIME, TRAVEL
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -62,18 +63,16 @@ class Driven:
     Attributes:
         scene: it asks for all points and for the effects that the file's columns need.
         columns: the input of each independent column; time itself over time.
-        said: every other input that the map holds, or the scene at another value than drawn.
-        as_drawn: those of which nothing is said.
-        drawn: the inputs of the closed drawing, from which a travel counts.
-        by_scene: those that the scene holds.
+        held: inputs that the map holds, or the scene at another value than drawn.
+        drawn: the inputs of the closed drawing, which all others have, and from which a travel counts.
+        notes: inputs that the file does not give, in words.
     """
 
     scene: Scene
     columns: tuple[str, ...]
-    said: Mapping[str, float] = field(default_factory=dict)
-    as_drawn: tuple[str, ...] = ()
+    held: Mapping[str, float] = field(default_factory=dict)
     drawn: Mapping[str, float] = field(default_factory=dict)
-    by_scene: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, scene: Scene, measured: Measured) -> Driven:
@@ -84,24 +83,28 @@ class Driven:
             PointcoordError: the drawing cannot be closed.
         """
         scene = _asked(scene, measured)
-        columns = tuple(input_of(s.meaning.words) for s in measured.independent)
+        columns = tuple(s.meaning.drives for s in measured.independent)
         if columns == (TIME,):
             return cls(scene, columns)
-        said = {input_of(name): value for name, value in measured.held.items()}
-        given = (*columns, *said)
+        given = (*columns, *measured.held)
         travels = [name for name in given if name.startswith(f"{TRAVEL}.")]
         if len(travels) > 1:
             problem = f"{' and '.join(travels)} are travels of the same rows"
             raise FileError(measured.source, "", problem, "one travel, given or held")
         driven = _driven_by(scene, travels[0], given, measured) if travels else scene
-        car = cls(driven, columns, said).redrawn(scene, driven)
-        rests, left = {}, [name for name in driven.mechanism.topology.required_inputs if name not in given]
-        for name in left:
-            law = driven.functions[name].series(driven.instants, 0)[:, 0]
-            if (law == law[0]).all() and law[0] != car.drawn[name]:
-                rests[name] = float(law[0])
-        as_drawn = tuple(name for name in left if name not in rests)
-        return replace(car, said={**said, **rests}, as_drawn=as_drawn, by_scene=tuple(rests))
+        car = cls(driven, columns).redrawn(scene, driven)
+        held, notes, topology = dict(measured.held), list[str](), driven.mechanism.topology
+        for name in topology.required_inputs:
+            if name in given:
+                continue
+            law, how = driven.functions[name].series(driven.instants, 0)[:, 0], "as drawn, "
+            value, by = car.drawn[name], ""
+            if (law == law[0]).all() and law[0] != value:
+                held[name] = value = float(law[0])
+                how, by = "at ", "the scene does, and "
+            unit = topology.input_units[name]
+            notes.append(f"{name} is held {how}{value:.6g} {unit}: {by}the file does not give it")
+        return replace(car, held=held, notes=tuple(notes))
 
     @property
     def over_time(self) -> bool:
@@ -131,36 +134,15 @@ class Driven:
             known[name] = closed - as_it_stands
         return replace(self, scene=driven, drawn=known)
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Inputs that are held as drawn, or as the scene holds them."""
-        units = self.scene.mechanism.topology.input_units
-        held = {name: f"as drawn, {self.drawn[name]:.6g}" for name in self.as_drawn}
-        held |= {name: f"at {self.said[name]:.6g}" for name in self.by_scene}
-        by = dict.fromkeys(self.by_scene, "the scene does, and ")
-        return tuple(
-            f"{name} is held {value} {units[name]}: {by.get(name, '')}the file does not give it"
-            for name, value in held.items()
-        )
-
     def level(self, name: str) -> float:
         """From where an input's column counts: a travel from the closed drawing."""
         return self.drawn.get(name, 0.0) if name.startswith(f"{TRAVEL}.") else 0.0
 
     def inputs(self, values: Sequence[Array]) -> tuple[dict[str, Array], dict[int, str]]:
-        """Every input at values of the independent columns, each (N,), and why a row has none."""
-        if self.over_time:
-            (times,) = values
-            start, stop = self.scene.time.start, self.scene.time.stop
-            outside = np.flatnonzero(~((times >= start) & (times <= stop)))
-            there = np.clip(np.nan_to_num(times), start, stop)
-            found = {name: law.series(there, 0)[:, 0] for name, law in self.scene.functions.items()}
-            told = f"is outside the scene's time, {start:.10g} to {stop:.10g} s"
-            return found, {int(i): f"t = {times[i]:.10g} s {told}" for i in outside}
-        count = len(values[0])
-        found = {name: np.full(count, self.drawn[name]) for name in self.as_drawn}
-        found |= {name: np.full(count, value) + self.level(name) for name, value in self.said.items()}
-        found |= {n: v + self.level(n) for n, v in zip(self.columns, values, strict=True)}
+        """Every input at values of the columns of inputs, each (N,), and why a row has none."""
+        count, given = len(values[0]), {**self.held, **dict(zip(self.columns, values, strict=True))}
+        found = {name: np.full(count, value) for name, value in self.drawn.items()}
+        found |= {name: np.full(count, value) + self.level(name) for name, value in given.items()}
         reasons: dict[int, str] = {}
         for name, (low, high) in self.sensible.items():
             value = found[name]
@@ -196,23 +178,24 @@ class Driven:
             tolerance: of poses, mm; the scene's own unless given.
             bounded: whether each number is to have its bound.
         """
-        inputs, reasons = self.inputs(values)
         if self.over_time:
-            return self._over_time(values[0], reasons, bounded)
-        return self.solved(inputs, reasons, tolerance, bounded)
+            return self._over_time(values[0], bounded)
+        return self.solved(*self.inputs(values), tolerance, bounded)
 
-    def _over_time(self, times: Array, reasons: Mapping[int, str], bounded: bool) -> Found:
-        reached: Bools = np.ones(len(times), dtype=bool)
-        inputs = {TIME: times}
-        reached[[*reasons]] = False
+    def _over_time(self, times: Array, bounded: bool) -> Found:
+        start, stop = self.scene.time.start, self.scene.time.stop
+        reached: Bools = (times >= start) & (times <= stop)
+        told = f"is outside the scene's time, {start:.10g} to {stop:.10g} s"
+        reasons = {int(i): f"t = {times[i]:.10g} s {told}" for i in np.flatnonzero(~reached)}
+        found = Found({}, {}, reached, reasons, {TIME: times})
         if not reached.any():
-            return Found({}, {}, reached, reasons, inputs)
+            return found
         # Samples want their instants in order and once each.
         instants, rows = np.unique(times[reached], return_inverse=True)
         samples = self.motion.at(instants)
         proven = self.motion.proof_of(samples, rates=True).proven if bounded else {}
         bounds = spread({q: proven[q] for q in samples.numbers if q in proven}, reached, rows)
-        return Found(spread(samples.numbers, reached, rows), bounds, reached, reasons, inputs)
+        return replace(found, numbers=spread(samples.numbers, reached, rows), bounds=bounds)
 
     def solved(
         self,
@@ -244,12 +227,13 @@ class Driven:
 
         rows, scene = found.reached, self.scene
         places = {name: place[rows] for name, place in found.numbers[PLACES].items()}
+        inputs = {name: value[rows] for name, value in found.inputs.items()}
         if self.over_time:
-            laws = laws_of(scene, found.inputs[TIME][rows])
+            laws = laws_of(scene, inputs[TIME])
         else:
-            scene = _through(scene, {name: value[rows] for name, value in found.inputs.items()})
+            scene = row_by_row(scene, inputs)
             still = np.zeros((int(rows.sum()), 2))
-            laws = {name: np.column_stack([value[rows], still]) for name, value in found.inputs.items()}
+            laws = {name: np.column_stack([value, still]) for name, value in inputs.items()}
         stated = accuracy_at(scene, off[rows], places, laws)
         blind = np.zeros(len(rows), dtype=bool)
         blind[rows] = False if stated.blind is None else stated.blind
@@ -257,6 +241,24 @@ class Driven:
         for claim in (claim for part in bounds.values() for claim in part.values()):
             claim[blind] = np.nan
         return bounds
+
+
+def row_by_row(scene: Scene, inputs: Mapping[str, Array]) -> Scene:
+    """A scene that is at inputs, each (N,), one row after the other, a second apart."""
+    content = scene.model_dump(exclude_none=True, exclude={"points"})
+    content["inputs"] = {name: _from_row_to_row(values) for name, values in inputs.items()}
+    count = len(next(iter(inputs.values())))
+    content["time"] = {"start": 0.0, "stop": count - 1.0, "samples": count}
+    return Scene.from_mapping(content, scene.title or "scene")
+
+
+def _from_row_to_row(values: Array) -> dict[str, Any]:
+    """A law that has these values at whole seconds; a straight one, which is solved soonest, if it may be."""
+    times, first = np.arange(float(len(values))), float(values[0])
+    step = float(values[-1] - values[0]) / max(len(values) - 1, 1)
+    if np.abs(values - (first + step * times)).max() <= 4.0 * EPS * np.abs(values).max():
+        return {"polynomial": [first, step]} if step else {"constant": first}
+    return {"table": {"times": times.tolist(), "values": values.tolist()}}
 
 
 def at_either_end(
@@ -269,20 +271,12 @@ def at_either_end(
             yield i, (below, above)
 
 
-def input_of(words: str) -> str:
-    """The input that a column or an entry of [held] stands for; a travel is one of its own name."""
-    return words.removeprefix(f"{INPUT}.")
-
-
 def ours_of(series: Series, found: Found) -> tuple[Array | None, Array | None]:
     """Our numbers of a column and their bounds, (N,); None if not known."""
-    meaning = series.meaning
-    value = found.numbers.get(meaning.quantity, {}).get(meaning.name)
-    if value is None:
-        return None, None
-    bound = found.bounds.get(meaning.quantity, {}).get(meaning.name)
-    if meaning.axis is not None:
-        value, bound = value[:, meaning.axis], None if bound is None else bound[:, meaning.axis]
+    quantity, name, axis = series.meaning.quantity, series.meaning.name, series.meaning.axis
+    value, bound = (numbers.get(quantity, {}).get(name) for numbers in (found.numbers, found.bounds))
+    if axis is not None:
+        value, bound = (None if one is None else one[:, axis] for one in (value, bound))
     return value, bound
 
 
@@ -302,18 +296,6 @@ def _widest(mechanism: Mechanism, name: str) -> float:
     """How far an input goes to either side at most, rad or mm."""
     unit = mechanism.topology.input_units[name]
     return WIDEST[unit] * (float(mechanism.unit) if unit == "mm" else 1.0)
-
-
-def _through(scene: Scene, inputs: Mapping[str, Array]) -> Scene:
-    """A scene that is at so many instants, a second apart, where inputs have these values, each (N,)."""
-    count = len(next(iter(inputs.values())))
-    times = np.arange(float(count)).tolist()
-    laws: dict[str, Any] = {name: law.model_dump(exclude_none=True) for name, law in scene.inputs.items()}
-    for name, values in inputs.items():
-        table = {"table": {"times": times, "values": values.tolist()}}
-        laws[name] = table if count > 1 else {"constant": float(values[0])}
-    time = {"start": 0.0, "stop": count - 1.0, "samples": count}
-    return Scene.checked(scene.model_copy(update={"inputs": laws, "time": time}), scene.title or "scene")
 
 
 def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:
@@ -373,16 +355,11 @@ def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
 
 def _asked(scene: Scene, measured: Measured) -> Scene:
     """The scene with the effects that a file's columns need, and with all points."""
-    effects, available = dict.fromkeys(scene.effects), scene.mechanism.effects
-    for s in measured.numbers:
-        giving = [effect.name for effect in EFFECTS.values() if _gives(effect.name, s.meaning, scene)]
+    gives = {name: effect.gives_numbers(scene.mechanism.topology) for name, effect in EFFECTS.items()}
+    effects = dict.fromkeys(scene.effects)
+    for quantity, name in dict.fromkeys(s.meaning.row for s in measured.numbers):
+        names = {effect: numbers.get(quantity, ()) for effect, numbers in gives.items()}
+        giving = [effect for effect, some in names.items() if some is None or name in some]
         # Where the car has none of them, one says what is missing.
-        effects |= dict.fromkeys([name for name in giving if name in available] or giving)
-    content = scene.model_dump(exclude_none=True, exclude={"points"})
-    return Scene.from_mapping(content | {"effects": tuple(effects)}, scene.title or "scene")
-
-
-def _gives(effect: str, meaning: Meaning, scene: Scene) -> bool:
-    numbers = EFFECTS[effect].gives_numbers(scene.mechanism.topology)
-    names = numbers.get(meaning.quantity, ())
-    return names is None or meaning.name in names
+        effects |= dict.fromkeys([effect for effect in giving if effect in scene.mechanism.effects] or giving)
+    return scene.model_copy(update={"points": None, "effects": tuple(effects)})

@@ -16,14 +16,13 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import SceneError
 from pointcoord.toml_text import read_file
-from validate.extras import not_there
+from validate.extras import needed
 from validate.plain_text import shown
 from validate.tables.cells import NUMBER, is_number, joined, lines_of, text_of
 from validate.tables.errors import FileError
@@ -88,10 +87,7 @@ def read_columns(path: str) -> Columns:
 
 
 def _parquet(path: str, source: str) -> Columns:
-    try:
-        parquet = import_module("pyarrow.parquet")
-    except ImportError as error:
-        raise not_there(".parquet", error, "parquet") from None
+    parquet = needed(".parquet", "pyarrow.parquet", "parquet")
     try:
         table = parquet.read_table(path)
         found = {name_and_unit(name): table.column(i).to_numpy() for i, name in enumerate(table.column_names)}
@@ -113,9 +109,6 @@ def _parquet(path: str, source: str) -> Columns:
         if column.dtype.kind == "f" and column.dtype.itemsize < 8:
             # Single precision rounds to half of the distance to the next number.
             steps[i] = np.spacing(np.abs(column))
-        for row in np.flatnonzero(np.isinf(values[i]))[:1].tolist():
-            place = f"row {row + 1}, column {shown(name)!r}"
-            raise FileError(source, place, f"is {values[i, row]}", "finite numbers, or NaN for none")
     names, units = zip(*found, strict=True)
     rows = tuple(f"row {i + 1}" for i in range(table.num_rows))
     return Columns(source, names, units, values, steps, rows, words)
@@ -171,10 +164,8 @@ def _numeric(row: Sequence[str]) -> bool:
 
 def _width(row: Sequence[str], head: Sequence[Sequence[str]]) -> int:
     """How many columns there are, without empty ones behind a delimiter at the end of every line."""
-    count = len(row)
-    while count > 1 and not row[count - 1] and not any(any(names[count - 1 :]) for names in head):
-        count -= 1
-    return count
+    told = [i for line in (row, *head) for i, cell in enumerate(line[: len(row)]) if cell]
+    return max(told, default=0) + 1
 
 
 def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -8,17 +8,18 @@ a sign and a unit, c another zero. What is found at some rows is held to the who
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import PointcoordError, Scene
+from pointcoord import PointcoordError
 from validate.diagnosis import Explanation
+from validate.diagnosis.evidence import Row
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import INPUT
-from validate.measured.poses import Driven, input_of, ours_of
+from validate.measured.poses import Driven, ours_of
 from validate.measured.tolerances import Held, held_of
 from validate.plain_text import shown
 from validate.tables.units import ANGLES, KINDS, named
@@ -37,28 +38,27 @@ UNIT = 0.01  # of a unit: how far off a slope is that one still
 
 
 def meant_otherwise(
-    scene: Scene,
+    driven: Driven,
     measured: Measured,
     held: Sequence[Held],
     accuracy: float | None,
     factor: float,
-    wrong: tuple[str, ...],
+    wrong: Sequence[Row],
 ) -> Explanation | None:
-    """What explains the whole file: one of its columns with another sign, unit or zero.
+    """What explains the whole file: one of its columns with another sign, unit or zero; over time nothing.
 
     Args:
-        wrong: what disagrees, as an explanation names it.
+        wrong: what disagrees.
     """
-    for words, other in _suppositions(scene, measured):
+    for words, other in _suppositions(driven, measured):
         try:
-            found = held_of(other, scene, accuracy)[0]
+            found = held_of(other, driven, accuracy)[0]
         except PointcoordError:
             continue
-        shares = np.stack([h.share for h in found])
-        leftover = float(np.nanmax(shares, initial=0.0)) / factor
+        leftover = float(np.nanmax([h.share for h in found], initial=0.0)) / factor
         # Fewer rows that agree are no explanation of those that are out of reach then.
         if leftover <= NEARLY and _reached(found) >= _reached(held):
-            return Explanation(words, "input", wrong, leftover)
+            return Explanation(words, "input", tuple(map(".".join, wrong)), leftover)
     return None
 
 
@@ -67,25 +67,21 @@ def _reached(held: Sequence[Held]) -> int:
     return int(np.isfinite([h.ours for h in held]).any(axis=0).sum())
 
 
-def _suppositions(scene: Scene, measured: Measured) -> list[tuple[str, Measured]]:
-    """The file with one column as it may be meant, by some of its rows; of one over time nothing."""
-    driven, found = Driven.of(scene, measured), list[tuple[str, Measured]]()
+def _suppositions(driven: Driven, measured: Measured) -> Iterator[tuple[str, Measured]]:
+    """The file with one column as it may be meant, by some of its rows, and what that is in words."""
     numbers = tuple(s for s in measured.numbers if s.meaning.of_a_pose)
     if driven.over_time or not numbers:
-        return found
+        return
     rows = np.zeros(len(measured.rows), dtype=bool)
     rows[np.unique(np.linspace(0, len(rows) - 1, ROWS).astype(int))] = True
     some = replace(measured, numbers=numbers).taken(rows)
-    for i, s in enumerate(some.independent):
-        x = _implied(driven, some, input_of(s.meaning.words))
-        line = None if x is None else _line(s, x, driven)
-        if line is not None:
+    for i, (one, s) in enumerate(zip(measured.independent, some.independent, strict=True)):
+        x = _implied(driven, some, s.meaning.drives)
+        if x is not None and (line := _line(s, x, driven)):
             factor, zero, words = line
-            one = measured.independent[i]
-            one = replace(one, values=factor * one.values + zero, off=abs(factor) * one.off)
-            columns = (*measured.independent[:i], one, *measured.independent[i + 1 :])
-            found.append((words, replace(measured, independent=columns)))
-    return found
+            columns = list(measured.independent)
+            columns[i] = replace(one, values=factor * one.values + zero, off=abs(factor) * one.off)
+            yield words, replace(measured, independent=tuple(columns))
 
 
 def _implied(driven: Driven, some: Measured, name: str) -> Array | None:

@@ -33,20 +33,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene
+from pointcoord.numerics.rounding import EPS
 from validate.comparison.compare import SMALLEST
 from validate.formulations.asked_numbers import is_force
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import TRAVEL
 from validate.measured.poses import Driven, Found, at_either_end, ours_of
-from validate.plain_text import shown, some_of
+from validate.plain_text import gathered, shown, some_of
 from validate.tables.errors import FileError
 from validate.toml_written import key_of
 
 Array = NDArray[np.float64]
 
-EPS = float(np.finfo(float).eps)
 OURS = "pointcoord"
 NO_NUMBERS = "no row has a number of it that can be compared with anything"
 NOT_OVER_INPUTS = "rates need a column of time"
@@ -112,7 +111,7 @@ class Held:
 
 
 def held_of(
-    measured: Measured, scene: Scene, accuracy: float | None, driven: Driven | None = None
+    measured: Measured, driven: Driven, accuracy: float | None
 ) -> tuple[list[Held], Solution, tuple[str, ...]]:
     """Every column beside ours, our solution, and notes.
 
@@ -121,8 +120,7 @@ def held_of(
         MissingLibrary: what digits in full and numbers over inputs need, the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
-    driven = Driven.of(scene, measured) if driven is None else driven
-    values = [s.values for s in measured.independent]
+    values, least = [s.values for s in measured.independent], driven.scene.tolerance
     here = driven.at(values)
     notes = [*measured.notes, *driven.notes, *out_of_reach(measured, here)]
     if not here.reached.any():
@@ -130,33 +128,28 @@ def held_of(
         problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[row]})"
         raise FileError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
     unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
-    granted = here
+    granted, reached_to = here, [s.off for s in measured.independent]
     if unsaid:
-        off = np.full(len(values[0]), driven.scene.tolerance)
-        granted = replace(here, bounds=driven.within(here, off))
-        notes.append(_granted(unsaid, measured, scene))
-    reached_to = [
-        s.off + scene.tolerance if unsaid and s.meaning.kind == TRAVEL and not s.off.any() else s.off
-        for s in measured.independent
+        granted = replace(here, bounds=driven.within(here, np.full(len(values[0]), least)))
+        notes.append(_granted(unsaid, measured, least))
+        reached_to = [
+            s.off + least if s.meaning.kind == TRAVEL and not s.off.any() else s.off
+            for s in measured.independent
+        ]
+    around = [
+        (measured.independent[i].rounded_unasked, [driven.at(end, bounded=False) for end in ends])
+        for i, ends in at_either_end(values, reached_to)
     ]
-    around = []
-    for i, ends in at_either_end(values, reached_to):
-        one = measured.independent[i]
-        around.append((bool(one.off.any()) and not one.said, [driven.at(e, bounded=False) for e in ends]))
     largest: dict[str, float] = {}
     for s in measured.numbers:
         size = float(np.nanmax(np.abs(s.values), initial=0.0))
         largest[s.meaning.quantity] = max(largest.get(s.meaning.quantity, 0.0), size)
-    found, nothing, notested = [], np.zeros(len(values[0])), dict[str, list[str]]()
+    found, nothing = list[Held](), np.zeros(len(values[0]))
     for s in measured.numbers:
         mine, bound = ours_of(s, here)
         if mine is None or bound is None:
-            why = NO_NUMBERS
-            if not driven.over_time and (s.meaning.per_second or is_force(s.meaning.quantity)):
-                why = NOT_OVER_INPUTS if s.meaning.per_second else NO_WAY
             nan = np.full(len(nothing), np.nan)
-            found.append(Held(s, nan, nan, nothing, nothing, nothing, why))
-            notested.setdefault(why, []).append(shown(s.column))
+            found.append(Held(s, nan, nan, nothing, nothing, nothing, _why_unknown(s, driven)))
             continue
         swing, supposed = nothing, nothing
         for unstated, sides in around:
@@ -168,7 +161,8 @@ def held_of(
         rounding = 4.0 * EPS * largest[s.meaning.quantity]
         allowed = s.off + swing + rounding + (0.0 if own is None else own) + bound
         found.append(Held(s, mine, np.where(np.isfinite(mine), allowed, np.nan), swing, supposed, bound))
-    notes += [f"{', '.join(names)} is not tested: {why}" for why, names in notested.items()]
+    reasons = gathered((h.unknown, shown(h.series.column)) for h in found if h.unknown)
+    notes += [f"{', '.join(names)} is not tested: {why}" for why, names in reasons.items()]
     # Which columns have a wider tolerance by an independent one's rounding than by their own digits.
     wide = [h for h in found if np.nanmax(h.supposed, initial=0.0) > np.nanmax(h.series.off, initial=0.0)]
     if wide:
@@ -183,19 +177,25 @@ def held_of(
     return found, Solution(OURS, instants, here.numbers, own_accuracy), tuple(notes)
 
 
+def _why_unknown(s: Series, driven: Driven) -> str:
+    if not driven.over_time and s.meaning.per_second:
+        return NOT_OVER_INPUTS
+    return NO_WAY if not driven.over_time and is_force(s.meaning.quantity) else NO_NUMBERS
+
+
 def rounded(measured: Measured) -> str:
     """Which columns that poses are taken from are taken as rounded unasked, and what to say of them."""
-    some = [s for s in measured.independent if not s.said and s.off.any()]
+    some = [s for s in measured.independent if s.rounded_unasked]
     given = (f"{shown(s.column)} is given to +-{np.max(s.off) / s.factor:.3g}" for s in some)
     lines = ", ".join(f"columns.{key_of(shown(s.column))}.printed = 0" for s in some)
     return f"{' and '.join(given)}; if that is exact as written, add this line to a map: {lines}"
 
 
-def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:
+def _granted(unsaid: Sequence[Series], measured: Measured, tolerance: float) -> str:
     names = some_of([shown(s.column) for s in unsaid], NAMED)
     who = f"{names} {'are' if unsaid[1:] else 'is'}" if len(unsaid) < len(measured.numbers) else "the file is"
     return (
-        f"compared with points placed within {scene.tolerance:g} mm, the scene's tolerance, and with what "
+        f"compared with points placed within {tolerance:g} mm, the scene's tolerance, and with what "
         f"that makes of each number: {who} in full digits and no --accuracy is given"
     )
 

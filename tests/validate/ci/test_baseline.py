@@ -13,7 +13,7 @@ from program import PAST_ITS_END, short_scene
 
 from pointcoord import Scene
 from validate import Outcome, Solution, compare
-from validate.ci.baseline import VERSION, Baseline, Move, Recorder, Since, read_baseline
+from validate.ci.baseline import VERSION, Baseline, Kept, Move, Since, read_baseline, written
 from validate.ci.junit import junit
 from validate.ci.record import Record
 from validate.ci.verdict import sentence
@@ -31,9 +31,8 @@ WHEEL = TWO.numbers["position"]["wheel_centre"]
 
 
 def saved(folder: Path, *outcomes: Outcome) -> Baseline:
-    target, recorder = folder / "b.npz", Recorder()
-    recorder.add("steer", SCENE, outcomes or [OUTCOME])
-    target.write_bytes(recorder.content())
+    target = folder / "b.npz"
+    target.write_bytes(written({"steer": Kept.of(SCENE, outcomes or [OUTCOME])}))
     return read_baseline(str(target))
 
 

@@ -36,10 +36,15 @@ def planted(quantity: str, name: str, error: float, instant: int) -> Outcome:
     return compare_solutions(SCENE, one.with_numbers({quantity: numbers}), two, "steer")
 
 
+def record_of(*scenes: Examined) -> Record:
+    record = Record([scene.name for scene in scenes])
+    for scene in scenes:
+        record.add(scene)
+    return record
+
+
 def document(*outcomes: Outcome, name: str = "steer") -> Element:
-    record = Record([name])
-    record.add(Examined(name=name, outcomes=outcomes), None)
-    return checked(junit(record))
+    return checked(junit(record_of(Examined(name=name, outcomes=outcomes))))
 
 
 def cases(root: Element) -> dict[str, Element]:
@@ -113,9 +118,7 @@ def test_what_is_not_given_or_not_tested_is_skipped_with_the_reason() -> None:
 def test_names_and_messages_stay_text_whatever_is_in_them() -> None:
     row = replace(RIGHT.rows[0], name=NASTY, verdict="disagrees", second=NASTY)
     root = document(replace(RIGHT, rows=(row,)), name=NASTY)
-    record = Record([NASTY, NASTY])
-    record.add(Examined(name=NASTY, problem=f"{NASTY}: no\nscene"), None)
-    broken = checked(junit(record))
+    broken = checked(junit(record_of(Examined(name=NASTY, problem=f"{NASTY}: no\nscene"))))
     told = "a|b<script>&\"'\\x00\\x1b[31m\\x85\\u2028\\ufffe\\udc80]]>"
     assert root[0].get("name") == f"{told}: pointcoord and absolute"
     assert root[0].find("testcase").get("name") == f"position of {told}"
@@ -150,10 +153,8 @@ def test_a_scene_that_is_refused_or_cannot_be_read_is_an_error_and_the_others_go
     assert "samples" in error.get("message", "")
 
 
-def text_of(*scenes: Examined, more: tuple[str, ...] = ()) -> str:
-    record = Record([*(scene.name for scene in scenes), *more])
-    for scene in scenes:
-        record.add(scene, None)
+def text_of(*scenes: Examined) -> str:
+    record = record_of(*scenes)
     return summary(record, record.status)
 
 

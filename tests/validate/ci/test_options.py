@@ -12,9 +12,10 @@ from junit_schema import checked
 from program import BOUNCE, PAST_ITS_END, complaints, run, short_scene
 
 from pointcoord import Scene
-from validate import Solution, compare
+from validate import Solution
 from validate.cli import main
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
+from validate.formulations.registry import formulation
 
 PAIR = ("--second", "absolute")
 SOLVE = AbsoluteCoordinates.solve
@@ -24,24 +25,13 @@ def off_by(patch: pytest.MonkeyPatch, times: float) -> None:
     """The absolute model's wheel centre is wrong by so many times both claims together, at one instant."""
 
     def solve(self: AbsoluteCoordinates, scene: Scene) -> Solution:
-        right = compare(scene, "pointcoord", Given(SOLVE(self, scene)))
-        one, two = right.solutions
+        one, two = formulation("pointcoord").solve(scene), SOLVE(self, scene)
         claims = (s.accuracy.claims["position"]["wheel_centre"][2, 0] for s in (one, two))
         places = two.numbers["position"]["wheel_centre"].copy()
         places[2, 0] = one.numbers["position"]["wheel_centre"][2, 0] + times * sum(claims)
         return two.with_numbers({"position": {**two.numbers["position"], "wheel_centre": places}})
 
     patch.setattr(AbsoluteCoordinates, "solve", solve)
-
-
-class Given:
-    """A formulation that has its answer."""
-
-    def __init__(self, solution: Solution) -> None:
-        self.name, self._solution = solution.formulation, solution
-
-    def solve(self, scene: Scene) -> Solution:
-        return self._solution
 
 
 def test_every_toml_file_below_a_folder_is_compared_in_order_and_a_broken_one_is_its_own_fault(

@@ -1,16 +1,15 @@
 """`pointcoord validate --data` as its users meet it."""
 
-import json
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import jsonschema
 import numpy as np
 import pytest
-from curve_files import compared, disagreeing
+from curve_files import compared, disagreeing, table
+from program import document
 
 from pointcoord import Scene, simulate, solve_poses, standing
 from validate.ci.junit import junit
@@ -23,7 +22,6 @@ from validate.measured.comparing import DataOutcome
 from validate.measured.mapping import understood
 from validate.measured.poses import Driven
 from validate.measured.reading import columns_of_text
-from validate.output.document import schema_text
 from validate.tables.errors import FileError
 
 STEER, WISHBONE = Scene.load("steer"), Scene.load("double-wishbone")
@@ -43,9 +41,7 @@ def test_what_simulate_writes_agrees_within_its_tolerance_and_a_changed_number_d
     data, report = str(tmp_path / f"x.{ending}"), tmp_path / "x.json"
     assert main(["simulate", scene, "-o", data, "--quiet"]) == 0
     assert main(["validate", "--data", data, scene, "--json", str(report)]) == 0
-    content = json.loads(report.read_text())
-    jsonschema.validate(content, json.loads(schema_text()))
-    (comparison,) = content["scenes"][0]["comparisons"]
+    (comparison,) = document(report)["scenes"][0]["comparisons"]
     assert {row["verdict"] for row in comparison["rows"]} == {"agrees"}
     tolerances = [row["tolerance"] for row in comparison["rows"]]
     # 1e-9 mm of every point, as no accuracy is given, through rates of some 10 / s; never nothing at all.
@@ -64,15 +60,14 @@ def test_what_simulate_writes_agrees_within_its_tolerance_and_a_changed_number_d
 
 def test_digits_in_full_are_held_to_what_points_off_by_the_tolerance_make_of_them() -> None:
     motion = simulate(STEER)
-    lines = ["time [s],position.wheel_centre.x [mm],camber [deg]"]
     x, camber = motion.position["wheel_centre"][:, 0], np.degrees(motion.wheel["camber"])
-    lines += [
-        f"{float(t)!r},{float(a)!r},{float(b)!r}" for t, a, b in zip(motion.times, x, camber, strict=True)
-    ]
+    text = "time [s],position.wheel_centre.x [mm],camber [deg]"
+    for row in np.stack([motion.times, x, camber], axis=-1).tolist():
+        text += "\n" + ",".join(map(repr, row))
     found = []
     for tolerance in (1e-9, 1e-7):
         car = STEER.model_copy(update={"tolerance": tolerance})
-        claims = tolerances(compared("\n".join(lines), {}, car))
+        claims = tolerances(compared(text, {}, car))
         found.append((claims["position"]["wheel_centre"][:, 0], claims["wheel"]["camber"]))
     for fine, coarse in zip(*found, strict=True):
         # Beside rounding and our own bound, which are far below.
@@ -82,8 +77,7 @@ def test_digits_in_full_are_held_to_what_points_off_by_the_tolerance_make_of_the
     assert ((place >= 1e-9) & (place < 1e-7)).all()
     # An axis of some 100 mm turns by e / 100 mm at least.
     assert ((angle > 1e-12) & (angle < 1e-9)).all()
-    stated = compared("\n".join(lines), {}, STEER, accuracy=1e-3)
-    said = tolerances(stated)["position"]["wheel_centre"][:, 0]
+    said = tolerances(compared(text, {}, STEER, accuracy=1e-3))["position"]["wheel_centre"][:, 0]
     assert said == pytest.approx(1e-3, rel=1e-6)
 
 
@@ -92,11 +86,8 @@ def test_times_that_are_rounded_widen_by_what_the_motion_does_meanwhile() -> Non
     times = np.array([0.1, 0.3])
     at = motion.at(times)
     x = at.position["wheel_centre"][:, 0]
-    text = "time [s],position.wheel_centre.x [mm]\n" + "".join(
-        f"{t:.1f},{place:.6f}\n" for t, place in zip(times, x, strict=True)
-    )
-    found = compared(text, {}, STEER)
-    claims = tolerances(found)["position"]["wheel_centre"][:, 0]
+    text = table({"time [s]": times, "position.wheel_centre.x [mm]": x}, 6)
+    claims = tolerances(compared(text, {}, STEER))["position"]["wheel_centre"][:, 0]
     change = [np.abs(motion.at(times + side).position["wheel_centre"][:, 0] - x) for side in (-0.05, 0.05)]
     assert claims == pytest.approx(np.max(change, axis=0) + 0.5e-6, abs=1e-9)
 
@@ -125,8 +116,8 @@ def test_numbers_that_are_none_and_rows_outside_the_time_are_counted_and_the_oth
 def test_a_file_of_which_most_rows_cannot_be_compared_has_no_verdict_and_says_why() -> None:
     """Milliseconds titled [s]: all but t = 0 are outside the scene's time, and t = 0 agrees with anything."""
     camber = simulate(WISHBONE).wheel["camber"]
-    rows = zip(1000.0 * WISHBONE.instants, np.degrees(camber), strict=True)
-    found = compared("time [s],camber [deg]\n" + "".join(f"{t:.3f},{c:.4f}\n" for t, c in rows), {}, WISHBONE)
+    text = table({"time [s]": 1000.0 * WISHBONE.instants, "camber [deg]": np.degrees(camber)}, 4)
+    found = compared(text, {}, WISHBONE)
     count = len(WISHBONE.instants)
     assert [row.verdict for row in found.outcome.rows] == ["not tested"]
     (fault,) = found.outcome.faults
@@ -141,12 +132,12 @@ def test_a_file_of_which_most_rows_cannot_be_compared_has_no_verdict_and_says_wh
     assert told["instants"] == "1"
 
 
-def steered(racks: Sequence[float], wrong: float = 0.0, digits: int = 2) -> str:
-    """Toe over the rack, deg and mm, wrong on purpose at one row; the rack is written without decimals."""
+def steered(racks: Sequence[float], wrong: float = 0.0, digits: int = 2, form: str = ".0f") -> str:
+    """Toe over the rack, deg and mm, wrong on purpose at one row; form: of the rack."""
     place = solve_poses(WISHBONE, {"arm_angle": np.full(len(racks), DRAWN), "rack": np.array(racks)}).position
     x, y, _ = (place["wheel_centre"] - place["wheel_axis_inner"]).T
     toe = -np.degrees(np.arctan2(x, y)) + wrong * (np.arange(len(racks)) == 3)
-    rows = (f"{rack:.0f},{value:.{digits}f}" for rack, value in zip(racks, toe, strict=True))
+    rows = (f"{rack:{form}},{value:.{digits}f}" for rack, value in zip(racks, toe, strict=True))
     return "\n".join(["rack [mm],toe [deg]", *rows])
 
 
@@ -165,12 +156,9 @@ def test_a_column_in_even_steps_is_set_and_not_rounded() -> None:
 
 def test_zeros_that_are_left_off_make_no_even_column_rounded() -> None:
     """Twelve digits of thirds, of which -30 is written without decimals."""
-    racks = [-30.0 + 10.0 / 3.0 * k for k in range(19)]
+    racks = np.linspace(-30.0, 30.0, 19)
     for wrong, verdict in ((0.0, "agrees"), (0.02, "disagrees")):
-        head, *rows = steered(racks, wrong=wrong).splitlines()
-        numbers = zip(racks, (line.partition(",")[2] for line in rows), strict=True)
-        text = "\n".join([head, *(f"{rack:.12g},{toe}" for rack, toe in numbers)])
-        (row,) = compared(text, {}, WISHBONE).outcome.rows
+        (row,) = compared(steered(racks, wrong, form=".12g"), {}, WISHBONE).outcome.rows
         assert row.verdict == verdict
         assert np.degrees(row.tolerance) == pytest.approx(0.005, rel=1e-3)
 
@@ -219,7 +207,7 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
     ("text", "content", "words"),
     [
         (TEXT + "0.3,1e308", {}, ("mine.csv: line 4, column 'camber': is 1e+308",)),
-        (TEXT, {"colums": {}}, ("'colums'", "did you mean 'columns'?")),
+        (TEXT, {"colums": {}}, ("colums: there is no such key (did you mean 'columns'?)", "held")),
         (TEXT.replace("deg", "deg/mm"), {}, ("'deg/mm' is no unit of wheel.camber",)),
         (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not said", "deg")),
         (TEXT, {"columns": {"camber": {"sign": 2}, "time": {}}}, ("columns.camber.sign", "1 or -1")),
@@ -247,50 +235,23 @@ def test_a_wrong_map_or_file_is_refused_with_its_place(
     assert [word for word in words if word not in str(caught.value)] == [], caught.value
 
 
-def curves_over_travel(change: Callable[[float], float]) -> str:
-    """Toe, changed on purpose, and camber of the double wishbone over its wheel's travel, deg and mm."""
-    content = WISHBONE.model_dump(exclude_none=True)
-    content["inputs"]["rack"] = {"constant": 0.0}
-    content["time"]["samples"] = 41
-    motion = simulate(Scene.from_mapping(content, "bounce"))
-    place, wheel = motion.position["wheel_centre"], motion.wheel
-    rise = place[:, 2] - WISHBONE.mechanism.points["wheel_centre"][2]
-    lines = ["rise [mm],toe [deg],camber [deg]"]
-    for z, toe, camber in zip(rise, np.degrees(wheel["toe"]), np.degrees(wheel["camber"]), strict=True):
-        lines.append(f"{float(z)!r},{change(toe):.5f},{camber:.5f}")
-    return "\n".join(lines)
-
-
-MAP = """
-[columns]
-rise = { is = "travel.wheel_centre" }
-toe = { is = "wheel.toe", printed = 1e-5 }
-camber = { is = "wheel.camber", printed = 1e-5 }
-"""
-
-
-def test_a_disagreement_over_travel_is_explained_and_stands_in_every_file(
+def test_a_disagreement_is_explained_and_stands_in_every_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     words = "toe: the other sign"
     monkeypatch.chdir(tmp_path)
-    Path("map.toml").write_text(MAP, encoding="utf-8")
-    Path("bump.csv").write_text(curves_over_travel(lambda toe: -toe), encoding="utf-8")
+    Path("map.toml").write_text("columns.toe.sign = -1", encoding="utf-8")
+    Path("steer.csv").write_text(steered(EVEN, digits=5), encoding="utf-8")
     files = ["--json", "x.json", "--junit", "x.xml", "--summary", "x.md"]
-    assert main(["validate", "--data", "bump.csv", "--map", "map.toml", "double-wishbone", *files]) == 1
-    out = capsys.readouterr().out
-    assert f"what would explain it: {words}" in out
-    content = json.loads(Path("x.json").read_text())
-    jsonschema.validate(content, json.loads(schema_text()))
-    (comparison,) = content["scenes"][0]["comparisons"]
+    assert main(["validate", "--data", "steer.csv", "--map", "map.toml", "double-wishbone", *files]) == 1
+    assert f"what would explain it: {words}" in capsys.readouterr().out
+    (comparison,) = document(Path("x.json"))["scenes"][0]["comparisons"]
     first = comparison["explanations"][0]
     assert first["words"].startswith(words)
     assert first["leftover"] <= 1.0
-    (wrong,) = (row for row in comparison["rows"] if row["verdict"] == "disagrees")
+    (wrong,) = comparison["rows"]
     assert wrong["place"].startswith("line ")
-    suite = ElementTree.parse("x.xml").getroot()
-    assert (suite.get("tests"), suite.get("failures")) == ("2", "1")
-    (failure,) = suite.iter("failure")
+    (failure,) = ElementTree.parse("x.xml").getroot().iter("failure")
     assert f" at {wrong['place']}; at most " in str(failure.get("message"))
     assert f" at {wrong['place']}; at most " in Path("x.md").read_text()
 

@@ -4,12 +4,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from curve_files import compared, disagreeing, verdicts
+from curve_files import compared, disagreeing, table, verdicts
 
 from pointcoord import Scene, solve_poses
 from pointcoord.drawing_stands import drawn_inputs
-from pointcoord.effects.registry import number_called
+from pointcoord.effects.registry import QUANTITIES
 from validate.formulations.registry import formulation
+from validate.tables.units import degrees_of
 
 OVER_TRAVEL = (
     "toe_by_travel",
@@ -37,22 +38,13 @@ def asking(name: str, effects: tuple[str, ...], samples: int = 9) -> Scene:
 
 def file_of(scene: Scene, over: str, numbers: tuple[str, ...], wrong: dict[str, Any] | None = None) -> str:
     """A table of the absolute model's numbers over an input, five decimals, and of what is done to some."""
-    solved = formulation("absolute").solve(scene).numbers
-    values = {name: array for part in solved.values() for name, array in part.items() if name in numbers}
-    columns = {over: scene.functions[over].series(scene.instants, 0)[:, 0]}
-    heads = [f"{over} [mm]"]
-    for name in numbers:
-        number = number_called(name)
-        assert number is not None
-        unit = number.quantity.unit
-        heads.append(f"{name} [{unit.replace('rad', 'deg', 1)}]")
-        change = (wrong or {}).get(name, lambda x: x)
-        columns[name] = change(np.degrees(values[name]) if unit.startswith("rad") else values[name])
-    rows = [
-        ",".join([f"{row[0]:.9g}", *(f"{value:.5f}" for value in row[1:])])
-        for row in zip(*columns.values(), strict=True)
-    ]
-    return "\n".join([",".join(heads), *rows, ""])
+    columns = {f"input.{over} [mm]": scene.functions[over].series(scene.instants, 0)[:, 0]}
+    for quantity, part in formulation("absolute").solve(scene).numbers.items():
+        factor, unit = degrees_of(QUANTITIES[quantity].unit)
+        for name in (name for name in numbers if name in part):
+            change = (wrong or {}).get(name, lambda x: x)
+            columns[f"{name} [{unit}]"] = change(factor * part[name])
+    return table(columns, 5)
 
 
 def test_gradients_centres_and_ratios_over_a_travel_are_held_to_their_digits() -> None:
@@ -81,10 +73,11 @@ def test_those_of_them_that_are_wrong_disagree_alone() -> None:
 
 def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
     scene, numbers = asking("axle-steer", ("steer_angle", "ackermann"), 10), ("ackermann", "ackermann_error")
-    found = compared(file_of(scene, "rack", numbers), {"columns": {"rack": {"printed": 0}}}, scene)
+    exact = {"columns": {"input.rack": {"printed": 0}}}
+    found = compared(file_of(scene, "rack", numbers), exact, scene)
     assert {verdicts(found)[name] for name in numbers} == {"agrees"}
     off = file_of(scene, "rack", numbers, {"ackermann": lambda x: x + 1e-3})
-    (wrong,) = disagreeing(off, {"columns": {"rack": {"printed": 0}}}, scene)
+    (wrong,) = disagreeing(off, exact, scene)
     assert wrong.endswith(".ackermann")
 
 

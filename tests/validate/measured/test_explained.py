@@ -1,0 +1,99 @@
+"""What explains a file over inputs or a travel: first a column that is meant otherwise, then other faults."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from curve_files import at_inputs, compared, table
+from numpy.typing import NDArray
+
+from pointcoord import Scene, designs_of
+from pointcoord.drawing_stands import drawn_inputs
+from validate.comparison.compare import Explanation, Outcome
+from validate.measured.supposed import NEARLY
+
+Array = NDArray[np.float64]
+Columns = dict[str, Array]
+CAR = Scene.load("double-wishbone")
+HOME = drawn_inputs(CAR)["arm_angle"]
+RACK, ANGLE, RISE = "input.rack [mm]", "input.arm_angle [rad]", "travel.wheel_centre [mm]"
+GOES = {RACK: "rack", ANGLE: "arm_angle", RISE: "wheel_travel"}
+ENDS = {RACK: (-40.0, 43.7), ANGLE: (HOME - 0.12, HOME + 0.1), RISE: (-50.0, 50.0)}
+ROWS = 19
+AT = {over: np.linspace(*ends, ROWS) for over, ends in ENDS.items()}
+
+
+def numbers(over: str, car: Scene = CAR) -> Columns:
+    """A car's angles and its wheel's place where one input goes evenly from end to end."""
+    still = {"rack": (0.0, 0.0)} | ({} if over == RISE else {"arm_angle": (HOME, HOME)})
+    found = at_inputs(car, still | {GOES[over]: ENDS[over]}, ROWS)
+    angles = {f"{name} [deg]": np.degrees(angle) for name, angle in found["wheel"].items()}
+    return {**angles, "position.wheel_centre.x [mm]": found["position"]["wheel_centre"][:, 0]}
+
+
+def outcome(over: str, values: Array, columns: Columns, car: Scene = CAR) -> Outcome:
+    """What comes of a file of five decimals over a column that is exact as written."""
+    exact = {"columns": {over.partition(" ")[0]: {"printed": 0}}}
+    return compared(table({over: values, **columns}, 5), exact, car).outcome
+
+
+def explanations(over: str, values: Array, columns: Columns, car: Scene = CAR) -> tuple[Explanation, ...]:
+    found = outcome(over, values, columns, car)
+    assert not found.agreed
+    return found.explanations
+
+
+@pytest.mark.parametrize(
+    ("over", "change", "words"),
+    [
+        (RACK, lambda s: -s, "has the other sign"),
+        (RACK, lambda s: -s / 25.4, "is in in, not in mm, and has the other sign"),
+        (RACK, lambda s: 4.0 - s, "has the other sign, and counts from another zero: +4 mm make ours"),
+        (ANGLE, lambda a: np.pi - a, "has the other sign, and counts from another zero: +180 deg make ours"),
+        (ANGLE, lambda a: a - HOME + 1.2, "counts from another zero: +17.77 deg make ours"),
+    ],
+)
+def test_a_column_that_is_meant_otherwise_is_told_first(
+    over: str, change: Callable[[Array], Array], words: str
+) -> None:
+    """Also where some numbers hardly change, so that their decimals say little of where a row is."""
+    (first,) = explanations(over, change(AT[over]), numbers(over))
+    assert (first.words, first.kind) == (f"{over.partition(' ')[0]} {words}", "input")
+    assert first.leftover <= NEARLY
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda toe: -toe, ["toe: the other sign"]),
+        (lambda toe: toe + 0.3, ["toe: a constant offset of 0.00523"]),
+        (lambda toe: toe + 1e-2 * np.random.default_rng(1).standard_normal(ROWS), []),
+    ],
+)
+@pytest.mark.parametrize("over", [RACK, RISE])
+def test_a_fault_of_one_number_is_no_other_zero_and_noise_has_no_explanation(
+    over: str, change: Callable[[Array], Array], words: list[str]
+) -> None:
+    columns = numbers(over)
+    columns["toe [deg]"] = change(columns["toe [deg]"])
+    found = [one.words for one in explanations(over, AT[over], columns)]
+    assert [told.startswith(said) for told, said in zip(found, words, strict=True)] == [True] * len(words)
+
+
+def test_a_misread_hardpoint_is_named_though_one_number_has_a_fault_of_its_own() -> None:
+    """Over rows in any order."""
+    car = Scene.load("bmw-e90-strut")
+    columns = numbers(RISE, designs_of(car, offsets={"strut_top.x": 6.0}).design(0))
+    columns["toe [deg]"] *= -1.0
+    del columns["position.wheel_centre.x [mm]"]
+    order = np.random.default_rng(2).permutation(ROWS)
+    shuffled = {name: column[order] for name, column in columns.items()}
+    hardpoint, sign = explanations(RISE, AT[RISE][order], shuffled, car)
+    assert "strut_top.x drawn 6 mm too far back" in hardpoint.words
+    assert sign.words == "toe: the other sign"
+
+
+def test_a_long_name_of_a_column_that_is_ignored_is_shortened() -> None:
+    found = outcome(ANGLE, AT[ANGLE], {**numbers(ANGLE), "w" * 10_000: AT[ANGLE]})
+    assert found.agreed
+    assert max(map(len, found.notes)) < 200
