@@ -307,7 +307,7 @@ def _enclosed(
     added = chassis.enclosed(laws, mechanism.origin, len(powers) - 1)
     points: Sequence[Mapping[str, Enclosed]] = enclosed_points(mechanism, coordinates)
     in_chassis = points
-    if chassis.turns:
+    if chassis.turning:
         scaled = {
             name: [part.scaled(power) for part, power in zip(parts, powers, strict=False)]
             for name, parts in laws.items()

@@ -217,9 +217,8 @@ def _forces(
             share = ratio(held(along(opening)).work, dot(gap, gap))
             parts.append(times(share, gap))
         force = parts[0] + parts[1] + parts[2]
-        sliding = topology.sliding.get(point)
-        turned = sliding.of_line if sliding else point in topology.chassis
-        joints[point] = -force if turned else force
+        _, of_line = topology.sliding.get(point, ("", point in topology.chassis))
+        joints[point] = -force if of_line else force
     for points in topology.joints:
         if len(points) == 2:
             line = loaded[0][0].seen.line(*points)

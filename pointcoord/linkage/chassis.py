@@ -14,13 +14,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from math import comb, factorial
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.directions import axis_along
+from pointcoord.linkage.drives import V, times, turn_slopes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosure
 from pointcoord.numerics.double_double import PAIRS
@@ -29,7 +29,6 @@ from pointcoord.numerics.vectors import cross
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
-V = TypeVar("V", Array, Enclosed)
 
 LARGEST = 1e300  # mm and s: sums with an origin and of some inputs stay finite
 FASTEST = 1e140  # rad and s: squares of rates, times lengths, stay finite
@@ -57,37 +56,27 @@ class ChassisMotion:
     def of(cls, mechanism: Mechanism, functions: Mapping[str, TimeFunction]) -> ChassisMotion:
         """Those of a mechanism's inputs that move its chassis."""
         topology, drawing = mechanism.topology, mechanism.drawing
-        turns = topology.chassis_turns
-        along = {**topology.chassis_motion, **{name: axis_along(line[0]) for name, line in turns.items()}}
+        moves = topology.chassis_inputs.items()
+        along = {name: axis_along(direction) if about else direction for name, (direction, about) in moves}
         unit = mechanism.unit[..., None]
         return cls(
             {name: function for name, function in functions.items() if name in along},
             {name: drawing.vectors[way] for name, way in along.items()},
             {name: drawing.lacks[way] for name, way in along.items() if way in drawing.lacks},
-            {name: drawing.vectors[about] * unit for name, (_, about) in turns.items()},
+            {name: drawing.vectors[about] * unit for name, (_, about) in moves if about},
         )
-
-    @property
-    def turns(self) -> bool:
-        """Whether one of the inputs turns the car."""
-        return not self.functions.keys().isdisjoint(self.centres)
 
     @property
     def turning(self) -> list[str]:
         """The inputs that turn the car, in order."""
         return [name for name in self.centres if name in self.functions]
 
-    def states(self, instants: Array, derivatives: int) -> list[Array]:
+    def shifts(self, laws: Mapping[str, Sequence[Array]]) -> list[Array]:
         """Displacement and its time derivatives, each (..., N, 3), mm; empty if nothing displaces the car.
 
-        Raises:
-            InputOutOfRange: a value, a rate or an acceleration is too large to be added to anything.
+        Args:
+            laws: by input its value and its time derivatives, each (N,), mm; those of turns are passed over.
         """
-        names = [name for name in self.functions if name not in self.centres]
-        return self.shifts({name: list(self.law(name, instants, derivatives)) for name in names})
-
-    def shifts(self, laws: Mapping[str, Sequence[Array]]) -> list[Array]:
-        """The same of inputs whose values and time derivatives are given, each (N,), mm; not of turns."""
         sums: list[Array] = []
         for name, rates in ((name, rates) for name, rates in laws.items() if name not in self.centres):
             # The instants lie side by side in memory, as in a table of results.
@@ -100,7 +89,7 @@ class ChassisMotion:
         """The value of an input and its time derivatives, shape (derivatives + 1, N), mm or rad.
 
         Raises:
-            InputOutOfRange: as `states`.
+            InputOutOfRange: a value, a rate or an acceleration is too large to be added to anything.
         """
         largest, unit = (FASTEST, "rad") if name in self.centres else (LARGEST, "mm")
         with np.errstate(over="ignore", invalid="ignore"):
@@ -127,18 +116,17 @@ class ChassisMotion:
             vectors = self.directions[name], self.centres[name]
             k, about = (v if v.ndim == 1 else v[..., None, :] for v in vectors)
             angle, *rates = (law[..., None] for law in laws[name])
-            slopes = _slopes(np.cos(angle), np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2, rates)
+            slopes = turn_slopes(np.cos(angle), np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2, rates)
             states = _turned(states, about, partial(_about, k), slopes)
         return states
 
     def taken_back(self, instants: Array, places: Array) -> Array:
         """Where places of a moved car, (N, 3), mm from the mechanism's origin, are in the chassis' frame."""
-        for shift in self.states(instants, 0):
+        laws = {name: self.law(name, instants, 0) for name in self.functions}
+        for shift in self.shifts({name: list(law) for name, law in laws.items()}):
             places = places - shift
-        for name in reversed(list(self.centres)):
-            if name in self.functions:
-                law = {name: list(-self.law(name, instants, 0))}
-                places = self.turned_by(law, [{"": places}])[0][""]
+        for name in reversed(self.turning):
+            places = self.turned_by({name: list(-laws[name])}, [{"": places}])[0][""]
         return places
 
     def enclosed(
@@ -178,7 +166,7 @@ class ChassisMotion:
             k, about = self._along(name), Enclosed.of(self.centres[name] / unit)
             angle, *rates = ((-law if back else law).spread_out for law in laws[name])
             cosine, sine = within_a_turn(angle).cosine_sine()
-            slopes = _slopes(cosine, sine, Enclosed.of(1.0) - cosine, rates)
+            slopes = turn_slopes(cosine, sine, Enclosed.of(1.0) - cosine, rates)
             points = _turned(points, about, partial(_about_exactly, k), slopes)
         return points
 
@@ -211,28 +199,9 @@ def _turned(
             # The product rule: (u v)'' = u v'' + 2 u' v' + u'' v.
             for i in range(d + 1):
                 (sine, versine), (one, other) = slopes[i], parts[d - i]
-                total = total + _times(comb(d, i), one * sine + other * versine)
+                total = total + times(comb(d, i), one * sine + other * versine)
             found[d][point] = total
     return found
-
-
-def _slopes(cosine: V, sine: V, versine: V, rates: Sequence[V]) -> list[tuple[V, V]]:
-    """Sine and versine of an angle, and their time derivatives, from its own.
-
-    Both change with the angle: sin' = cos angle', (1 - cos)' = sin angle', and cos' = -(1 - cos)'.
-    """
-    found = [(sine, versine)]
-    for d in range(1, len(rates) + 1):
-        along, across = cosine * rates[d - 1], sine * rates[d - 1]
-        for i in range(1, d):
-            along = along - _times(comb(d - 1, i), found[i][1] * rates[d - 1 - i])
-            across = across + _times(comb(d - 1, i), found[i][0] * rates[d - 1 - i])
-        found.append((along, across))
-    return found
-
-
-def _times(count: int, product: V) -> V:
-    return product.times(count) if isinstance(product, Enclosed) else product * count
 
 
 def _about(k: Array, v: Array) -> tuple[Array, Array]:

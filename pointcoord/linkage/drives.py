@@ -11,12 +11,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import comb
+from operator import methodcaller
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.constraints.on_line import Line
+from pointcoord.linkage.directions import DIRECTIONS
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import Pair, pair_product, pair_quotient
 from pointcoord.numerics.enclosure import TURN, Enclosed, within_a_turn
@@ -24,6 +27,7 @@ from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine_and_sine
 
 Array = NDArray[np.float64]
+V = TypeVar("V", Array, Enclosed)
 
 SIDEWAYS = {"right": "to the right", "left": "to the left"}
 EXTREME = 8.0
@@ -151,7 +155,13 @@ class Drive:
         Args:
             law: the input's value and its time derivatives, each (N,), in its unit per s^d.
         """
-        values = list(law) if self.quarter is None else _cosine(law, self.quarter)
+        values = list(law)
+        if self.quarter is not None:
+            cosine, sine = within_a_turn(law[0]).cosine_sine()
+            slopes = turn_slopes(cosine, sine, Enclosed.of(1.0) - cosine, law[1:])
+            # A cosine and 1 less it have opposite derivatives.
+            cosines, sines = [cosine, *(-versine for _, versine in slopes[1:])], [own for own, _ in slopes]
+            values = sines if self.quarter else cosines
         scale, rest = self.scale(drawing)
         if self.exact:
             return [value.scaled(scale) for value in values]
@@ -178,22 +188,24 @@ class Drive:
         return (0.0 if self.quarter is None and self.allowed else -1.0) * farthest, farthest
 
 
-def _cosine(law: Sequence[Enclosed], quarter: int) -> list[Enclosed]:
-    """F = cos(x - quarter pi / 2), g x' and so on, g the slope of f, whose own slope is -f."""
-    angle, *rates = law
-    cosine, sine = within_a_turn(angle).cosine_sine()
-    values, slopes = ([sine], [cosine]) if quarter else ([cosine], [-sine])
-    for order in range(len(rates)):
-        value, slope = _leibniz(slopes, rates, order), -_leibniz(values, rates, order)
-        values.append(value)
-        slopes.append(slope)
-    return values
+def turn_slopes(cosine: V, sine: V, versine: V, rates: Sequence[V]) -> list[tuple[V, V]]:
+    """Sine and versine of an angle, and their time derivatives, from its own.
+
+    Both change with the angle: sin' = cos angle', (1 - cos)' = sin angle', and cos' = -(1 - cos)'.
+    """
+    found = [(sine, versine)]
+    for d in range(1, len(rates) + 1):
+        along, across = cosine * rates[d - 1], sine * rates[d - 1]
+        for i in range(1, d):
+            along = along - times(comb(d - 1, i), found[i][1] * rates[d - 1 - i])
+            across = across + times(comb(d - 1, i), found[i][0] * rates[d - 1 - i])
+        found.append((along, across))
+    return found
 
 
-def _leibniz(one: Sequence[Enclosed], other: Sequence[Enclosed], order: int) -> Enclosed:
-    """A time derivative of a product, from those of its factors."""
-    first, *others = ((one[i] * other[order - i]).times(comb(order, i)) for i in range(order + 1))
-    return sum(others, first)
+def times(count: int, product: V) -> V:
+    """So many times the same, in either arithmetic."""
+    return product.times(count) if isinstance(product, Enclosed) else product * count
 
 
 def _units(count: Array | float) -> Array:
@@ -212,8 +224,8 @@ def arm_angle(coordinate: str, input: str, pivot: str, point: str, direction: st
         input,
         "rad",
         f"from the arm pointing {direction}",
-        partial(_length, pivot, point),
-        partial(_along, pivot, point, direction),
+        methodcaller("length", pivot, point),
+        methodcaller("along", pivot, point, direction),
         exact=False,
         quarter=0,
         limits=(0.0, np.pi),
@@ -230,16 +242,18 @@ def travel(
         origin: where it counts from; the point itself where that is its own drawn place.
         slides: whether the point is pushed along a line, inboard of what is linked to it.
     """
-    sign, drawn = SIDEWAYS.get(direction, direction), partial(_along, origin, point, direction)
+    sign, drawn = SIDEWAYS.get(direction, direction), methodcaller("along", origin, point, direction)
     pushed = point if slides else ""
     return Drive(coordinate, input, "mm", sign, _size, drawn, of_slide=slides, pushed=pushed)
 
 
 def travel_along(coordinate: str, input: str, line: Line, point: str) -> Drive:
-    """A displacement of a point along a line that is drawn between two others; mm.
+    """A displacement of a point along a line, which may be drawn between two others; mm.
 
     The coordinate is the place along a vector d of the line, travel / |d|, whose length is a constant.
     """
+    if line.head in DIRECTIONS:
+        return travel(coordinate, input, line.origin, point, line.head)
     sign, drawn = f"along the {line.name}", partial(line.foot, point)
     return Drive(coordinate, input, "mm", sign, partial(_by_length, line), drawn, exact=False, of_slide=True)
 
@@ -256,7 +270,7 @@ def steered(of: Drive, per_turn: float) -> Drive:
 
 def distance_of(coordinate: str, input: str, start: str, end: str) -> Drive:
     """The distance of two points; mm."""
-    above_zero, drawn = (float(np.nextafter(0.0, 1.0)), np.inf), partial(_distance, start, end)
+    above_zero, drawn = (float(np.nextafter(0.0, 1.0)), np.inf), methodcaller("distance", start, end)
     allowed = "a distance above 0 mm"
     return Drive(coordinate, input, "mm", "apart", _size, drawn, limits=above_zero, allowed=allowed)
 
@@ -289,18 +303,6 @@ def _per_turn(per_turn: float, of: Drive, drawing: Drawing) -> Pair:
     """The travel's, times per_turn / 2 pi."""
     turn = np.asarray(TURN[0]), np.asarray(TURN[1])
     return pair_product(pair_quotient(_exactly(np.asarray(per_turn)), turn), of.scale(drawing))
-
-
-def _length(start: str, end: str, drawing: Drawing) -> Pair:
-    return drawing.length(start, end)
-
-
-def _distance(start: str, end: str, drawing: Drawing) -> Array:
-    return drawing.distance(start, end)
-
-
-def _along(start: str, end: str, direction: str, drawing: Drawing) -> Array:
-    return drawing.along(start, end, direction)
 
 
 def _turned(part: int, drawing: Drawing) -> Array:

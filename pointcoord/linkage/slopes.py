@@ -142,16 +142,16 @@ def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
     moved, rows = np.zeros(layout.size), np.zeros(len(system.rows))
     if not isinstance(way, ByGap):
         return moved, rows
-    sliding, place = topology.sliding.get(way.point), layout.vector(way.point)
-    of_chassis = way.point in topology.chassis and not sliding
+    (slide, _), place = topology.sliding.get(way.point, ("", False)), layout.vector(way.point)
+    of_chassis = way.point in topology.chassis and not slide
     moved[place[way.axis]] = -1.0 if of_chassis else 1.0
     there = {*topology.moving, *topology.chassis}
     beside = next((others for points, others in topology.joints.items() if way.point in points), ())
     others = {i for name in beside if name in there for i in layout.vector(name)}
     for constraint, numbers in zip(topology.constraints, topology.rows_of, strict=True):
         read = {i for row in numbers for i in system.reads[row]}
-        if sliding:
-            of_this_half = constraint.name in sliding.constraints
+        if slide:
+            of_this_half = constraint.slide == slide and not read.isdisjoint(place)
         elif of_chassis:
             of_this_half = way.point in constraint.pivots
         else:
@@ -162,15 +162,11 @@ def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
 
 
 def length_coordinate(topology: Topology, rod: str) -> int:
-    """The known coordinate that a rod's constraint reads alone: its length in whichever measure."""
-    layout, system, ends = topology.layout, topology.map, {*topology.rods[rod]}
-    first = layout.one + 1 + 3 * (len(layout.chassis) + len(layout.directions))
-    lengths = {i for i in range(first, layout.size) if i not in topology.driven}
-    for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True):
-        own = {i for row in rows for i in system.reads[row]} & lengths
-        if len(own) == 1 and ends in map(set, constraint.segments):
-            return own.pop()
-    raise AssertionError(f"{rod} is in no row")  # every rod is
+    """The one constant of a rod's constraint: its length in whichever measure."""
+    ends = {*topology.rods[rod]}
+    of_the_rod = (constraint for constraint in topology.constraints if ends in map(set, constraint.segments))
+    length = next(one.constants[0] for one in of_the_rod if len(one.constants) == 1)
+    return topology.layout.scalar(length)
 
 
 def point_slopes(mechanism: Mechanism, y: Array, slopes: Array, way: Way) -> dict[str, Array]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Mapping
+from collections.abc import Collection, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
@@ -21,19 +21,6 @@ Piece = tuple[str, str]
 
 
 @dataclass(frozen=True)
-class Sliding:
-    """How a point stays on a line.
-
-    Attributes:
-        constraints: names of those that keep it there.
-        of_line: whether its force is asked for on the line's body, and not on the point.
-    """
-
-    constraints: tuple[str, ...]
-    of_line: bool
-
-
-@dataclass(frozen=True)
 class Topology:
     """A linkage as points, bodies, constraints and inputs, with names for the parts that others ask for.
 
@@ -46,20 +33,17 @@ class Topology:
             where the first is empty, the second is a direction of the car.
         constraints: links, slides, rack, driven heights.
         drives: the inputs that drive a coordinate.
-        roles: the points of each role that the mechanism has, of a part's with the part's name and a dot
-            before it: steering_axis, two points of the axis about which the wheel is steered, from the lower
-            one up; wheel_axis, two points of the knuckle on the wheel's spin axis, from the inner one out;
-            front_and_rear, two points of the chassis, of which the first lies ahead of the second; damper,
-            its two ends; inboard, a point of the chassis that lies nearer the car's middle than the wheel
-            centre; knuckle, the points that stand for the body that carries the wheel.
+        roles: the points of each role that the mechanism has (`mechanisms/README.md` says what they are), of
+            a part's with the part's name and a dot before it; of a knuckle, the points that stand for it.
         sides: the side of the car that each part is on, left or right; empty without parts.
         rods: the two ends of each rod.
         joints: the point of each ball joint of two bodies and no more, or both of a hinge, with the other
             points of the body whose force on the other one is asked for; none where that is the chassis.
-        sliding: the points on slides whose force is asked for.
+        sliding: the points on slides whose force is asked for, each with the slide, and whether the force
+            is asked for on the line's body, and not on the point.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
-        chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
-        chassis_turns: those that turn it before, in this order, each about a direction and a drawn point.
+        chassis_inputs: inputs that move the whole chassis, each along a direction, zero if not given; those
+            that turn it, before it is displaced and in this order, with the drawn point about which they do.
         rolling: those of these that are driven and turn it about a line along the car.
         left_out: numbers of rows that follow from the others; they are no part of the map, and are looked at
             again at every answer.
@@ -78,10 +62,9 @@ class Topology:
     sides: Mapping[str, str] = field(default_factory=dict)
     rods: Mapping[str, Piece] = field(default_factory=dict)
     joints: Mapping[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
-    sliding: Mapping[str, Sliding] = field(default_factory=dict)
+    sliding: Mapping[str, tuple[str, bool]] = field(default_factory=dict)
     stand_ins: Mapping[str, str] = field(default_factory=dict)
-    chassis_motion: Mapping[str, str] = field(default_factory=dict)
-    chassis_turns: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    chassis_inputs: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     rolling: tuple[str, ...] = ()
     puts_in_place: bool = False
     left_out: tuple[int, ...] = ()
@@ -97,24 +80,13 @@ class Topology:
         return tuple(name for name in self.points if name not in self.stand_ins)
 
     def role(self, name: str) -> tuple[str, ...]:
-        """The points of a role; empty without such a role. Those named below are of one without parts."""
+        """The points of a role; empty without such a role."""
         return self.roles.get(name, ())
 
     @property
     def wheel_axis(self) -> tuple[str, ...]:
+        """Of a mechanism without parts."""
         return self.role("wheel_axis")
-
-    @property
-    def steering_axis(self) -> tuple[str, ...]:
-        return self.role("steering_axis")
-
-    @property
-    def front_and_rear(self) -> tuple[str, ...]:
-        return self.role("front_and_rear")
-
-    @property
-    def inboard(self) -> str:
-        return "".join(self.role("inboard"))
 
     @property
     def wheel_centre(self) -> str:
@@ -167,15 +139,10 @@ class Topology:
         return tuple(dict.fromkeys((*self.required_inputs, *self.chassis_inputs)))
 
     @property
-    def chassis_inputs(self) -> tuple[str, ...]:
-        """Those that move the whole car."""
-        return (*self.chassis_motion, *self.chassis_turns)
-
-    @property
     def input_units(self) -> dict[str, str]:
         """The unit of every input, rad or mm."""
-        driven = {drive.input: drive.unit for drive in self.drives}
-        return driven | dict.fromkeys(self.chassis_motion, "mm") | dict.fromkeys(self.chassis_turns, "rad")
+        chassis = {name: "rad" if about else "mm" for name, (_, about) in self.chassis_inputs.items()}
+        return {drive.input: drive.unit for drive in self.drives} | chassis
 
     @cached_property
     def _every_label(self) -> tuple[str, ...]:
@@ -231,49 +198,38 @@ class Topology:
             constants=tuple(name for c in self.constraints for name in c.constants),
         )
 
-    @property
-    def pieces(self) -> dict[Piece, tuple[Piece, ...]]:
-        """By line, pairs of points that have a sense along it: links on it, and slides from its start."""
+    @cached_property
+    def paired_pieces(self) -> tuple[tuple[tuple[Piece, Piece], ...], NDArray[np.intp]]:
+        """Pairs of pieces of one line, and the coordinates of their starts and ends, (pairs, 2, 2, 3).
+
+        Pieces are pairs of points that have a sense along it: links on it, and slides from its start.
+        """
         on_lines: dict[Piece, list[str]] = {}
         for constraint in self.constraints:
             if constraint.aligned:
                 start, end, point = constraint.aligned
                 on_lines.setdefault((start, end), []).append(point)
         links = [ends for constraint in self.constraints for ends in constraint.squared_lengths]
-        found: dict[Piece, tuple[Piece, ...]] = {}
+        pairs: list[tuple[Piece, Piece]] = []
         for (start, end), slides in on_lines.items():
             rigid = [link for link in links if {start, end, *slides}.issuperset(link)]
-            found[start, end] = (*rigid, *((start, point) for point in slides))
-        return found
-
-    @cached_property
-    def paired_pieces(self) -> tuple[tuple[tuple[Piece, Piece], ...], NDArray[np.intp]]:
-        """Pairs of pieces of one line, and the coordinates of their starts and ends, (pairs, 2, 2, 3)."""
-        pairs = [pair for along in self.pieces.values() for pair in combinations(along, 2)]
+            pairs += combinations([*rigid, *((start, point) for point in slides)], 2)
         places = [[[self.layout.vector(end) for end in piece] for piece in pair] for pair in pairs]
         return tuple(pairs), np.array(places, dtype=np.intp).reshape(-1, 2, 2, 3)
 
     @cached_property
-    def _maps(self) -> tuple[QuadraticMap, QuadraticMap]:
-        """Of the rows that are taken, and of those that are left out."""
-        layout = self.layout
-        rows = [row for constraint in self.constraints for row in constraint.rows(layout)]
-        taken = [row for number, row in enumerate(rows) if number not in self.left_out]
-        left = [rows[number] for number in self.left_out]
-        return (
-            quadratic_map(taken, layout.unknowns, layout.size),
-            quadratic_map(left, layout.unknowns, layout.size),
-        )
-
-    @property
     def map(self) -> QuadraticMap:
         """All constraints as one quadratic map; the same for every car of this topology."""
-        return self._maps[0]
+        return self._map_of([row for row in range(len(self._every_label)) if row not in self.left_out])
 
-    @property
+    @cached_property
     def left_map(self) -> QuadraticMap:
         """The rows that are left out, as a map of the same coordinates."""
-        return self._maps[1]
+        return self._map_of(self.left_out)
+
+    def _map_of(self, numbers: Iterable[int]) -> QuadraticMap:
+        rows = [row for constraint in self.constraints for row in constraint.rows(self.layout)]
+        return quadratic_map([rows[number] for number in numbers], self.layout.unknowns, self.layout.size)
 
     def without(self, rows: tuple[int, ...]) -> Topology:
         """The same with rows left out that follow from the others, made once."""
@@ -321,22 +277,20 @@ class Topology:
         own = [_own(constraint, layout) for constraint in self.constraints]
         block_of = {row: block for block in order.blocks for row in block.rows}
         triples = [layout.vector(name) for name in (*layout.moving, *layout.vectors)]
-        wanted, read, kept = set(unknowns), set[int](), set[int]()
-        while True:
-            solved = {row for number in order.needed(wanted) for row in order.blocks[number].rows}
-            more = {
+        read, before = set(unknowns), set[int]()
+        while read != before:
+            before = set(read)
+            solved = {row for number in order.needed(read) for row in order.blocks[number].rows}
+            kept = [
                 number
                 for number, rows in enumerate(self.rows_of)
-                if not (solved.isdisjoint(rows) and own[number].isdisjoint(read | wanted))
-            }
-            read = wanted.union(*(system.reads[row] for number in more for row in self.rows_of[number]))
-            whole = {i for triple in triples if not read.isdisjoint(triple) for i in triple}
-            # Rows of a constraint that is kept may belong to blocks that were not asked for.
-            theirs = {i for number in more for row in self.rows_of[number] for i in block_of[row].unknowns}
-            found = whole | theirs | {i for i in read if i < system.unknowns}
-            if more == kept and found <= wanted:
-                return tuple(self.constraints[number] for number in sorted(kept)), read
-            wanted, kept = wanted | found, more
+                if not (solved.isdisjoint(rows) and own[number].isdisjoint(read))
+            ]
+            for row in (row for number in kept for row in self.rows_of[number]):
+                # Rows of a constraint that is kept may belong to blocks that were not asked for.
+                read.update(system.reads[row], block_of[row].unknowns)
+            read.update(i for triple in triples if not read.isdisjoint(triple) for i in triple)
+        return tuple(self.constraints[number] for number in kept), read
 
     @cached_property
     def fighting(self) -> tuple[str, ...]:

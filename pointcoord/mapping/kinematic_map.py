@@ -36,7 +36,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mapping.asked import STATES, Ranges, checked_ranges, columns_of, numbers_of
 from pointcoord.mapping.effect_bounds import Evaluated
 from pointcoord.mapping.stored import ALLOWED, Gaps, packed, unpacked
-from pointcoord.mechanism.freedoms import held_rows
+from pointcoord.mechanism.freedoms import locked
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.evaluation import sum_one, table_of_exponents
@@ -451,7 +451,8 @@ def _hold_rows(patches: ProvenPatches) -> None:
         values = (centre + width * places).reshape(-1, len(centre))
         (unknown,) = patches.sums([patches.series], [values], np.full(len(values), number))
         y = np.concatenate([unknown.T, domain.known_at(values)], axis=-1)
-        held_rows(domain.mechanism, y, np.full(len(values), patches.error[number].max()))
+        for error in locked(domain.mechanism, y, np.full(len(values), patches.error[number].max())).values():
+            raise error
 
 
 @contextmanager

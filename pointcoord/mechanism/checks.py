@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from itertools import combinations
 
 from pointcoord.linkage.directions import DIRECTIONS
-from pointcoord.mechanism.faults import TableFault, no_such
+from pointcoord.mechanism.faults import TableFault, known_name, no_such
 from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import Structure
+
+A_POINT = "point of a body, rod or slide"
 
 
 def check(structure: Structure) -> None:
@@ -24,18 +25,7 @@ def check(structure: Structure) -> None:
     _roles(structure)
     for point, other in structure.stand_ins.items():
         for name in (point, other):
-            _known(structure, "point", name, ("stand_ins", point))
-
-
-def _known(structure: Structure, kind: str, name: str, place: Collection[str]) -> None:
-    """Pass if a name is one of a point, a body or a slide."""
-    words, known = {
-        "point": ("point of a body, rod or slide", structure.points),
-        "body": ("body", structure.bodies),
-        "slide": ("slide", structure.slides),
-    }[kind]
-    if name not in known:
-        raise no_such(words, name, known, place)
+            known_name(A_POINT, name, structure.points, ("stand_ins", point))
 
 
 def _bodies(structure: Structure) -> None:
@@ -93,15 +83,12 @@ def _rods(structure: Structure) -> None:
 def _slides(structure: Structure) -> None:
     for name, slide in structure.slides.items():
         place = ("slides", name)
-        _known(structure, "body", slide.body, (*place, "body"))
-        if slide.through not in structure.bodies[slide.body]:
-            raise no_such(
-                f"point of {slide.body}", slide.through, structure.bodies[slide.body], (*place, "through")
-            )
+        known_name("body", slide.body, structure.bodies, (*place, "body"))
+        own = structure.bodies[slide.body]
+        known_name(f"point of {slide.body}", slide.through, own, (*place, "through"))
         if slide.along not in DIRECTIONS:
-            if slide.along not in structure.points:
-                known = (*DIRECTIONS, *structure.points)
-                raise no_such("direction or point", slide.along, known, (*place, "along"))
+            known = (*DIRECTIONS, *structure.points)
+            known_name("direction or point", slide.along, known, (*place, "along"))
             if slide.along == slide.through:
                 raise TableFault(
                     (*place, "along"),
@@ -109,7 +96,7 @@ def _slides(structure: Structure) -> None:
                     "a direction, or a point beside it",
                 )
         for point in slide.points:
-            if point in structure.bodies[slide.body]:
+            if point in own:
                 raise TableFault(
                     (*place, "points"),
                     f"{point!r} is a point of {slide.body} itself, so it cannot slide in it",
@@ -135,9 +122,12 @@ def _one_body(structure: Structure, points: tuple[str, ...], place: tuple[str, .
 def _inputs(structure: Structure) -> None:
     for name, one in structure.inputs.items():
         place = ("inputs", name)
-        for kind in ("body", "slide", "point"):
-            for each in one.named(kind):
-                _known(structure, kind, each, place if kind != "slide" else (*place, one.kind))
+        for body in one.named("body"):
+            known_name("body", body, structure.bodies, place)
+        for slide in one.named("slide"):
+            known_name("slide", slide, structure.slides, (*place, one.kind))
+        for point in one.named("point"):
+            known_name(A_POINT, point, structure.points, place)
         try:
             one.check(structure.bodies)
         except TableFault as fault:
@@ -145,25 +135,19 @@ def _inputs(structure: Structure) -> None:
 
 
 def _roles(structure: Structure) -> None:
-    for role, who in structure.roles.items():
-        place, names = ("roles", role), (who,) if isinstance(who, str) else who
-        carries = role in structure.knuckles
-        for name in names:
-            _known(structure, "body" if carries else "point", name, place)
-        if carries and who == CHASSIS:
-            raise TableFault(place, "is the chassis, which carries no wheel", "a moving body")
-        _of_body(structure, role, names)
-
-
-def _of_body(structure: Structure, role: str, points: tuple[str, ...]) -> None:
     """The points of some roles are of one body: the chassis, or what carries the wheel."""
-    last = role.rpartition(".")[2]
-    body, words = str(CHASSIS), "the chassis"
-    if last == "wheel_axis":
-        body = structure.knuckles.get(role.removesuffix(last) + "knuckle", "")
-        words = f"{body}, which carries the wheel,"
-    elif last not in ("front_and_rear", "inboard"):
-        return
-    for name in points if body in structure.bodies else ():
-        if name not in structure.bodies[body]:
-            raise no_such(f"point of {words}", name, structure.bodies[body], ("roles", role))
+    for role, who in structure.roles.items():
+        place, (prefix, dot, last) = ("roles", role), role.rpartition(".")
+        if last == "knuckle":
+            known_name("body", who, structure.bodies, place)
+            if who == CHASSIS:
+                raise TableFault(place, "is the chassis, which carries no wheel", "a moving body")
+            continue
+        names, body, words = (who,) if isinstance(who, str) else who, str(CHASSIS), "the chassis"
+        if last == "wheel_axis":
+            body = structure.knuckles.get(f"{prefix}{dot}knuckle", "")
+            words = f"{body}, which carries the wheel,"
+        for name in names:
+            known_name(A_POINT, name, structure.points, place)
+            if last in ("wheel_axis", "front_and_rear", "inboard") and body in structure.bodies:
+                known_name(f"point of {words}", name, structure.bodies[body], place)

@@ -32,7 +32,7 @@ from pointcoord.linkage.constraints.scalar_product import kept_turn, link, scala
 from pointcoord.linkage.constraints.turn import turn
 from pointcoord.linkage.directions import DIRECTIONS, axis_along, car_directions
 from pointcoord.linkage.drives import Drive
-from pointcoord.linkage.topology import Sliding, Topology
+from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.inputs import (
     CHASSIS,
     LENGTHS,
@@ -48,7 +48,7 @@ from pointcoord.mechanism.inputs import (
     Turn,
     Turns,
 )
-from pointcoord.mechanism.structure import Structure
+from pointcoord.mechanism.structure import Slide, Structure
 
 Array = NDArray[np.float64]
 Place = tuple[float, float, float]
@@ -56,6 +56,8 @@ Made = tuple[list[Constraint], list[Drive]]
 
 # The sine of the angle of a triangle from which on it is taken for its body; of flatter ones the best is.
 FLAT = 0.1
+# Where a turn along it rolls the car.
+LENGTHWISE = ("forward", "rearward")
 # Places round by u of the car's size; sines below this are none.
 IN_LINE = 1e-13
 
@@ -85,17 +87,15 @@ class Compiler:
         chosen = (*self.triangles.items(), *self.edges.items())
         return self.driven, tuple(self.structure.points), chosen, lengths
 
-    def topology(self, name: str, stand_ins: Mapping[str, str], puts_in_place: bool) -> Topology:
+    def topology(self, name: str, puts_in_place: bool) -> Topology:
         """The topology.
 
         Args:
-            stand_ins: every point that a drawing may leave out, for messages.
             puts_in_place: whether closing a drawing moves points on purpose.
         """
         structure, triangles, chassis = self.structure, self.triangles, self.chassis
         constraints = [*self._bodies(), *self._points_in_bodies()]
-        on_slides = {slide: list(self._slide(slide)) for slide in structure.slides}
-        constraints += [one for own in on_slides.values() for one in own]
+        constraints += [one for slide in structure.slides for one in self._slide(slide)]
         driving: list[Drive] = []
         for input in self.driven:
             rows, own = self._input(input, structure.inputs[input])
@@ -103,8 +103,8 @@ class Compiler:
             driving += own
         roles = {role: (who,) if isinstance(who, str) else who for role, who in structure.roles.items()}
         roles |= {role: triangles[body] for role, body in structure.knuckles.items()}
-        moves = {name: one for name, one in structure.inputs.items() if isinstance(one, Moves)}
-        turns = {name: one for name, one in structure.inputs.items() if isinstance(one, Turns)}
+        moves = {name: (one.along, "") for name, one in structure.inputs.items() if isinstance(one, Moves)}
+        turns = {n: (one.along, one.about) for n, one in structure.inputs.items() if isinstance(one, Turns)}
         return Topology(
             name=name,
             chassis=tuple(chassis),
@@ -116,7 +116,7 @@ class Compiler:
                 for point in names
                 if point not in self.solved and point not in chassis
             },
-            directions=self._directions([one.along for one in moves.values()], turns),
+            directions=self._directions(),
             # Several heights may be over one ground.
             constraints=tuple(dict.fromkeys(constraints)),
             drives=tuple(dict.fromkeys(driving)),
@@ -124,29 +124,18 @@ class Compiler:
             sides=structure.sides,
             rods=structure.rods,
             joints=structure.joints(self.driven),
-            sliding={
-                point: Sliding(
-                    tuple(one.name for one in on_slides[slide] if one.is_length and self._is_at(one, point)),
-                    of_line,
-                )
-                for point, (slide, of_line) in structure.sliding.items()
-            },
-            stand_ins=stand_ins,
-            chassis_motion={name: one.along for name, one in moves.items()},
-            chassis_turns={name: (one.along, one.about) for name, one in turns.items()},
-            rolling=tuple(
-                name
-                for name, one in turns.items()
-                if name in self.driven and one.along in ("forward", "rearward")
-            ),
+            sliding=structure.sliding,
+            stand_ins=structure.stand_ins,
+            chassis_inputs=moves | turns,
+            rolling=tuple(n for n, (along, _) in turns.items() if n in self.driven and along in LENGTHWISE),
             puts_in_place=puts_in_place,
         )
 
-    def _directions(self, moves: list[str], turns: Mapping[str, Turns]) -> dict[str, tuple[str, str]]:
+    def _directions(self) -> dict[str, tuple[str, str]]:
         """What the chassis carries: directions of the car, and the lines of its slides that are drawn."""
-        slides = self.structure.slides.items()
-        names = [*moves, *(axis_along(one.along) for one in turns.values())]
-        names += [way for name in self.driven for way in self.structure.inputs[name].directions]
+        slides, inputs = self.structure.slides.items(), self.structure.inputs.items()
+        asked = [one for name, one in inputs if name in self.driven or one.moves_the_chassis]
+        names = [direction for one in asked for direction in one.directions]
         names += [slide.along for _, slide in slides if slide.along in DIRECTIONS]
         names += [head for edges in self.edges.values() for head, tail in edges if not tail]
         lines = {
@@ -155,12 +144,6 @@ class Compiler:
             if slide.body == CHASSIS and slide.along not in DIRECTIONS
         }
         return {name: ("", name) for name in names} | lines
-
-    @staticmethod
-    def _is_at(constraint: Constraint, point: str) -> bool:
-        """Whether a point is on the line of a constraint, or one of the two that the line is drawn by."""
-        factors = (f for e in constraint.equations for term in e.terms for f in (term.one, term.other))
-        return any(point in factor for factor in factors if isinstance(factor, tuple))
 
     # What stands for the bodies of the drawing.
 
@@ -294,7 +277,9 @@ class Compiler:
     def _points_in_bodies(self) -> Iterator[Constraint]:
         """What else the bodies need: further points, and the normals of those with an axis of their own."""
         turned = [one for one in map(self.structure.inputs.get, self.driven) if isinstance(one, Turn)]
-        with_axis = {one.on for one in turned} | {axis.body for axis in self._axes.values()}
+        with_axis = {one.on for one in turned} | {
+            line.axis.body for line in self._lines.values() if line.axis
+        }
         for body, names in self.structure.moving_bodies.items():
             triangle = self.triangles[body]
             further = [n for n in names if n in self.solved and n not in triangle]
@@ -303,18 +288,18 @@ class Compiler:
             yield from (point_in_body(name, body, triangle) for name in further)
 
     @cached_property
-    def _axes(self) -> dict[str, Axis]:
-        """By slide, the axis of a body that it runs along, unless the line is one of two of its points."""
-        return {
-            name: Axis(
-                f"{name} axis",
-                "" if slide.along in DIRECTIONS else slide.through,
-                slide.along,
-                slide.body,
-            )
-            for name, slide in self.structure.slides.items()
-            if slide.body != CHASSIS and slide.along not in self.structure.bodies[slide.body]
-        }
+    def _lines(self) -> dict[str, Line]:
+        """By slide, its line: of the chassis, through two points of a body, or along an axis of its own."""
+        return {name: self._line(name, slide) for name, slide in self.structure.slides.items()}
+
+    def _line(self, name: str, slide: Slide) -> Line:
+        start, head, by_direction = slide.through, slide.along, slide.along in DIRECTIONS
+        if slide.body == CHASSIS:
+            return Line(name, start, head if by_direction else f"line of the {name}", slide=name)
+        if head in self.structure.bodies[slide.body]:
+            return Line(f"line {start} - {head}", start, head, between=True, slide=name)
+        axis = Axis(f"{name} axis", "" if by_direction else start, head, slide.body)
+        return Line(axis.name, start, axis.name, axis=axis, slide=name)
 
     @cached_property
     def _on_axes(self) -> dict[str, Ends]:
@@ -323,7 +308,7 @@ class Compiler:
         The first rod of a point is no link, but holds it.
         """
         found: dict[str, Ends] = {}
-        for name in self._axes:
+        for name in (name for name, line in self._lines.items() if line.axis):
             points = self.structure.slides[name].points
             for ends in self.structure.rods.values():
                 if {*ends} <= {*points}:
@@ -332,18 +317,18 @@ class Compiler:
 
     def _slide(self, name: str) -> Iterator[Constraint]:
         """The points of a slide, and what keeps bodies from turning about its line."""
-        slide, axis = self.structure.slides[name], self._axes.get(name)
+        slide, along = self.structure.slides[name], self._lines[name]
         joined = any({*ends} == {*slide.points} for ends in self.structure.rods.values())
-        if slide.body != CHASSIS and axis is None and joined and name not in self.travels:
+        if along.between and joined and name not in self.travels:
             # Two points that a rod joins make the line, and the two of the body are on it.
             start, end = slide.points
-            line = Line(f"line {start} - {end}", start, end, between=True)
+            line = Line(f"line {start} - {end}", start, end, between=True, slide=name)
             for point in (slide.through, slide.along):
                 yield on_line(point, line, f"place of {point} on the {name}")
         else:
-            if axis is not None:
-                yield axis_in_body(axis, self.triangles[axis.body])
-            yield from (self._on_line(name, point)[0] for point in slide.points)
+            if along.axis:
+                yield axis_in_body(along.axis, self.triangles[slide.body])
+            yield from (self._on_line(name, point) for point in slide.points)
         if not slide.turns:
             one, other = self.edges[name]
             line_of = (slide.along, "" if slide.along in DIRECTIONS else slide.through)
@@ -351,27 +336,23 @@ class Compiler:
             what, product = f"turn about the {name}", f"product of edges across the {name}"
             yield kept_turn(what, one, other, product, line_of, own)
 
-    def _on_line(self, name: str, point: str) -> tuple[Constraint, Line, str]:
-        """The rows of one point of a slide, its line and its place there, which of the first is driven."""
-        slide, axis = self.structure.slides[name], self._axes.get(name)
-        input = self.travels.get(name) if point == slide.points[0] else None
-        line = Line(name, slide.through, slide.along)
-        if axis is not None:
-            line = Line(axis.name, slide.through, axis.name, axis=axis)
-        elif slide.body != CHASSIS:
-            between = f"line {slide.through} - {slide.along}"
-            line = Line(between, slide.through, slide.along, between=True)
-        elif slide.along not in DIRECTIONS:
-            line = Line(name, slide.through, f"line of the {name}")
-        if axis is not None and point in self._on_axes:
+    def _on_line(self, name: str, point: str) -> Constraint:
+        """The rows of one point of a slide."""
+        line, place = self._lines[name], self._travel_of(name)
+        if line.axis and point in self._on_axes:
             (at,) = {*self._on_axes[point]} - {point}
-            line, place = line._replace(origin=at), f"place of {point} on the {line.name}"
-            return on_line(point, line, place, "held"), line, place
-        place = f"place of {point} on the {line.name if axis is not None else name}"
-        if input:
-            # Slides along directions of the car have one travel in one coordinate.
-            place = f"{input} travel" if line.head in DIRECTIONS else f"{input} travel along the {name}"
-        return on_line(point, line, place, "driven" if input else "free"), line, place
+            line = line._replace(origin=at)
+            return on_line(point, line, f"place of {point} on the {line.name}", "held")
+        if place and point == self.structure.slides[name].points[0]:
+            return on_line(point, line, place, "driven")
+        return on_line(point, line, f"place of {point} on the {line.name if line.axis else name}")
+
+    def _travel_of(self, slide: str) -> str:
+        """What the place of its first point is called where an input drives it; empty where none does."""
+        input = self.travels.get(slide, "")
+        # Slides along directions of the car have one travel in one coordinate.
+        along = "" if self._lines[slide].head in DIRECTIONS else f" along the {slide}"
+        return input and f"{input} travel{along}"
 
     # Rows and drives of inputs.
 
@@ -411,12 +392,9 @@ class Compiler:
     def _travels(self, name: str, slides: Collection[str]) -> list[Drive]:
         found: dict[str, Drive] = {}
         for slide in slides:
-            point = self.structure.slides[slide].points[0]
-            _, line, place = self._on_line(slide, point)
-            along = drives.travel_along(place, name, line, point)
-            if line.head in DIRECTIONS:
-                along = drives.travel(place, name, line.origin, point, line.head)
-            found.setdefault(place, along)  # several along one direction of the car have one travel
+            point, place = self.structure.slides[slide].points[0], self._travel_of(slide)
+            # Several along one direction of the car have one travel.
+            found.setdefault(place, drives.travel_along(place, name, self._lines[slide], point))
         return list(found.values())
 
     @cached_property

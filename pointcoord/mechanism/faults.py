@@ -51,6 +51,16 @@ def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str |
     return TableFault(place, f"no {kind} is called {shown(name)}{hint}", ", ".join(there) or "none")
 
 
+def known_name(kind: str, name: object, known: Collection[str], place: Iterable[str | int] = ()) -> None:
+    """Pass if something has the name.
+
+    Raises:
+        TableFault: nothing has.
+    """
+    if name not in known:
+        raise no_such(kind, name, known, place)
+
+
 def known_keys(table: object, known: Collection[str]) -> object:
     """A table that has no other keys than the known ones.
 

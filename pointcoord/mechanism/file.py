@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Mapping
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -16,7 +16,7 @@ from pointcoord.mechanism.compiled import Compiler, Place
 from pointcoord.mechanism.faults import TableFault, known_keys, no_such
 from pointcoord.mechanism.freedoms import Freedoms, settled
 from pointcoord.mechanism.inputs import CHASSIS, Name
-from pointcoord.mechanism.structure import CLOSING, TABLES, Structure, read, structure_of
+from pointcoord.mechanism.structure import CLOSING, TABLES, Structure, read
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import shown
 
@@ -30,20 +30,22 @@ AXES: Mapping[str, Place] = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 """Of a car that says nothing of them."""
 
 
-@lru_cache(maxsize=1)
+@cache
 def shipped() -> tuple[str, ...]:
     """Names of the mechanisms that come with the package."""
     return tuple(sorted(path.stem for path in MECHANISMS.glob(f"*{ENDING}")))
 
 
-def _name_or_tables(mechanism: object) -> object:
-    if not isinstance(mechanism, str | Mapping):
+def _of_part(mechanism: object) -> MechanismFile:
+    if isinstance(mechanism, Mapping):
+        return MechanismFile.of(mechanism, "part")
+    if not isinstance(mechanism, str):
         raise TableFault((), f"is {shown(mechanism)}", "the name of a mechanism, or its tables")
-    return mechanism
+    return mechanism_file(mechanism)
 
 
 class _Part(BaseModel, defer_build=True):
-    mechanism: Annotated[Any, AfterValidator(_name_or_tables)]
+    mechanism: Annotated[Any, AfterValidator(_of_part)]
     side: Literal["left", "right"] = "left"
     mirrored: StrictBool = False
 
@@ -75,10 +77,6 @@ class MechanismFile:
         """Every point that a car of it may have, whatever its closure."""
         return tuple(dict.fromkeys(name for one in self.structures.values() for name in one.points))
 
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        return tuple(self.structures[AS_DRAWN].inputs)
-
     def topology(
         self,
         closure: str = AS_DRAWN,
@@ -96,24 +94,33 @@ class MechanismFile:
             axes: `up` and `right` of the car.
             lengths: what inputs may need beside the points, by name, mm.
         """
-        known, along, given = self.structures[closure].inputs, axes or AXES, lengths or {}
+        whole, along = self.structures[closure], axes or AXES
+        linkage = partial(self._linkage, closure, points, along, lengths or {})
         if driven is None:
-            driven = self._first_driven(closure, points, along, given)
-        own = tuple(name for name in known if name in driven)
-        topology = self._linkage(closure, own, points, along, given)
+            holding = [
+                name
+                for name, one in whole.inputs.items()
+                if not one.moves_the_chassis and (not one.length or one.length in (lengths or {}))
+            ]
+            if self.freedoms(closure) > 0:
+                driven = _first_driven(holding, linkage)
+            else:
+                driven = holding[: max(self.freedoms(closure, points, axes), 0)] if points else ()
+        own = tuple(name for name in whole.inputs if name in driven)
+        topology = linkage(own)
         if points is None or len(topology.labels) <= topology.layout.unknowns:
             return topology
-        holding = sum(not known[name].moves_the_chassis for name in own)
-        too_many = holding > self.freedoms(closure, points, along)
+        count = sum(not whole.inputs[name].moves_the_chassis for name in own)
+        too_many = count > self.freedoms(closure, points, axes)
         return topology if too_many else settled(topology, points, along)
 
     def _linkage(
         self,
         closure: str,
-        driven: tuple[str, ...],
         points: Mapping[str, Place] | None,
         axes: Mapping[str, Place],
         lengths: Mapping[str, float],
+        driven: tuple[str, ...],
     ) -> Topology:
         """The linkage with all its rows."""
         whole = self.structures[closure]
@@ -123,37 +130,8 @@ class MechanismFile:
         key = closure, compiler.key
         if key not in self._compiled:
             named = f"{self.name}, {closure}" if closure != AS_DRAWN else self.name
-            # What a drawing may leave out stays known by name: messages say what stands in for what.
-            self._compiled[key] = compiler.topology(named, whole.stand_ins, closure != AS_DRAWN)
+            self._compiled[key] = compiler.topology(named, closure != AS_DRAWN)
         return self._compiled[key]
-
-    def _first_driven(
-        self,
-        closure: str,
-        points: Mapping[str, Place] | None,
-        axes: Mapping[str, Place],
-        lengths: Mapping[str, float],
-    ) -> tuple[str, ...]:
-        """The first inputs of the file that hold every freedom, of those whose lengths are given.
-
-        One is passed over that drives, however the car is drawn, what those before it hold.
-        """
-        holding = [
-            name
-            for name, one in self.structures[closure].inputs.items()
-            if not one.moves_the_chassis and (not one.length or one.length in lengths)
-        ]
-        if self.freedoms(closure) <= 0:
-            return tuple(holding[: max(self.freedoms(closure, points, axes), 0)]) if points else ()
-        taken: tuple[str, ...] = ()
-        for name in holding:
-            topology = self._linkage(closure, (*taken, name), points, axes, lengths)
-            free = topology.layout.unknowns - len(topology.labels)
-            if free >= 0 and not topology.fighting:
-                taken = (*taken, name)
-                if free == 0:
-                    break
-        return taken
 
     def freedoms(
         self,
@@ -166,11 +144,10 @@ class MechanismFile:
         Args:
             points: as drawn, mm. Without them no equation is taken for redundant.
         """
-        along = axes or AXES
-        topology = self._linkage(closure, (), points, along, {})
+        topology = self._linkage(closure, points, axes or AXES, {}, ())
         if points is None:
             return topology.layout.unknowns - len(topology.labels)
-        return Freedoms.of(topology, points, along).count
+        return Freedoms.of(topology, points, axes or AXES).count
 
     @cached_property
     def _compiled(self) -> dict[Hashable, Topology]:
@@ -187,52 +164,54 @@ class MechanismFile:
         given = {key: value for key, value in tables.items() if value is not None}
         # A table that is not there is not read: most files have neither, and to build a reader takes time.
         changed = read(dict[Name, CHANGES], given["closures"], "closures") if "closures" in given else {}
-        tables_of_parts = read(dict[Name, PART], given["parts"], "parts") if "parts" in given else {}
-        title = str(given.get("title") or name)
-        parts = {f"{part}.": _part(part, table) for part, table in tables_of_parts.items()}
-        sides = {part: str(table.side) for part, table in tables_of_parts.items()}
+        parts = read(dict[Name, PART], given["parts"], "parts") if "parts" in given else {}
         closures = {AS_DRAWN: {}, **changed}
-        for own in parts.values():
-            closures |= {closure: {} for closure in own.closures if closure not in closures}
+        for part in parts.values():
+            closures |= {closure: {} for closure in part.mechanism.closures if closure not in closures}
         structures = {}
         for closure, changes in closures.items():
             put_in = {table: {**given.get(table, {}), **entries} for table, entries in changes.items()}
             try:
-                structures[closure] = _closed({**given, **put_in}, parts, sides, title, closure)
+                structures[closure] = _closed({**given, **put_in}, parts, closure)
             except TableFault as fault:
                 if closure == AS_DRAWN or not fault.place:
                     raise
                 raise fault.under("closures", closure) from None
-        return cls(title, structures, {f"{part}.": table.mirrored for part, table in tables_of_parts.items()})
+        mirrored = {f"{part}.": one.mirrored for part, one in parts.items()}
+        return cls(str(given.get("title") or name), structures, mirrored)
 
 
-def _part(part: str, table: _Part) -> MechanismFile:
-    own = table.mechanism
-    try:
-        return mechanism_file(own) if isinstance(own, str) else MechanismFile.of(own, part)
-    except TableFault as fault:
-        raise fault.under("parts", part, "mechanism") from None
+def _first_driven(inputs: Iterable[str], linkage: Callable[[tuple[str, ...]], Topology]) -> tuple[str, ...]:
+    """The first inputs that hold every freedom of a linkage, which has some.
+
+    One is passed over that drives, however the car is drawn, what those before it hold.
+    """
+    taken: tuple[str, ...] = ()
+    for name in inputs:
+        topology = linkage((*taken, name))
+        free = topology.layout.unknowns - len(topology.labels)
+        if free >= 0 and not topology.fighting:
+            taken = (*taken, name)
+            if free == 0:
+                break
+    return taken
 
 
-def _closed(
-    tables: Mapping[str, Any],
-    parts: Mapping[str, MechanismFile],
-    sides: dict[str, str],
-    name: str,
-    closure: str,
-) -> Structure:
+def _closed(tables: Mapping[str, Any], parts: Mapping[str, _Part], closure: str) -> Structure:
     """The tables joined with those of the parts, closed alike where they can be, and checked."""
     if "bodies" not in tables and not parts:
         raise TableFault(("bodies",), "this table is missing", "bodies with their points")
-    whole = Structure(name, {CHASSIS: ()}, sides=sides) if parts else Structure(name)
-    for prefix, part in parts.items():
-        own = part.structures[closure if closure in part.structures else AS_DRAWN]
-        whole = whole.joined(own.prefixed(prefix))
-    whole = whole.joined(structure_of(tables, name))
+    whole = Structure({CHASSIS: ()}, sides={part: one.side for part, one in parts.items()})
+    for part, one in parts.items():
+        of_part = one.mechanism.structures
+        whole = whole.joined(of_part[closure if closure in of_part else AS_DRAWN].prefixed(f"{part}."))
+    own = {table: tables[table] for table in CLOSING if table in tables}
+    whole = whole.joined(read(Structure, own))
     check(whole)
     return whole
 
 
+@cache
 def mechanism_file(name: str) -> MechanismFile:
     """A shipped mechanism by name.
 
@@ -240,12 +219,7 @@ def mechanism_file(name: str) -> MechanismFile:
         TableFault: there is none.
     """
     if name not in shipped():
-        raise no_such("mechanism", name, (*shipped(), "or a path that ends in .toml"), ())
-    return _shipped(name)
-
-
-@lru_cache(maxsize=64)
-def _shipped(name: str) -> MechanismFile:
+        raise no_such("mechanism", name, (*shipped(), "or a path that ends in .toml"))
     tables = parsed((MECHANISMS / f"{name}{ENDING}").read_bytes(), name)
     return replace(MechanismFile.of(tables, name), name=name)
 

@@ -1,7 +1,7 @@
 r"""Counts the freedoms of a drawing, names what is free, and leaves out rows that follow from the others.
 
 A planar mechanism of hinges, or Bricard's, has more rows than its motion needs: at the closed drawing some
-depend on the others. Those are left out of the map and looked at again at every answer (`held_rows`); where
+depend on the others. Those are left out of the map and looked at again at every answer (`locked`); where
 one is violated there, the mechanism is locked, and no compromise between its rows is an answer.
 """
 
@@ -83,7 +83,7 @@ def _rows_of_inputs(topology: Topology) -> list[int]:
         row
         for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True)
         for row in rows
-        if not (constraint.is_length or driven.isdisjoint(topology.map.reads[row]))
+        if not (constraint.slide or driven.isdisjoint(topology.map.reads[row]))
     ]
 
 
@@ -159,27 +159,15 @@ def settled(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, 
 
 
 def _words(topology: Topology, found: Freedoms, fighting: bool) -> str:
-    driven = ", ".join(topology.holding_inputs) or "none"
-    count = len(topology.holding_inputs)
-    words = [f"{topology.name} with {count} driven input{'' if count == 1 else 's'} ({driven})"]
+    driven, count = ", ".join(topology.holding_inputs) or "none", len(topology.holding_inputs)
+    words = []
     if fighting:
         words.append(f"has inputs that fight at the drawing: {', '.join(found.redundant)}")
     if found.count:
         more = "freedom" if found.count == 1 else "freedoms"
         words.append(f"has {found.count} {more} left; free at the drawing: {', '.join(found.free)}")
-    return " ".join(words[:2]) + "".join(f"; it {word}" for word in words[2:])
-
-
-def held_rows(mechanism: Mechanism, y: Array, off: Array) -> None:
-    """Look at the rows that were left out at answers.
-
-    Args:
-        y, off: as of `locked`.
-    Raises:
-        MechanismError: one of them is violated.
-    """
-    for error in locked(mechanism, y, off).values():
-        raise error
+    inputs = f"{count} driven input{'' if count == 1 else 's'} ({driven})"
+    return f"{topology.name} with {inputs} {'; it '.join(words)}"
 
 
 def locked(mechanism: Mechanism, y: Array, off: Array) -> dict[int, MechanismError]:

@@ -10,8 +10,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from pointcoord.linkage.directions import DIRECTIONS
-from pointcoord.mechanism.faults import TableFault, known_keys, no_such
+from pointcoord.linkage.directions import DIRECTIONS, axis_along
+from pointcoord.mechanism.faults import TableFault, known_keys, known_name, no_such
 from pointcoord.wording import shown
 
 LENGTHS = {
@@ -39,8 +39,7 @@ def _pair(names: object) -> object:
 
 
 def _direction(name: str) -> str:
-    if name not in DIRECTIONS:
-        raise no_such("direction", name, DIRECTIONS, ())
+    known_name("direction", name, DIRECTIONS)
     return name
 
 
@@ -54,24 +53,19 @@ Point = Annotated[Name, "point"]
 Pair = Annotated[Ends, BeforeValidator(_pair), "point"]
 Body = Annotated[Name, "body"]
 SlideNames = Annotated[Names, BeforeValidator(lambda v: (v,) if isinstance(v, str) else v), "slide"]
-Direction = Annotated[Name, AfterValidator(_direction)]
+Direction = Annotated[Name, AfterValidator(_direction), "direction"]
 Chassis = Literal["chassis"]
 
 Bodies = Mapping[str, Sequence[str]]
 
 
 class Entry(BaseModel):
-    """An entry of a table; its types say of which of its values are names of points, bodies or slides."""
+    """An entry of a table; its types say which values are names of points, bodies, slides, directions."""
 
     model_config = ConfigDict(frozen=True, defer_build=True)
 
-    @property
-    def table(self) -> dict[str, Any]:
-        """As written, with what may be left out filled in."""
-        return self.model_dump(by_alias=True)
-
     def named(self, what: str) -> tuple[str, ...]:
-        """The names of points, bodies or slides that it mentions."""
+        """The names of points, bodies, slides or directions that it mentions."""
         values = [getattr(self, key) for key in self._naming(what)]
         return tuple(n for value in values for n in (value if isinstance(value, tuple) else (value,)))
 
@@ -105,8 +99,8 @@ class Input(Entry):
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Directions of the car that its rows need."""
-        return ()
+        """Directions of the car that it needs, as the chassis carries them."""
+        return self.named("direction")
 
     def check(self, bodies: Bodies) -> None:
         """Check what its names, which are known, mean together.
@@ -125,18 +119,13 @@ class Arm(Input):
     about: Point
     from_: Direction = Field(alias="from")
 
-    @property
-    def directions(self) -> tuple[str, ...]:
-        return (self.from_,)
-
     def check(self, bodies: Bodies) -> None:
         if self.of == self.about:
             raise TableFault(("of",), f"is {self.of!r} as about is", "two different points")
         if self.angle == CHASSIS:
             raise TableFault(("angle",), "is the chassis, which has no angle from itself", "a moving body")
         for key, point in (("of", self.of), ("about", self.about)):
-            if point not in bodies[self.angle]:
-                raise no_such(f"point of {self.angle}", point, bodies[self.angle], (key,))
+            known_name(f"point of {self.angle}", point, bodies[self.angle], (key,))
 
 
 class Turn(Input):
@@ -174,10 +163,6 @@ class Height(Input):
 
     height: Point
     along: Direction = "up"
-
-    @property
-    def directions(self) -> tuple[str, ...]:
-        return (self.along,)
 
 
 class Contact(Input):
@@ -219,6 +204,10 @@ class Turns(Input):
     turns: Chassis
     about: Point
     along: Direction
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        return (axis_along(self.along),)
 
 
 KINDS: Mapping[str, type[Input]] = {

@@ -1,6 +1,6 @@
 """What a mechanism is made of, flat and by name: bodies, rods, slides, inputs and roles; no coordinates.
 
-The types here say how the tables of a mechanism file look, and pydantic reads them so (`structure_of`). A
+The types here say how the tables of a mechanism file look, and pydantic reads them so. A
 closure is applied and parts are put in with their prefix before names are looked at (`checks`; see
 `mechanisms/README.md` for what the tables mean).
 """
@@ -96,7 +96,7 @@ def _roles(roles: Mapping[str, Any]) -> dict[str, Role]:
 
 @dataclass(frozen=True)
 class Structure:
-    """A mechanism by name.
+    """A mechanism by names.
 
     Attributes:
         bodies: points of each body, the chassis among them.
@@ -106,7 +106,6 @@ class Structure:
         sides: the side of the car that each part is on, left or right.
     """
 
-    name: str = ""
     bodies: dict[Name, Distinct] = field(default_factory=dict)
     rods: dict[Name, Pair] = field(default_factory=dict)
     slides: dict[Name, Slide] = field(default_factory=dict)
@@ -186,17 +185,15 @@ class Structure:
         knuckle = next((body for body in bodies if body in self.knuckles.values()), "")
         return knuckle or next(body for body in bodies if body != CHASSIS)
 
-    def left_out(self, given: Collection[str]) -> dict[str, str]:
-        """Points of moving bodies that a drawing leaves out, each with the one that does its work."""
-        return {
+    def drawn_with(self, given: Collection[str]) -> Structure:
+        """The mechanism of a drawing that gives these points: of moving bodies, those that others do the
+        work of are gone.
+        """
+        gone = {
             name: other
             for name, other in self.stand_ins.items()
             if name not in given and name not in self.bodies[CHASSIS]
         }
-
-    def drawn_with(self, given: Collection[str]) -> Structure:
-        """The mechanism of a drawing that gives these points: those that others do the work of are gone."""
-        gone = self.left_out(given)
         return self.renamed(points=gone) if gone else self
 
     def renamed(
@@ -207,6 +204,8 @@ class Structure:
         prefix: str = "",
     ) -> Structure:
         """With other names; a name that comes twice in a body comes once then.
+
+        What a drawing may leave out stays known: messages say what stands in for what.
 
         Args:
             prefix: before the names of rods, inputs and roles.
@@ -223,8 +222,7 @@ class Structure:
             slides={s.get(name, name): slide.renamed(rename) for name, slide in self.slides.items()},
             inputs={prefix + name: one.renamed(rename) for name, one in self.inputs.items()},
             roles={prefix + role: renamed(who, {**p, **b}) for role, who in self.roles.items()},
-            # A point that another takes the place of is gone.
-            stand_ins={p.get(a, a): p.get(z, z) for a, z in self.stand_ins.items() if prefix or a not in p},
+            stand_ins={prefix + point: prefix + other for point, other in self.stand_ins.items()},
         )
 
     def prefixed(self, prefix: str) -> Structure:
@@ -251,28 +249,15 @@ class Structure:
 
     def plain(self, driven: Collection[str]) -> dict[str, Any]:
         """Bodies, rods, slides, driven inputs, roles and the sides of parts as plain data."""
-        inputs = {name: one.table for name, one in self.inputs.items() if name in driven}
-        slides = {name: slide.table for name, slide in self.slides.items()}
-        tables = {"bodies": self.bodies, "rods": self.rods, "slides": slides, "inputs": inputs}
-        others = {"roles": _with_lists(self.roles), "sides": dict(self.sides)}
-        return {"name": self.name, **_with_lists(tables), **others}
-
-
-def _with_lists(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {key: _with_lists(each) for key, each in value.items()}
-    return list(value) if isinstance(value, tuple) else value
-
-
-def structure_of(tables: Mapping[str, Any], name: str) -> Structure:
-    """The tables as they stand, each entry read by itself; parts and closures are not looked at.
-
-    Raises:
-        TableFault: something has not the shape or type that it must have.
-    """
-    given = {table: tables[table] for table in CLOSING if tables.get(table) is not None}
-    found: Structure = read(Structure, {"name": name, **given})
-    return found
+        inputs = {name: one for name, one in self.inputs.items() if name in driven}
+        plain: dict[str, Any] = _reader(Structure).dump_python(
+            replace(self, inputs=inputs),
+            mode="json",
+            by_alias=True,
+            exclude={"stand_ins"},
+            serialize_as_any=True,
+        )
+        return plain
 
 
 def joints_in_words(structure: Structure) -> Iterator[str]:
@@ -299,8 +284,3 @@ def _slide_in_words(name: str, slide: Slide) -> str:
 def _end(structure: Structure, point: str) -> str:
     bodies = structure.bodies_of(point)
     return f"{point} ({', '.join(bodies)})" if bodies else point
-
-
-def bodies_in_words(structure: Structure) -> Iterator[str]:
-    """Every moving body with its points."""
-    return (f"{body}: {', '.join(points)}" for body, points in structure.moving_bodies.items())

@@ -89,7 +89,7 @@ class ByChain(SolvedScene):
     def fill(self, times: Array, rows: Array) -> None:
         """By cells where instants of one car lie close together, unless it turns, and by blocks elsewhere."""
         left, one = [(0, len(times))], self.readout.mechanism.drawn.ndim == 1
-        if one and len(times) >= ENOUGH and not self.readout.chassis.turns:
+        if one and len(times) >= ENOUGH and not self.readout.chassis.turning:
             left = self._close.fill(times, rows)
         for first, last in left:
             super().fill(times[first:last], rows[..., first:last])

@@ -86,8 +86,8 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
     misses = {}
     for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True):
         miss = hypot(*(residual[row] for row in rows))
-        # Rows are sums of a few products of coordinates below 1. Of a length each component must be there.
-        if constraint.is_length and len(rows) == len(constraint.labels) and miss > 64 * EPS:
+        # Rows are sums of a few products of coordinates below 1. Of a distance each component must be there.
+        if constraint.slide and len(rows) == len(constraint.labels) and miss > 64 * EPS:
             misses[constraint.name] = unit * miss
     moved = {name: float(far) for name, far in movements(mechanism, closed).items()}
     return Closing(moved, misses, float(car_size(mechanism)))

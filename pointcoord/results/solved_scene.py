@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.errors import WrongArgument
-from pointcoord.mechanism.freedoms import held_rows
+from pointcoord.mechanism.freedoms import locked
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.results.samples import Samples
@@ -161,7 +161,8 @@ class SolvedScene(ABC):
         samples = readout.named(times, rows)
         if readout.mechanism.topology.left_out:
             off = self.proof(samples).pose_bound / readout.mechanism.unit
-            held_rows(readout.mechanism, self.coordinates(samples.times, 0)[0], off)
+            for error in locked(readout.mechanism, self.coordinates(samples.times, 0)[0], off).values():
+                raise error
         return samples
 
     def fill(self, times: Array, rows: Array) -> None:

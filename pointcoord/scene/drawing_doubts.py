@@ -62,9 +62,9 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
 
 def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
     """A front that lies behind a rear: axes that are not right-handed, or names mistaken."""
-    if not topology.front_and_rear:
+    if not topology.role("front_and_rear"):
         return
-    front, rear = topology.front_and_rear
+    front, rear = topology.role("front_and_rear")
     ahead = axes.component(points[front] - points[rear], "forward")
 
     def words(one: tuple[int, ...]) -> str:

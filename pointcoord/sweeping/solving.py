@@ -375,8 +375,9 @@ def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
     """
     part = designs.scene.mechanism
     found = np.zeros(len(next(iter(points.values()))), dtype=bool)
-    if part.topology.inboard and part.topology.wheel_centre:
-        inner, wheel = points[part.topology.inboard], points[part.topology.wheel_centre]
+    inboard = part.topology.role("inboard")
+    if inboard and part.topology.wheel_centre:
+        inner, wheel = points[inboard[0]], points[part.topology.wheel_centre]
         with np.errstate(invalid="ignore", over="ignore"):
             slack = SLACK * (np.abs(inner).max(axis=-1) + np.abs(wheel).max(axis=-1))
             found |= ~((inner - wheel) @ part.outboard < -slack)

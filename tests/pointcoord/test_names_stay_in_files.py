@@ -35,7 +35,7 @@ def said(tree: ast.Module) -> Iterator[str]:
 # ------------------------------------------------------------------------------------------- mechanisms
 
 POINTS = {point for name in shipped() for point in mechanism_file(name).points}
-INPUTS = {name for one in shipped() for name in mechanism_file(one).inputs}
+INPUTS = {name for one in shipped() for name in mechanism_file(one).structures["drawn"].inputs}
 # A file may call an input as the format calls its kind, such as `turn`, or as an effect calls what it drives.
 # A type may be called as what a scene says of its car, and an error tells how to write inputs of some names.
 ELSEWHERE = {*KINDS, *EFFECTS, *NUMBERS_OF_THE_CAR, *TURNS}

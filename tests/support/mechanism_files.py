@@ -61,6 +61,7 @@ def plain(tables: Tables, part: Mapping[str, Any], driven: Iterable[str]) -> Pla
             points.setdefault(name, points[other])
     return {
         **structure.drawn_with(points).plain(tuple(driven)),
+        "name": file.name,
         "points": points,
         "up": list(part.get("up", (0, 0, 1))),
         "right": list(right),

@@ -11,7 +11,7 @@ from pointcoord import AssemblyError, PointcoordError, Scene, built_in_scenes, s
 from pointcoord.drawing_stands import Standing
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
-from pointcoord.mechanism.structure import bodies_in_words, joints_in_words
+from pointcoord.mechanism.structure import joints_in_words
 from pointcoord.results.closing import ALLOWED
 from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
@@ -82,7 +82,8 @@ def _mechanism(scene: Scene, name: str) -> Iterator[str]:
     side = f", {part.side} side" if structure.knuckles.get("knuckle") else ""
     yield f"{name}: {shown(scene.title)}" if scene.title else name
     yield f"mechanism: {part.name}{side}; inputs: {', '.join(scene.inputs)}"
-    yield f"bodies: {'; '.join(bodies_in_words(structure))}"
+    bodies = (f"{body}: {', '.join(points)}" for body, points in structure.moving_bodies.items())
+    yield f"bodies: {'; '.join(bodies)}"
     yield from ("joints:", *(f"  {joint}" for joint in joints_in_words(structure)))
     inputs = structure.inputs.items()
     others = [n for n, one in inputs if n not in (part.driven or ()) and not one.moves_the_chassis]

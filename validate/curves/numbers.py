@@ -219,9 +219,10 @@ def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
 def _inputs(scene: Scene) -> list[Number]:
     topology = scene.mechanism.topology
     signs = {drive.input: drive.sign for drive in topology.drives}
-    signs |= {name: f"{along}ward" for name, along in topology.chassis_motion.items()}
-    turns = topology.chassis_turns.items()
-    signs |= {name: f"right-handed about {along} through {about}" for name, (along, about) in turns}
+    signs |= {
+        name: f"right-handed about {along} through {about}" if about else f"{along}ward"
+        for name, (along, about) in topology.chassis_inputs.items()
+    }
 
     def reader(name: str) -> Read:
         return lambda _, samples: scene.functions[name].series(samples.times, 0)[:, 0]

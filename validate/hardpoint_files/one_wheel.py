@@ -122,7 +122,7 @@ class OneWheel:
             FileError: the file does not say all that is needed, or its points speak against what it says.
             UnknownName: a name in the user's file is none of this file's. UsageError: `axes` are none.
         """
-        if not (self.topology.wheel_axis and self.topology.inboard):
+        if not (self.topology.wheel_axis and self.topology.role("inboard")):
             raise self.refuse(
                 f"is read as {self.kind}, whose file names no wheel: the roles wheel_axis and inboard",
                 "a suspension of one wheel; else a scene written by hand (pointcoord new)",
@@ -357,7 +357,10 @@ class OneWheel:
         say which of its points these are.
         """
         topology, places = self.topology, self.chosen.places
-        for way, ends in (("forward", topology.front_and_rear), ("up", topology.steering_axis[::-1])):
+        for way, ends in (
+            ("forward", topology.role("front_and_rear")),
+            ("up", topology.role("steering_axis")[::-1]),
+        ):
             if ends:
                 one, other = ends
                 apart = [a - b for a, b in zip(places[one], places[other], strict=True)]
@@ -387,7 +390,7 @@ class OneWheel:
 
     def side(self, turned: Mapping[str, Place]) -> str:
         """The wheel's side, from where it lies; it must be the one that the file or the user says."""
-        wheel, inner = self.topology.wheel_centre, self.topology.inboard
+        wheel, (inner,) = self.topology.wheel_centre, self.topology.role("inboard")
         lies, out = turned[wheel][1], turned[wheel][1] - turned[inner][1]
         if not out:
             raise self.refuse(f"has {wheel} as far out as {inner}", "a wheel outboard of it; see --axes")

@@ -53,7 +53,9 @@ def check_angles(
     Args:
         patterns: of the file's words, for our names. places: as the file has them. drawn: our angles, rad.
     """
-    axes = [ends for ends in (topology.wheel_axis, topology.steering_axis) if ends and {*ends} <= {*places}]
+    axes = [
+        ends for ends in map(topology.role, ("wheel_axis", "steering_axis")) if ends and {*ends} <= {*places}
+    ]
     left_open = 0.0
     for one, other in ([places[name] for name in ends] for ends in axes):
         half = max(map(_half_a_digit, (*one, *other)))

@@ -109,7 +109,8 @@ class Constraint:
         pivots: points that it reads as what the chassis turns about, and not as joined to anything.
         may_lock: whether it can be what a motion ends at.
         holds_a_body: whether it only says how a body is made, and joins it to nothing.
-        is_length: whether its rows at the drawing are the components of a distance that the drawing misses.
+        slide: the one that it puts a point on the line of; its rows at the drawing are the components of the
+            point's distance from there, which the drawing misses.
     """
 
     name: str
@@ -124,7 +125,7 @@ class Constraint:
     pivots: Names = ()
     may_lock: bool = False
     holds_a_body: bool = False
-    is_length: bool = False
+    slide: str = ""
 
     @property
     def labels(self) -> Names:

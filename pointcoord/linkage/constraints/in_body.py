@@ -69,39 +69,27 @@ def normal_of(body: str, triangle: Triangle) -> Constraint:
 
 def axis_in_body(axis: Axis, triangle: Triangle) -> Constraint:
     """An axis that the body of a triangle carries. Three rows; unknown is its direction."""
-    constants = weight_names(axis.name, axis.body, triangle)
-    equation = held_in_body(axis.name, (axis.name, ""), axis.body, triangle, constants)
+    name = axis.name
+    equation, constants = held_in_body(name, (name, ""), axis.body, triangle)
     read = partial(_axis, axis, triangle, constants)
-    return Constraint(
-        axis.name, (equation,), read, vectors=(axis.name,), constants=constants, holds_a_body=True
-    )
+    return Constraint(name, (equation,), read, vectors=(name,), constants=constants, holds_a_body=True)
 
 
 def point_in_body(point: str, body: str, triangle: Triangle) -> Constraint:
     """A further point of a body, held in its triangle. Three rows."""
     name, edge = f"{point} in {body}", (point, triangle[0])
-    constants = weight_names(name, body, triangle)
-    return Constraint(
-        name,
-        (held_in_body(name, edge, body, triangle, constants),),
-        partial(_point, point, triangle, constants),
-        constants=constants,
-        segments=((triangle[0], point),),
-        holds_a_body=True,
-    )
+    equation, constants = held_in_body(name, edge, body, triangle)
+    read, segment = partial(_point, point, triangle, constants), (triangle[0], point)
+    return Constraint(name, (equation,), read, constants=constants, segments=(segment,), holds_a_body=True)
 
 
-def weight_names(name: str, body: str, triangle: Triangle) -> Names:
-    """What the constants a, b and c of a vector in a body are called."""
-    return tuple(f"{name} along {part}" for part in (*triangle[1:], normal_name(body)))
-
-
-def held_in_body(label: str, vector: Edge, body: str, triangle: Triangle, weights: Names) -> Equation:
-    """v - a e1 - b e2 - c n = 0; bilinear in the constants and edges."""
+def held_in_body(label: str, vector: Edge, body: str, triangle: Triangle) -> tuple[Equation, Names]:
+    """v - a e1 - b e2 - c n = 0, bilinear in the constants and edges; and what a, b and c are called."""
     base, first, second = triangle
     edges = (first, base), (second, base), (normal_name(body), "")
+    weights = tuple(f"{label} along {head}" for head, _ in edges)
     parts = (Term(-1.0, weight, edge) for weight, edge in zip(weights, edges, strict=True))
-    return Equation(label, (Term(1.0, vector, ONE), *parts))
+    return Equation(label, (Term(1.0, vector, ONE), *parts)), weights
 
 
 def by_component(names: Names, vector: Placed) -> dict[str, Placed]:

@@ -33,7 +33,7 @@ class Line(NamedTuple):
 
     Attributes:
         name: in messages. between: whether it runs through the points `origin` and `head`.
-        axis: the body's axis, if it is one.
+        axis: the body's axis, if it is one. slide: whose line it is.
     """
 
     name: str
@@ -41,6 +41,7 @@ class Line(NamedTuple):
     head: str
     between: bool = False
     axis: Axis | None = None
+    slide: str = ""
 
     @property
     def along(self) -> Edge:
@@ -91,7 +92,7 @@ def on_line(point: str, line: Line, place: str, at: Literal["free", "driven", "h
         segments=((line.origin, point),) if line.between or line.axis else (),
         # Where what it holds lies square to the line, and nothing drives it.
         may_lock=at == "free" and not line.between,
-        is_length=True,  # the point's distance from the line or from its place on it
+        slide=line.slide,
     )
 
 

@@ -13,7 +13,6 @@ from pointcoord.linkage.constraints.in_body import (
     Triangle,
     by_component,
     held_in_body,
-    weight_names,
     weights_in_body,
 )
 from pointcoord.linkage.drawing import Drawing, Placed
@@ -44,20 +43,16 @@ def turn(
     """
     vectors, (cosine, sine) = (f"across {name}", f"along {name}"), driven
     parts = tuple(f"part {vector}" for vector in vectors)
-    constants = [weight_names(vector, *carrier) if carrier else per_axis(vector) for vector in vectors]
+    held = [held_in_body(vector, (vector, ""), *carrier) for vector in vectors] if carrier else []
+    constants = [own for _, own in held] or [per_axis(vector) for vector in vectors]
     equations = [
         Equation(f"{name}: {side}", (Term(1.0, (hinge[0], point), (vector, "")), Term(1.0, part, ONE)))
         for side, vector, part in zip(("across", "along"), vectors, parts, strict=True)
     ]
     equations.append(Equation(name, (Term(1.0, cosine, parts[0]), Term(-1.0, sine, parts[1]))))
-    if carrier:
-        equations += [
-            held_in_body(vector, (vector, ""), *carrier, own)
-            for vector, own in zip(vectors, constants, strict=True)
-        ]
     return Constraint(
         name,
-        tuple(equations),
+        (*equations, *(equation for equation, _ in held)),
         partial(_placed, name, point, hinge, carrier, tuple(zip(vectors, parts, constants, strict=True))),
         vectors=vectors if carrier else (),
         slides=parts,

@@ -23,12 +23,12 @@ def test_a_chassis_that_goes_too_far_or_too_fast_is_refused_with_when_and_what(o
     terms[order] = 1e301 / math.factorial(order)
     motion = ChassisMotion({"heave": Polynomial(tuple(terms))}, {"heave": UP})
     with pytest.raises(InputOutOfRange, match=f"below 1e\\+300 {unit} in size".replace("^", r"\^")) as caught:
-        motion.states(np.array([0.0]), 2)
+        motion.law("heave", np.array([0.0]), 2)
     assert (caught.value.name, caught.value.instant) == ("heave", 0.0)
     assert caught.value.value == pytest.approx(1e301)
     late = ChassisMotion({"heave": Polynomial((0.0, 1e299))}, {"heave": UP})
     with pytest.raises(InputOutOfRange, match="below") as caught:
-        late.states(np.array([0.0, 5.0, 20.0, 30.0]), 0)
+        late.law("heave", np.array([0.0, 5.0, 20.0, 30.0]), 0)
     assert caught.value.instant == 20.0
 
 

@@ -1,67 +1,10 @@
-"""Heights over the ground, turns that go round, and inputs that do not hold a mechanism."""
-
-import tomllib
-from collections.abc import Mapping
+"""Turns that go round, and a structure that no input moves."""
 
 import numpy as np
 import pytest
 
 from pointcoord import Scene, SceneError, simulate
-from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.results.motion import Motion
-
-WISHBONE = Scene.load("double-wishbone").model_dump(exclude_none=True)["mechanism"]
-RACK = {"polynomial": [0.0, 10.0]}
-RADIUS = 300.0
-
-
-def with_inputs(inputs: Mapping[str, object], **laws: object) -> Scene:
-    """A scene of the wishbone with further inputs that can be driven."""
-    tables = tomllib.loads((MECHANISMS / f"{WISHBONE['type']}.toml").read_text())
-    tables["inputs"] = {**tables["inputs"], **inputs}
-    own = {**WISHBONE, "type": None, "wheel_radius": RADIUS}
-    return Scene.from_mapping(
-        {
-            "mechanism": {**own, **tables},
-            "effects": [],
-            "inputs": laws,
-            "time": {"start": 0.0, "stop": 1.0, "samples": 5},
-        }
-    )
-
-
-GROUND = {
-    "c": {"contact": ["wheel_axis_inner", "wheel_centre"], "over": "ground"},
-    "roll": {"turns": "chassis", "about": "upper_arm_front", "along": "forward"},
-}
-ROLL = {"sine": {"amplitude": 0.06, "angular_frequency": 5.0}}
-
-
-CONSTANT = {"constant": 1.5}
-
-
-@pytest.mark.parametrize(
-    ("inputs", "laws", "words"),
-    [
-        (
-            {"again": {"travel": "rack"}},
-            {"arm_angle": CONSTANT, "again": CONSTANT},
-            ("rack and again both drive the travel of rack",),
-        ),
-        (
-            GROUND | {"roll": {**GROUND["roll"], "about": "wheel_centre"}},
-            {"c": CONSTANT, "roll": ROLL},
-            ("roll turns the chassis about wheel_centre, which it does not carry",),
-        ),
-    ],
-)
-def test_inputs_that_do_not_hold_the_mechanism_are_refused_by_name(
-    inputs: dict[str, object], laws: dict[str, object], words: tuple[str, ...]
-) -> None:
-    with pytest.raises(SceneError) as caught:
-        with_inputs(inputs, rack=RACK, **laws)
-    assert all(word in str(caught.value) for word in words)
-
 
 ARM_SCENE = Scene.load("semi-trailing-arm").model_dump(exclude_none=True)
 

@@ -22,7 +22,7 @@ CLOSING = [car for car in SAMPLES if car.closure == "drawn"]
 
 def steering_side(car: SampleCar, points: Mapping[str, Array]) -> int:
     """The exact sign of (k x inner end of the tie rod) . outer end, from the lower end of the kingpin k."""
-    lower, upper = car.topology.steering_axis
+    lower, upper = car.topology.role("steering_axis")
     exact = {name: [Fraction(float(x)) for x in place] for name, place in points.items()}
     k, inner, outer = (
         [x - y for x, y in zip(exact[name], exact[lower], strict=True)]
@@ -36,7 +36,7 @@ def steering_side(car: SampleCar, points: Mapping[str, Array]) -> int:
 def drawn_with_a_dead_tie_rod(car: SampleCar, sine: float, turn: Rotation) -> dict[str, Array]:
     """The car turned, its tie rod drawn out of the plane of kingpin and steering arm by an angle."""
     points = {name: np.array(place, float) for name, place in car.points.items()}
-    lower, upper = (points[name] for name in car.topology.steering_axis)
+    lower, upper = (points[name] for name in car.topology.role("steering_axis"))
     outer = points["tie_rod_outer"]
     normal = np.cross(upper - lower, outer - lower)
     normal /= np.linalg.norm(normal)

@@ -94,8 +94,9 @@ def _frames(one: Drawn, model: Solution, known: Mapping[str, Array], shown: Arra
     chassis, origin = readout.chassis, readout.mechanism.origin
     still = np.zeros((len(model.times), 3))
     drawn = {n: known[n] - origin + still for n in one.scene.mechanism.topology.chassis if n in known}
-    shift = origin + sum(chassis.states(model.times, 0), np.zeros(3))
-    turned = chassis.turned_by(readout.laws(model.times), [drawn])[0]
+    laws = readout.laws(model.times)
+    shift = origin + sum(chassis.shifts(laws)[:1], np.zeros(3))
+    turned = chassis.turned_by(laws, [drawn])[0]
     places: dict[str, Array] = {name: place + shift for name, place in turned.items()}
     places |= model.numbers.get(PLACE, {})
     rows = np.full((len(shown), len(known), 3), np.nan)
