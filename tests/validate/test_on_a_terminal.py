@@ -95,7 +95,7 @@ def test_progress_comes_after_two_seconds_in_lines_of_its_own() -> None:
 
 def test_a_table_is_columns_of_text() -> None:
     made = table.Table(("name", "size", "verdict"), (("a", "1.5", "agrees"), ("long one", "10", "no")), 2)
-    assert made.text.splitlines() == [
+    assert made.lines() == [
         "  name      size  verdict",
         "  --------  ----  -------",
         "  a          1.5  agrees",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from pointcoord import Scene
@@ -12,7 +12,7 @@ from validate.comparison.compare import Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding, findings
 from validate.exit_status import ExitStatus, combined
-from validate.output.report import examined_data, finding_data, paper_data
+from validate.output.report import examined_data, paper_data
 from validate.paper.tables import PaperRow
 
 if TYPE_CHECKING:  # most runs compare no file
@@ -100,7 +100,7 @@ class Record:
         baseline = self.baseline
         return {
             "scenes": [examined_data(one, self.files.get(one.name)) for one in self.examined],
-            "printed_formulas": [*map(finding_data, self.findings)],
+            "printed_formulas": [*map(asdict, self.findings)],
             "printed_tables": paper_data(self.paper) if self.paper else None,
             "tolerance_factor": self.factor,
             "not_run": list(self.not_run),

@@ -55,6 +55,7 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     target = place_of_picture(options, PICTURES, console)
     needed("plot", "matplotlib", "plot")
     if Path(options.scene).suffix in ENDINGS:
+        needed("plot", "pandas")
         return _plot_sweep(options, target, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     angles = tuple(n for one in angles_of(scene) for n in numbers_called(one.path[1], scene))
@@ -81,7 +82,8 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
 def _plot_sweep(options: argparse.Namespace, target: str | None, console: Console) -> ExitStatus:
     """Draw the columns of a sweep's file, a curve for each design."""
     # Imported here: matplotlib and pandas take a second each.
-    from validate.curves.of_sweep import columns_called, figure_of, read_sweep
+    from validate.curves.of_sweep import columns_called, read_sweep
+    from validate.curves.picture import figure_of
     from validate.output.figure import drawn
 
     if options.instants is not None:

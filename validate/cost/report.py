@@ -93,7 +93,7 @@ class Report:
     def parts(self) -> tuple[Part, ...]:
         """For a terminal: sentences, tables, and by what it was measured."""
         said = self.sentences or ([] if self.measured else [NOTHING])
-        shown = [part for table in self.tables for part in ("", _wrapped(table.caption), table)]
+        shown = [part for table in self.tables for part in ("", table)]
         by = "".join(f" by {row.program}, {row.machine}" for row in self.rows[:1])
         last = f"{self.store}: {self.measured} rows measured{by}"
         return ("\n".join(map(_wrapped, (TITLE, *said))), *shown, "", _wrapped(HOW), _wrapped(last))

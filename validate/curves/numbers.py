@@ -23,7 +23,6 @@ from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
 
-
 Sampled = Samples | Solution
 """Numbers of a motion or of another solution at instants."""
 Read = Callable[[Motion | None, Sampled], Array]

@@ -1,4 +1,4 @@
-"""Curves of a file that `sweep` or `simulate` wrote: its columns over each other, a curve for each design."""
+"""A file that `sweep` or `simulate` wrote, and its columns by few words."""
 
 from __future__ import annotations
 
@@ -6,23 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from validate.errors import UsageError
-from validate.extras import not_there
-from validate.output.columns import DESIGN
-from validate.output.figure import SETTINGS, panels
 from validate.plain_text import shown, some_of
 
-try:
-    import matplotlib as mpl
-    import pandas as pd
-    from matplotlib.figure import Figure
-except ImportError as error:
-    raise not_there("validate.curves.of_sweep", error, "plot") from None
-
 NAMED = 8  # columns, in a message
-MOST = 400  # curves: more cover each other, and evenly as many are drawn
-SHADES = "viridis"  # from dark to light, by design
 
 
 def read_sweep(path: str) -> pd.DataFrame:
@@ -61,18 +50,3 @@ def columns_called(table: pd.DataFrame, words: Sequence[str]) -> list[str]:
             raise UsageError(f"{shown(word)} names no column of the file; allowed: {there}")
         found += whole or part
     return list(dict.fromkeys(found))
-
-
-@mpl.rc_context(SETTINGS)
-def figure_of(table: pd.DataFrame, across: str, up: Sequence[str], title: str) -> Figure:
-    """A panel for each column that goes upward, a curve for each design."""
-    designs = [table] if DESIGN not in table else [one for _, one in table.groupby(DESIGN)]
-    chosen = np.unique(np.linspace(0, len(designs) - 1, min(len(designs), MOST)).round().astype(int))
-    page, grid = panels((5.5, 2.2 * len(up) + 0.8), title, len(up), 1, sharex=True)
-    for axes, column in zip(grid, up, strict=True):
-        for place in chosen.tolist():
-            shade = mpl.colormaps[SHADES](place / max(len(designs) - 1, 1))
-            axes.plot(designs[place][across], designs[place][column], color=shade, linewidth=1.0)
-        axes.set_ylabel(shown(column), parse_math=False)
-    grid[-1].set_xlabel(shown(across), parse_math=False)
-    return page

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from textwrap import fill
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from validate.curves.numbers import TRAVEL, Curves, Number
-from validate.extras import not_there
-from validate.output.figure import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, panels
+from validate.output.columns import DESIGN
+from validate.output.figure import BLUE, FAINT, GREEN, GREY, LOOK, ORANGE, PINK, RED, SHADES, SKY, panels
+from validate.plain_text import shown
 
-try:
-    import matplotlib as mpl
+if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-except ImportError as error:
-    raise not_there("validate.curves.picture", error, "plot") from None
 
 Array = NDArray[np.float64]
 Values = Callable[[Number], Array]
@@ -28,11 +28,12 @@ STYLES = ("-", "--", "-.", ":")  # for those who see no colours, and beyond thei
 # what the labels and the title take.
 ALONE, BESIDE, ABOVE, LABELS = (4.4, 3.6), (2.3, 3.6), (5.5, 2.3), (0.9, 1.1)
 LETTER = 0.066  # inches, of a letter of a label, on average
+MOST = 400  # designs: more curves cover each other, and evenly as many are drawn
 # Digits below which numbers that do not change differ by rounding.
 STILL = 1e-9
 
 
-@mpl.rc_context(SETTINGS)
+@LOOK
 def figure(curves: Curves, values: Values, title: str) -> Figure:
     """Draw curves.
 
@@ -49,6 +50,21 @@ def figure(curves: Curves, values: Values, title: str) -> Figure:
         across, up = (panel, curves.up) if upright else (curves.across, panel)
         _draw(axes, Curves(tuple(across), tuple(up)), values, size)
         axes.label_outer()
+    return page
+
+
+@LOOK
+def figure_of(table: pd.DataFrame, across: str, up: Sequence[str], title: str) -> Figure:
+    """Draw columns of a sweep's table: a panel for each that goes upward, a curve for each design."""
+    designs = [table] if DESIGN not in table else [one for _, one in table.groupby(DESIGN)]
+    chosen = np.unique(np.linspace(0, len(designs) - 1, min(len(designs), MOST)).round().astype(int))
+    page, grid = panels((5.5, 2.2 * len(up) + 0.8), title, len(up), 1, sharex=True)
+    for axes, column in zip(grid, up, strict=True):
+        for place in chosen.tolist():
+            shade = SHADES(place / max(len(designs) - 1, 1))
+            axes.plot(designs[place][across], designs[place][column], color=shade, linewidth=1.0)
+        axes.set_ylabel(shown(column), parse_math=False)
+    grid[-1].set_xlabel(shown(across), parse_math=False)
     return page
 
 

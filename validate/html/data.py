@@ -29,7 +29,8 @@ def data_files(run: Run) -> Mapping[str, str]:
     """Names and contents of what a run has."""
     files = {"results.json": json_text(run.document)}
     if run.record.examined:
-        files["comparisons.csv"] = csv_of((field.name for field in fields(Comparison)), _comparisons(run))
+        rows = (asdict(row).values() for outcome in run.record.outcomes for row in outcome.rows)
+        files["comparisons.csv"] = csv_of((field.name for field in fields(Comparison)), rows)
     if run.record.files:
         files["numbers.csv"] = csv_of(NUMBERS, _numbers(run))
     if run.published:
@@ -39,10 +40,6 @@ def data_files(run: Run) -> Mapping[str, str]:
     if run.cost is not None:
         files["cost.json"] = json_text(run.cost.data())
     return files
-
-
-def _comparisons(run: Run) -> Iterator[Iterable[object]]:
-    return (asdict(row).values() for outcome in run.record.outcomes for row in outcome.rows)
 
 
 def _numbers(run: Run) -> Iterator[Iterable[object]]:

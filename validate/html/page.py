@@ -10,13 +10,14 @@ from pathlib import Path
 
 from validate.errors import NotFinished, UsageError
 from validate.extras import needed
+from validate.html.blocks import Plots, Spatial
 from validate.html.data import WORDS, data_files
 from validate.html.run import Run
-from validate.html.section import PLOTLY
-from validate.html.sections import sections
+from validate.html.sections import SECTIONS
 from validate.output.files import require_writable, unwritable, write_content
 
 TEMPLATES = Path(__file__).with_name("templates")
+SCRIPTS = ("grid.js", "plots.js", "spatial.js")
 # What marks a page as ours, so that no other page is written over.
 GENERATOR = "pointcoord report"
 # That mark is near its beginning.
@@ -42,26 +43,21 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined
     )
-    # Our own text and plotly's, in which no user has a say: all that goes into the page as it is.
-    as_it_is = jinja2.utils.markupsafe.Markup
-    made = [(section, blocks) for section in sections() if (blocks := tuple(section.blocks(run)))]
-    names = dict.fromkeys(name for _, blocks in made for block in blocks for name in block.scripts)
-    scripts = [_script(name) for name in names]
+    made = [(section, blocks) for section in SECTIONS if (blocks := tuple(section.blocks(run)))]
+    scripts = [_own(name) for name in SCRIPTS]
+    if any(isinstance(block, Plots | Spatial) for _, blocks in made for block in blocks):
+        scripts.insert(0, needed("report", "plotly.offline", "report").get_plotlyjs())
     hashes = (b64encode(sha256(script.encode()).digest()).decode() for script in scripts)
     text = environment.get_template("page.html").render(
         run=run,
         parts=made,
-        policy=POLICY.format(" ".join(f"'sha256-{one}'" for one in hashes) or "'none'"),
+        policy=POLICY.format(" ".join(f"'sha256-{one}'" for one in hashes)),
         generator=GENERATOR,
-        style=as_it_is(_own("page.css")),
-        scripts=[as_it_is(script) for script in scripts],
+        style=_own("page.css"),
+        scripts=scripts,
         files=files,
     )
     return str(text)
-
-
-def _script(name: str) -> str:
-    return str(needed("report", "plotly.offline", "report").get_plotlyjs()) if name == PLOTLY else _own(name)
 
 
 def _own(name: str) -> str:

@@ -29,7 +29,7 @@ POINTS, FRAMES = 120, 61
 
 @dataclass(frozen=True)
 class Drawn:
-    """A scene of the run that the page draws, with its numbers; motion is as pointcoord solves it."""
+    """A scene of the run that the page draws, with its numbers; motion is of all points, by pointcoord."""
 
     examined: Examined
     scene: Scene
@@ -60,7 +60,8 @@ class Drawings:
         if scene is not None and examined.outcomes and len(self.kept) < room:
             # Why pointcoord refuses it is told already.
             with suppress(PointcoordError):
-                self.kept.append(Drawn(examined, scene, simulate(scene)))
+                motion = simulate(scene.model_copy(update={"points": None}))
+                self.kept.append(Drawn(examined, scene, motion))
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,16 @@ class Run:
     published: tuple[Published, ...] = ()
     hard: HardCases | None = None
     cost: Report | None = None
+
+    @property
+    def not_drawn(self) -> Sequence[str]:
+        """Which scenes are drawn, in a sentence, where these are not all."""
+        drawn, compared = len(self.drawn), sum(bool(one.outcomes) for one in self.record.examined)
+        # Of a file's scene no motion is solved, which the page says in a place of its own.
+        if drawn == compared or self.record.files:
+            return ()
+        told = f"Drawn are {drawn} of {compared} scenes: the first {FIRST}, and the first {FURTHER} further "
+        return (f"{told}ones that do not agree. The tables and the data beside this page have all.",)
 
     @property
     def status(self) -> ExitStatus:

@@ -10,7 +10,6 @@ could not be solved are NaN.
 from __future__ import annotations
 
 import re
-import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
@@ -88,19 +87,14 @@ def rows_of_motion(motion: Motion, instants: int | None = None) -> Iterator[Bloc
     return (dict(columns(block)) for block in motion.blocks(instants, ROWS))
 
 
-def _of_designs(block: Sweep) -> tuple[Block, NDArray[np.str_]]:
-    """What belongs to each design of a block: its number and what varies in it; and what became of it."""
-    numbers = block.numbers_of_designs
-    found = (block.failures.get(number) for number in numbers.tolist())
-    said = np.array([SOLVED if failure is None else failure.reason for failure in found])
-    varied = {f"{name} [mm]": values for name, values in block.varied.items()}
-    return {DESIGN: numbers, **varied, CLOSING: block.closing}, said
-
-
 def rows_of_sweep(blocks: Iterable[Sweep]) -> Iterator[Block]:
     """A row for each design and instant, of some designs at a time."""
     for block in blocks:
-        instants, each, (before, said) = len(block.times), dict(number_columns(block)), _of_designs(block)
+        instants, each, numbers = len(block.times), dict(number_columns(block)), block.numbers_of_designs
+        varied = {f"{name} [mm]": values for name, values in block.varied.items()}
+        before = {DESIGN: numbers, **varied, CLOSING: block.closing}
+        failed = (block.failures.get(number) for number in numbers.tolist())
+        said = np.array([SOLVED if failure is None else failure.reason for failure in failed])
         some = max(PIECE // (instants * max(len(each), 1)), 1)
         for low in range(0, len(block), some):
             here = slice(low, low + some)
@@ -139,15 +133,9 @@ def _lines(block: list[NDArray[Any]]) -> str:
 
 def _npz(stream: BinaryIO, blocks: Iterable[Block]) -> None:
     """One member for each column, all of them in memory until they are written."""
-    parts: dict[str, list[NDArray[Any]]] = {}
-    for block in blocks:
-        for name, column in block.items():
-            parts.setdefault(name, []).append(column)
-    with zipfile.ZipFile(stream, "w", allowZip64=True) as archive:
-        for name, found in parts.items():
-            # Names may hold characters that keywords of numpy.savez do not.
-            with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
-                np.lib.format.write_array(member, np.concatenate(found))
+    every = [*blocks]
+    whole: dict[str, Any] = {name: np.concatenate([block[name] for block in every]) for name in every[0]}
+    np.savez(stream, **whole)
 
 
 def _parquet(stream: BinaryIO, blocks: Iterator[Block], group: int) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from contextlib import ContextDecorator
 from textwrap import fill
 from typing import Any
 
@@ -17,14 +18,8 @@ except ImportError as error:
     raise not_there("validate.output.figure", error, "plot") from None
 
 # Okabe and Ito, Color Universal Design, 2008; yellow is left out, being too light for lines on paper.
-ORANGE, SKY, GREEN, BLUE, RED, PINK = (
-    "#e69f00",
-    "#56b4e9",
-    "#009e73",
-    "#0072b2",
-    "#d55e00",
-    "#cc79a7",
-)
+ORANGE, SKY, GREEN = "#e69f00", "#56b4e9", "#009e73"
+BLUE, RED, PINK = "#0072b2", "#d55e00", "#cc79a7"
 GREY = "#777777"
 FAINT = "#cccccc"
 INK = "#222222"
@@ -44,6 +39,9 @@ SETTINGS: Any = {
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
 }
+LOOK: ContextDecorator = mpl.rc_context(SETTINGS)
+"""Decorates a function that draws: what it draws looks so."""
+SHADES = mpl.colormaps["viridis"]  # from dark to light
 DOTS = 200  # to an inch, of a PNG
 TITLE = 0.08  # inches, of a letter of a title, on average
 
@@ -73,11 +71,11 @@ def plain(axes: Axes) -> None:
     axes.minorticks_off()
 
 
+@LOOK
 def drawn(figure: Figure, ending: str) -> bytes:
     """A figure as the bytes of a file, `svg` or `png`; the same for the same figure."""
     stream = io.BytesIO()
-    with mpl.rc_context(SETTINGS):
-        # A date, or the version of a library, would make a file of the same rows another one.
-        metadata: dict[str, Any] = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
-        figure.savefig(stream, format=ending, dpi=DOTS, metadata=metadata)
+    # A date, or the version of a library, would make a file of the same rows another one.
+    metadata: dict[str, Any] = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
+    figure.savefig(stream, format=ending, dpi=DOTS, metadata=metadata)
     return stream.getvalue()

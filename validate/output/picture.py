@@ -76,17 +76,13 @@ def svg(drawing: ClosedDrawing) -> str:
     )
     # One scale for all views, so that lengths can be compared between them.
     scale = VIEW / max(float(np.ptp([p @ a for p in points.values()])) for a in (right, up, rearward))
-    for i, (title, across, down) in enumerate(views):
-        flat = {name: np.array([place @ across, place @ down]) for name, place in points.items()}
-        middle = 0.5 * (np.min([*flat.values()], axis=0) + np.max([*flat.values()], axis=0))
+    for i, (title, *axes) in enumerate(views):
+        drawn, closed = ({n: scale * (axes @ p) for n, p in of.items()} for of in (points, drawing.places))
         corner = np.array([MARGIN + i * (VIEW + MARGIN), top])
-        shift = corner + 0.5 * VIEW - scale * middle
-        drawn = {name: shift + scale * place for name, place in flat.items()}
-        closed = {
-            name: shift + scale * np.array([place @ across, place @ down])
-            for name, place in drawing.places.items()
-        }
-        parts += _view(title, corner, topology, drawn, closed)
+        ends = np.min([*drawn.values()], axis=0), np.max([*drawn.values()], axis=0)
+        shift = corner + 0.5 * VIEW - np.mean(ends, axis=0)
+        moved = ({n: shift + place for n, place in of.items()} for of in (drawn, closed))
+        parts += _view(title, corner, topology, *moved)
     for i, line in enumerate(lines):
         parts.append(_text(MARGIN + (i // rows) * width / 2, below + (i % rows) * LINE, line))
     for i, line in enumerate(below_lines):

@@ -18,18 +18,13 @@ class Progress:
     Args:
         say: takes a line.
         message, total: what is done, and of how much, until something else is told.
-        first, pause: seconds before the first line, and between two.
+        first: seconds before the first line.
     """
 
     def __init__(
-        self,
-        say: Callable[[str], None],
-        message: str,
-        total: int | None = None,
-        first: float = PAUSE,
-        pause: float = PAUSE,
+        self, say: Callable[[str], None], message: str, total: int | None = None, first: float = PAUSE
     ) -> None:
-        self._say, self._waits = say, (first, pause)
+        self._say, self._first = say, first
         self._message, self._done, self._total = message, 0, total
         self._began, self._over = time.monotonic(), threading.Event()
         # What was there when this run began took it no time.
@@ -59,7 +54,7 @@ class Progress:
         return f"after {now - self._began:.0f} s: {self._message}{share}{rest}"
 
     def _run(self) -> None:
-        wait, pause = self._waits
+        wait = self._first
         while not self._over.wait(wait):
             self._say(self.line())
-            wait = pause
+            wait = PAUSE

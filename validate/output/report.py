@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence, Sized
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
@@ -131,13 +132,6 @@ def agreeing(agreed: int, count: int) -> str:
     return f"{agreed} of {count} {'scene agrees' if count == 1 else 'scenes agree'}"
 
 
-def verdict_of(row: Comparison) -> str:
-    """The verdict of a row in a table, and how far beyond its tolerance one lies that disagrees."""
-    if row.verdict != "disagrees":
-        return row.verdict
-    return f"DISAGREES, {row.share:.1e} times" if math.isfinite(row.share) else "DISAGREES, not a number"
-
-
 def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) -> tuple[Part, ...]:
     """What came of a comparison as a table with lines around it; angles are in degrees.
 
@@ -148,67 +142,55 @@ def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) 
     rows += [(words, "", "-", "-", "-", "-", "-", Cell("not given")) for words in absent]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
     count = counted_as(len(outcome.solutions[0].times), "row" if over else "instant")
+    told = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
     return (
         f"{outcome.scene}: {pair_of(outcome)}, {count}{f' over {shown(over)}' if over else ''}{factor}",
         Table(HEAD, tuple(rows)),
-        *lines_below(outcome),
+        *silent_lines(outcome),
+        *(f"  note: {note}" for note in told),
+        *explained_lines(outcome),
     )
 
 
 def quantity_rows(outcome: Outcome) -> Iterator[tuple[str | Cell, ...]]:
-    """A row for each quantity, under `HEAD`; angles are in degrees."""
+    """A row for each quantity, under `HEAD`; angles are in degrees.
+
+    It has the largest difference with its place and tolerance; the largest share of a tolerance, which may be
+    of another number; and the verdict of the row that `worst_rows` tells.
+    """
     of_one: dict[str, list[Comparison]] = {}
     for row in outcome.rows:
         of_one.setdefault(heading(row.quantity, row.name), []).append(row)
     for worst in worst_rows(outcome):
         words = heading(worst.quantity, worst.name)
-        *cells, verdict = _told(of_one[words], worst)
-        yield words, *cells, Cell(verdict, verdict=worst.verdict)
-
-
-def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
-    """A quantity's line: its largest difference with its place and tolerance; the largest share of a
-    tolerance, which may be of another number; and the verdict of the worst.
-
-    Args:
-        rows: all of the quantity. worst: the one of them that `worst_rows` tells.
-    """
-    given = [row for row in rows if row.verdict != "not given"]
-    largest = max(given, key=lambda row: row.difference, default=worst)
-    name = "" if QUANTITIES[largest.quantity].of == "car" else largest.name
-    verdict = verdict_of(worst)
-    if worst.verdict in ("disagrees", "not tested") and worst is not largest:
-        verdict += f": {worst.name}"
-    if not given:
-        return name, "-", "-", "-", "-", "-", verdict
-    difference, tolerance = (in_degrees(n, largest.unit) for n in (largest.difference, largest.tolerance))
-    share = share_of(max(row.share for row in given))
-    # The unit is that of the difference beside it.
-    held = tolerance.partition(" ")[0]
-    return name, difference, held, when(largest, 4), share, largest.rests_on, verdict
+        given = [row for row in of_one[words] if row.verdict != "not given"]
+        largest = max(given, key=lambda row: row.difference, default=worst)
+        told = (
+            f"DISAGREES, {with_unit(worst.share, 'times')}" if worst.verdict == "disagrees" else worst.verdict
+        )
+        if worst.verdict in ("disagrees", "not tested") and worst is not largest:
+            told += f": {worst.name}"
+        numbers = ["-"] * 5
+        if given:
+            size, held = (in_degrees(n, largest.unit) for n in (largest.difference, largest.tolerance))
+            # The unit is that of the difference beside it.
+            numbers = [size, held.partition(" ")[0], when(largest, 4)]
+            numbers += [share_of(max(row.share for row in given)), largest.rests_on]
+        name = "" if QUANTITIES[largest.quantity].of == "car" else largest.name
+        yield words, name, *numbers, Cell(told, verdict=worst.verdict)
 
 
 def file_parts(found: DataOutcome) -> tuple[Part, ...]:
     """The table of a file of results, and how much was compared."""
     verdicts = [row.verdict for row in found.outcome.rows]
-    counts = ", ".join(_counted(verdicts.count(verdict), verdict) for verdict in dict.fromkeys(verdicts))
+    # 1 agrees, 2 agree.
+    counts = ", ".join(
+        f"{n} {one if n == 1 else one.removesuffix('s')}" for one, n in Counter(verdicts).items()
+    )
     # What is not tested was compared with nothing, or with what could not have told it from a wrong one.
     tested = counted_as(len(verdicts) - verdicts.count("not tested"), "number")
     said = f"{tested} compared" if {*verdicts} - {"not tested"} else "Nothing was compared"
     return *outcome_parts(found.outcome, found.over, found.absent), f"{said}: {counts}."
-
-
-def _counted(count: int, verdict: str) -> str:
-    """How many of one verdict: "1 agrees", "2 agree"."""
-    return f"{count} {verdict if count == 1 else verdict.removesuffix('s')}"
-
-
-def lines_below(outcome: Outcome) -> Iterator[str]:
-    """Why there is no verdict where the rows do not say it, what cannot be used, notes, explanations."""
-    yield from silent_lines(outcome)
-    told = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
-    yield from (f"  note: {note}" for note in told)
-    yield from explained_lines(outcome)
 
 
 def silent_lines(outcome: Outcome) -> Iterator[str]:
@@ -223,26 +205,20 @@ def explained_lines(outcome: Outcome) -> Iterator[str]:
     yield from (f"  what would explain it: {one.words}" for one in outcome.explanations[:MOST_EXPLANATIONS])
 
 
-def findings_table(findings: Sequence[Finding]) -> Table:
-    """What the printed formulas get wrong, each beside its erratum."""
-    rows = tuple(
-        (
-            f.scene,
-            QUANTITIES[f.quantity].words,
-            Cell(with_unit(f.worst.difference, f.worst.unit), f.worst.name),
-            f.erratum,
-        )
-        for f in findings
-    )
-    head = ("scene", "wrong quantity", "largest difference", "erratum")
-    return Table(head, rows, caption="The paper's formulas as printed, against the mended ones.")
-
-
 def printed_parts(examined: Sequence[Examined], findings: Sequence[Finding]) -> Iterator[Part]:
-    """What the paper's formulas as printed get wrong, and which scenes they cannot solve."""
+    """What the paper's formulas as printed get wrong, by which erratum; which scenes they cannot solve."""
     if findings:
-        table = findings_table(findings)
-        yield from (table.caption, table)
+        rows = tuple(
+            (
+                f.scene,
+                QUANTITIES[f.quantity].words,
+                Cell(with_unit(f.worst.difference, f.worst.unit), f.worst.name),
+                f.erratum,
+            )
+            for f in findings
+        )
+        head = ("scene", "wrong quantity", "largest difference", "erratum")
+        yield Table(head, rows, caption="The paper's formulas as printed, against the mended ones.")
     elif tried := [one.name for one in examined if one.printed is not None]:
         yield f"The paper's formulas as printed agree in {', '.join(tried)}."
     for one in examined:
@@ -298,16 +274,19 @@ def examined_data(examined: Examined, file: DataOutcome | None = None) -> dict[s
         "closing": examined.closing,
         "defaults": list(examined.defaults),
         "solved_by": list(examined.solved),
-        "comparisons": [file_data(file)] if file else [*map(outcome_data, examined.outcomes)],
+        "comparisons": [outcome_data(outcome, file) for outcome in examined.outcomes],
         "refusals": [asdict(refusal) for refusal in examined.refusals],
         "failures": [asdict(failure) for failure in examined.failures],
         "refusal_of_printed_formulas": None if examined.unprinted is None else asdict(examined.unprinted),
     }
 
 
-def outcome_data(outcome: Outcome) -> dict[str, Any]:
-    """One comparison as plain data."""
+def outcome_data(outcome: Outcome, file: DataOutcome | None = None) -> dict[str, Any]:
+    """One comparison as plain data; that of a file says of its rows where in the file they are worst."""
     stated = (s.accuracy.stated for s in outcome.solutions)
+    of_file = {}
+    if file is not None:
+        of_file = {"accuracy": file.accuracy, "over": file.over, "not_given": list(file.absent)}
     return {
         "scene": outcome.scene,
         "formulations": [s.formulation for s in outcome.solutions],
@@ -321,19 +300,8 @@ def outcome_data(outcome: Outcome) -> dict[str, Any]:
         "unusable": list(outcome.faults),
         "why_no_verdict": outcome.why_no_verdict,
         "explanations": [asdict(one) for one in outcome.explanations],
+        **of_file,
     }
-
-
-def file_data(found: DataOutcome) -> dict[str, Any]:
-    """The comparison of a file as plain data; rows say where in the file they are worst."""
-    more = {"accuracy": found.accuracy, "over": found.over, "not_given": list(found.absent)}
-    return outcome_data(found.outcome) | more
-
-
-def finding_data(finding: Finding) -> dict[str, Any]:
-    """A wrong printed quantity as plain data."""
-    kept = {"scene": finding.scene, "quantity": finding.quantity, "erratum": finding.erratum}
-    return kept | {"worst": asdict(finding.worst)}
 
 
 def paper_data(rows: Sequence[PaperRow]) -> dict[str, Any]:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 import os
 import re
 import shutil
@@ -47,13 +46,12 @@ class Table:
     """Columns of words and numbers, under their names; the first cell of a row is its name.
 
     Attributes:
-        indent: of plain text. caption: what stands above it on a page.
+        indent: of plain text. caption: what stands above it; Markdown has none.
         folded: whether a page shows it only to who opens it.
         kept: how many columns stand first in each band of a table that is too wide.
     """
 
     template: ClassVar[str] = "grid.html"
-    scripts: ClassVar[tuple[str, ...]] = ("grid.js",)
     head: tuple[str, ...]
     rows: tuple[tuple[str | Cell, ...], ...]
     indent: int = 0
@@ -71,11 +69,6 @@ class Table:
         """Every row without small print."""
         return tuple(tuple(cell.text for cell in row) for row in self.cells)
 
-    @property
-    def text(self) -> str:
-        """Columns of text, however wide."""
-        return "\n".join(self.lines())
-
     def lines(self, room: int | None = None) -> list[str]:
         """Columns of text, words to the left and numbers to the right.
 
@@ -84,13 +77,13 @@ class Table:
         """
         columns = [(name, *(row[i] for row in self.texts)) for i, name in enumerate(self.head)]
         widths = [max(map(len, column)) for column in columns]
-        most, first = math.inf if room is None else room, [*range(self.kept)]
-        bands = [[*first]]
+        bands = [[*range(self.kept)]]
         for i in range(self.kept, len(columns)):
-            if len(bands[-1]) > self.kept and self._width(widths, [*bands[-1], i]) > most:
-                bands.append([*first])
+            wide = self.indent + sum(widths[j] + 2 for j in (*bands[-1], i)) - 2
+            if room is not None and wide > room and len(bands[-1]) > self.kept:
+                bands.append([*range(self.kept)])
             bands[-1].append(i)
-        found: list[str] = []
+        found = [self.caption] if self.caption else []
         for band in bands:
             told = [
                 [cell.ljust(widths[i]) if self.to_left(i) else cell.rjust(widths[i]) for cell in columns[i]]
@@ -98,12 +91,9 @@ class Table:
             ]
             head, *rows = zip(*told, strict=True)
             rule = ["-" * widths[i] for i in band]
-            found += [""] * bool(found)
+            found += [""] * (band is not bands[0])
             found += [(" " * self.indent + "  ".join(row)).rstrip() for row in (head, rule, *rows)]
         return found
-
-    def _width(self, widths: Sequence[int], band: Sequence[int]) -> int:
-        return self.indent + sum(widths[i] + 2 for i in band) - 2
 
     @property
     def markdown(self) -> str:
@@ -123,17 +113,16 @@ Part = str | Table
 """Lines of text, or a table."""
 
 
-def text_of(parts: Sequence[Part]) -> str:
-    """Parts as plain text, one below the other."""
-    return "\n".join(part if isinstance(part, str) else part.text for part in parts)
+def text_of(parts: Sequence[Part], room: int | None = None) -> str:
+    """Parts as plain text, one below the other, in a room of so many columns."""
+    return "\n".join(part if isinstance(part, str) else "\n".join(part.lines(room)) for part in parts)
 
 
 def text_for(stream: TextIO | None, parts: Sequence[Part]) -> str:
     """The same for a stream; a terminal has tables as wide as it is, and verdicts in colours."""
     if not is_terminal(stream):
         return text_of(parts)
-    room = max(shutil.get_terminal_size().columns, 20)
-    text = "\n".join(part if isinstance(part, str) else "\n".join(part.lines(room)) for part in parts)
+    text = text_of(parts, max(shutil.get_terminal_size().columns, 20))
     if not os.environ.get("NO_COLOR"):
         for words, colour in COLOURS.items():
             text = re.sub(rf"\b({words})\b", f"\x1b[{colour}m\\1\x1b[0m", text)

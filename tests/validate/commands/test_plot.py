@@ -11,7 +11,7 @@ from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
 from validate.cli import main
 from validate.curves import picture
 from validate.curves.numbers import Curves, angles_of, asking_for, found, numbers_of, usual
-from validate.curves.of_sweep import columns_called, figure_of, read_sweep
+from validate.curves.of_sweep import columns_called, read_sweep
 from validate.errors import UsageError
 from validate.output.columns import ENDINGS
 
@@ -121,7 +121,9 @@ def test_a_file_of_a_sweep_has_a_curve_for_each_design(ending: str, tmp_path: Pa
     assert (across, up) == (["time [s]"], ["wheel.camber [deg]", "wheel.toe [deg]"])
     few = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"samples": 7})})
     designs = sweep(few, {"tie_rod_inner.y": [178.0, 180.0]})
-    for axes, name in zip(figure_of(table, across[0], up, "a car").axes, ("camber", "toe"), strict=True):
+    for axes, name in zip(
+        picture.figure_of(table, across[0], up, "a car").axes, ("camber", "toe"), strict=True
+    ):
         one, none, other = (line.get_xydata() for line in axes.lines)
         assert np.isnan(none[:, 1]).all()
         for drawn, solved in zip((one, other), np.degrees(designs.numbers["wheel"][name]), strict=True):

@@ -29,7 +29,7 @@ from validate.html.data import data_files
 from validate.html.hard_cases import HardCases
 from validate.html.page import page
 from validate.html.run import FIRST, FURTHER, Drawings, Drawn, Run
-from validate.html.sections import sections
+from validate.html.sections import SECTIONS
 from validate.output.document import Head
 from validate.output.report import worst_rows
 from validate.paper.scenes import PAPER_SCENES
@@ -103,10 +103,10 @@ def test_a_report_has_every_section_and_the_data_that_it_names(
     assert 4e6 < (built_in / "index.html").stat().st_size < 8e6
     there = [given["id"] for tag, given in shown.tags if tag == "section"]
     # That of a file of results has nothing to say here.
-    assert there == [section.name for section in sections() if section.name != "file"]
+    assert there == [section.name for section in SECTIONS if section.name != "file"]
     details = ["differences", "paper", "hard", "published", "machine"]
     assert there == ["verdict", "agreement", "motion", "cost", *details]
-    assert [section.name for section in sections() if section.folded] == details
+    assert [section.name for section in SECTIONS if section.folded] == details
     links = [given["href"] or "" for tag, given in shown.tags if tag == "a"]
     files = {link for link in links if not link.startswith("#")}
     assert files == {file.name for file in built_in.iterdir()} - {"index.html"}
@@ -242,6 +242,7 @@ def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_sm
     shown = Read(text)
     assert f"Drawn are {FIRST + FURTHER} of {count - 8} scenes" in shown.text
     assert len(shown.motions) == FIRST + FURTHER
+    assert "rows more are in the data beside this page" in shown.text
     # What does not agree has its row and its reason, however far down it stands.
     for i in (13, 393):
         rows = shown.of(names[i])
@@ -289,11 +290,11 @@ def test_the_drawing_that_moves_has_the_places_of_both_models_those_drawn_and_th
     assert closing["largest"] == pytest.approx(16.8, abs=0.05)  # of Table 1
     for name, movement in closing["movements"].items():
         assert np.linalg.norm(np.subtract(closed[name], drawn[name])) == pytest.approx(movement, abs=0.02)
-    assert "closing it moves wheel_centre by 16.8 mm" in read_page.text
+    assert "closing the drawing moves wheel_centre by 16.8 mm" in read_page.text
     wishbone = told("double-wishbone", Scene.load("double-wishbone"))
     text = read(run_of(wishbone)).text
-    assert "it closes, no point moves by more than rounding" in text
-    assert "closing it moves" not in text
+    assert "the drawing closes: no point moves by more than" in text
+    assert "closing the drawing moves" not in text
 
 
 SOLVER = """

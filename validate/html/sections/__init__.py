@@ -1,16 +1,45 @@
-"""The sections of a report: a file each, with one `SECTION`; a new section is a new file."""
+"""The sections of the page, from its top to its end."""
 
 from __future__ import annotations
 
-from functools import cache
-from importlib import import_module
-from pkgutil import iter_modules
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
-from validate.html.section import Section
+from validate.html.blocks import Block
+from validate.html.run import Run
+from validate.html.sections.compared import agreement, differences, machine, verdict
+from validate.html.sections.cost import cost
+from validate.html.sections.file import files
+from validate.html.sections.hard import hard
+from validate.html.sections.motion import motions
+from validate.html.sections.printed import paper, published
 
 
-@cache
-def sections() -> tuple[Section, ...]:
-    """All of them, from the top of the page to its end."""
-    found = [import_module(f"{__name__}.{module.name}").SECTION for module in iter_modules(__path__)]
-    return tuple(sorted(found, key=lambda section: (section.place, section.name)))
+@dataclass(frozen=True)
+class Section:
+    """A part of the page with a heading.
+
+    Attributes:
+        name: anchor on the page. title: heading.
+        blocks: what it is made of; a section that has nothing to show of a run makes none and is left out.
+        folded: whether it is seen only by who opens it.
+    """
+
+    name: str
+    title: str
+    blocks: Callable[[Run], Iterable[Block]]
+    folded: bool = False
+
+
+SECTIONS = (
+    Section("verdict", "Verdict", verdict),
+    Section("file", "The file beside the car", files),
+    Section("agreement", "Agreement", agreement),
+    Section("motion", "The suspension in motion", motions),
+    Section("cost", "Accuracy against time", cost),
+    Section("differences", "Differences over time", differences, folded=True),
+    Section("paper", "The paper", paper, folded=True),
+    Section("hard", "Hard cases", hard, folded=True),
+    Section("published", "Other programs' tables", published, folded=True),
+    Section("machine", "Machine, versions, settings", machine, folded=True),
+)

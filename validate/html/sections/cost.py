@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from validate.html.plot import Panel, Plots, Trace, marks, panel, plain
+from validate.html.blocks import Block, Panel, Paragraph, Plots, Trace, marks, panel, plain
 from validate.html.run import Run
-from validate.html.section import Block, Paragraph, Section
 from validate.output.table import Table
 
 if TYPE_CHECKING:
@@ -16,43 +15,40 @@ if TYPE_CHECKING:
 
     from validate.cost.looks import Look
 
-# Scenes whose curves are drawn, and lines of a table, at most: a page stays small.
-SCENES, LINES = 8, 120
+SCENES = 8  # whose curves are drawn, at most: a page stays small
 LINE = 1.5  # pixels, of a curve
 
 
-def _blocks(run: Run) -> Iterator[Block]:
-    if (cost := run.cost) is None:
+def cost(run: Run) -> Iterator[Block]:
+    """What accuracy costs, in a sentence and one picture, then the rest."""
+    if (found := run.cost) is None:
         return
     # Imported here: pandas takes half a second, and most pages tell of no cost.
     from validate.cost.findings import timed
     from validate.cost.looks import KEY, looks
 
-    accuracy = timed(cost.table)
+    accuracy, said = timed(found.table), [*map(Paragraph, found.sentences)]
     ways, scenes = looks(accuracy.way), list(dict.fromkeys(accuracy.scene))
     pictures = []
     for scene in scenes[:SCENES]:
         here = accuracy[accuracy.scene == scene]
         panels = tuple(_panel(of, q, ways) for q, of in here.groupby("quantity", sort=False))
         pictures.append(Plots(f"{scene}: error against time, a line for each way", panels))
-    # What accuracy costs, in a sentence and one picture, then the rest.
-    yield from (Paragraph(sentence) for sentence in cost.sentences[:1])
+    yield from said[:1]
     for picture in pictures[:1]:
-        first = replace(picture.panels[0], rem=20.0)
-        yield Plots(picture.caption, (first,), at_once=True)
+        yield Plots(picture.caption, (replace(picture.panels[0], rem=20.0),), at_once=True)
     if ways:
         yield Paragraph(KEY)
-    rows = tuple((what, words) for what, words in cost.head())
-    yield Table(("what", "value"), rows, caption="How it was measured.", folded=True)
-    yield from (Paragraph(sentence) for sentence in cost.sentences[1:])
+    yield Table(("what", "value"), tuple(found.head()), caption="How it was measured.", folded=True)
+    yield from said[1:]
     yield from pictures
     if len(scenes) > SCENES:
         yield Paragraph(f"Drawn are the first {SCENES} of {len(scenes)} scenes.")
-    for row in cost.rows:
+    for row in found.rows:
         if row.verdict == "failed":
             yield Paragraph(f"{row.scene}, {row.way} {row.setting}: failed: {row.reason}")
     if run.head.kind == "cost":
-        yield from (replace(one, rows=one.rows[:LINES], folded=True) for one in cost.tables)
+        yield from (replace(one, folded=True) for one in found.tables)
 
 
 def _panel(here: pd.DataFrame, quantity: str, ways: Mapping[str, Look]) -> Panel:
@@ -75,6 +71,3 @@ def _trace(way: str, look: Look, line: pd.DataFrame) -> Trace:
     trace["marker"]["line"] = {"width": LINE, "color": look.colour}
     drawn = {"color": look.colour, "width": LINE, **({"dash": dash} if dash else {})}
     return trace | {"mode": "lines+markers", "line": drawn}
-
-
-SECTION = Section("cost", "Accuracy against time", 40, _blocks)

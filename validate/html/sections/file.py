@@ -8,42 +8,47 @@ from collections.abc import Iterator
 import numpy as np
 
 from validate.comparison.compare import Comparison
-from validate.html.plot import OTHER, OURS, Panel, Plots, curve, fewer, gaps, marks, panel, plain
+from validate.html.blocks import (
+    OTHER,
+    OURS,
+    Block,
+    Panel,
+    Paragraph,
+    Plots,
+    curve,
+    fewer,
+    gaps,
+    marks,
+    panel,
+    plain,
+)
 from validate.html.run import POINTS, Run
-from validate.html.section import Block, Paragraph, Section
 from validate.measured.comparing import DataOutcome
 from validate.output.report import about, counted_as, held_to, in_degrees, when, worst_rows
 from validate.output.table import Cell, Table
 from validate.tables.units import degrees_of
 
-# Rows of the table, those that do not agree first: a file may give every number of every point.
-MOST = 300
 HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "what would explain it, or why not")
 
 
-def _blocks(run: Run) -> Iterator[Block]:
+def files(run: Run) -> Iterator[Block]:
+    """Every number that a file gives, with its verdict; then the worst of each quantity over the rows."""
     for name, file in run.record.files.items():
-        yield from _of_file(run, name, file)
-
-
-def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:
-    outcome, source = file.outcome, file.outcome.solutions[0].formulation
-    rows = sorted(outcome.rows, key=lambda row: row.verdict != "disagrees")
-    yield Paragraph(
-        f"{source} beside the car of {name}: {counted_as(len(file.rows), 'row')} over "
-        f"{file.over}, {held_to(run.record.factor)}."
-    )
-    caption = "Each point, body or angle that the file gives; angles in degrees."
-    if len(rows) > MOST:
-        caption += f" Not in this table: {len(rows) - MOST}; the data beside this page have them all."
-    cells = [_cells(file, row) for row in rows[:MOST]]
-    absent = Cell("not given", verdict="not given")
-    cells += [(words, absent, "-", "-", "", "the scene asks for it") for words in file.absent]
-    yield Table(HEAD, tuple(cells), caption=caption)
-    worst = worst_rows(outcome)
-    if panels := tuple(one for row in worst for one in _panels(file, row, POINTS)):
-        apart = any(row.verdict == "disagrees" for row in worst)
-        yield Plots(f"{source}: crosses: the file; line: pointcoord", panels, at_once=apart)
+        outcome, source = file.outcome, file.outcome.solutions[0].formulation
+        # A file may give every number of every point: those that do not agree are seen first.
+        rows = sorted(outcome.rows, key=lambda row: row.verdict != "disagrees")
+        yield Paragraph(
+            f"{source} beside the car of {name}: {counted_as(len(file.rows), 'row')} over "
+            f"{file.over}, {held_to(run.record.factor)}."
+        )
+        caption = "Each point, body or angle that the file gives; angles in degrees."
+        cells, absent = [_cells(file, row) for row in rows], Cell("not given", verdict="not given")
+        cells += [(words, absent, "-", "-", "", "the scene asks for it") for words in file.absent]
+        yield Table(HEAD, tuple(cells), caption=caption)
+        worst = worst_rows(outcome)
+        if panels := tuple(one for row in worst for one in _panels(file, row)):
+            apart = any(row.verdict == "disagrees" for row in worst)
+            yield Plots(f"{source}: crosses: the file; line: pointcoord", panels, at_once=apart)
 
 
 def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
@@ -58,7 +63,7 @@ def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
     )
 
 
-def _panels(file: DataOutcome, row: Comparison, points: int) -> Iterator[Panel]:
+def _panels(file: DataOutcome, row: Comparison) -> Iterator[Panel]:
     """The worst column of a row beside ours, and how far it is apart; none where nothing is of ours."""
     columns = [held for held in file.columns_of(row) if np.isfinite(held.gap).any()]
     if not columns:
@@ -67,7 +72,7 @@ def _panels(file: DataOutcome, row: Comparison, points: int) -> Iterator[Panel]:
     # Rows of a file are in any order; of two at the same value, which inputs tell apart, both are drawn.
     order = np.argsort(file.at, kind="stable")
     share = np.nan_to_num(held.share[order], nan=-1.0)
-    at = order[np.asarray(fewer(share, points), dtype=np.intp)]
+    at = order[np.asarray(fewer(share, POINTS), dtype=np.intp)]
     turn = math.degrees(1.0) if file.over.endswith("[rad]") else 1.0
     over, x = plain(file.over.replace("[rad]", "[deg]")), turn * file.at[at]
     factor, unit = degrees_of(held.series.meaning.unit)
@@ -78,6 +83,3 @@ def _panels(file: DataOutcome, row: Comparison, points: int) -> Iterator[Panel]:
     words = f"{told}, difference: at most {row.share:.1e} of its tolerance"
     limit = factor * file.outcome.factor * held.tolerance[at]
     yield gaps(words, over, x, factor * held.gap[at], limit, unit)
-
-
-SECTION = Section("file", "The file beside the car", 15, _blocks)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import cycle
 
-from validate.hard.answer import Answer
+from validate.html.blocks import Block, Panel, Paragraph, Plots, marks, panel, plain
 from validate.html.hard_cases import Case
-from validate.html.plot import Panel, Plots, Trace, marks, panel, plain
 from validate.html.run import Run
-from validate.html.section import Block, Paragraph, Section
 from validate.output.table import Cell, Table
 
 WORDS = (
@@ -19,20 +17,22 @@ WORDS = (
 )
 # In the order in which a case names its formulations.
 COLOURS = ("#2f86c9", "#d9641c", "#2a9d78", "#b266b2", "#8c8c1f", "#7a7a7a", "#c04848")
+SYMBOLS = {"refused": "x-thin-open", "right": "circle", "wrong": "diamond-open", "unjudged": "diamond-open"}
 # Values of a curve, at least, and cases that are drawn, at most; where something is wrong they come first.
 FEWEST, MOST = 3, 60
 
 
-def _blocks(run: Run) -> Iterator[Block]:
-    if (hard := run.hard) is None:
+def hard(run: Run) -> Iterator[Block]:
+    """Answers by formulation, errors of each case, and its verdict."""
+    if (found := run.hard) is None:
         return
     # A run whose results say nothing of times has not noted when it began.
-    when = "" if hard.started is None else f", {hard.started}"
-    yield Paragraph(f"Tried by `{hard.command_line}`{when}. {hard.sentence}. {WORDS}")
-    outcomes = dict.fromkeys(outcome for found in hard.counts.values() for outcome in found)
-    rows = tuple((name, *(str(found.get(o, 0)) for o in outcomes)) for name, found in hard.counts.items())
+    when = "" if found.started is None else f", {found.started}"
+    yield Paragraph(f"Tried by `{found.command_line}`{when}. {found.sentence}. {WORDS}")
+    outcomes = dict.fromkeys(outcome for counts in found.counts.values() for outcome in counts)
+    rows = tuple((n, *(str(counts.get(one, 0)) for one in outcomes)) for n, counts in found.counts.items())
     yield Table(("formulation", *outcomes), rows, caption="Answers by formulation.")
-    cases = sorted(hard.cases, key=lambda case: not case.unexpected)
+    cases = sorted(found.cases, key=lambda case: not case.unexpected)
     drawn = [case for case in cases if len({v for v, a in case.answers if a.error and v > 0.0}) >= FEWEST]
     if drawn:
         yield Plots("Error against distance", tuple(map(_panel, drawn[:MOST])))
@@ -40,28 +40,19 @@ def _blocks(run: Run) -> Iterator[Block]:
 
 
 def _panel(case: Case) -> Panel:
-    """The errors of each formulation; what has no number stands below the least error."""
+    """The errors of each formulation by their outcome; what has no number stands below the least error."""
     floor = min(a.error for _, a in case.answers if a.error) / 10.0
-    names = dict.fromkeys(answer.formulation for _, answer in case.answers)
-    traces = (
-        trace
-        for name, colour in zip(names, cycle(COLOURS))
-        for trace in _traces(
-            [(v, a) for v, a in case.answers if a.formulation == name and v > 0.0], colour, floor
-        )
-    )
+    colours = dict(zip(dict.fromkeys(a.formulation for _, a in case.answers), cycle(COLOURS)))
+    points: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for value, a in case.answers:
+        if value > 0.0:
+            points.setdefault((a.formulation, a.outcome), []).append((value, max(a.error or 0.0, floor)))
+    traces = []
+    for (name, outcome), some in sorted(points.items(), key=lambda one: [*colours].index(one[0][0])):
+        values, errors = zip(*some, strict=True)
+        traces.append(marks(plain(f"{name}: {outcome}"), values, errors, colours[name], SYMBOLS[outcome]))
     words = f"{case.name}, over {case.parameter}"
     return panel(words, "distance", f"error [{plain(case.unit)}]", traces, logarithmic="xy")
-
-
-def _traces(answers: Sequence[tuple[float, Answer]], colour: str, floor: float) -> Iterator[Trace]:
-    for outcome in dict.fromkeys(answer.outcome for _, answer in answers):
-        those = [(value, answer) for value, answer in answers if answer.outcome == outcome]
-        name = plain(f"{those[0][1].formulation}: {outcome}")
-        symbol = "x-thin-open" if outcome == "refused" else "circle" if outcome == "right" else "diamond-open"
-        yield marks(
-            name, [v for v, _ in those], [max(a.error or 0.0, floor) for _, a in those], colour, symbol
-        )
 
 
 def _row(case: Case) -> tuple[str | Cell, ...]:
@@ -70,6 +61,3 @@ def _row(case: Case) -> tuple[str | Cell, ...]:
         wrong = (f"{u.formulation} is {u.outcome} at {u.value:g}: {u.reason}" for u in case.unexpected)
         verdict, told = "disagrees", f"not as expected: {'; '.join(wrong)}"
     return Cell(case.name, case.group), case.why, Cell(verdict, told, verdict)
-
-
-SECTION = Section("hard", "Hard cases", 85, _blocks, folded=True)

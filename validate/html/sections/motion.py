@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,41 +13,34 @@ from pointcoord.effects.registry import ALWAYS
 from validate.closed_drawing import closed_drawing
 from validate.curves.numbers import Number, angles_of, usual
 from validate.formulations.protocol import Solution
-from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, fewer, marks, panel, plain
+from validate.html.blocks import (
+    OTHER,
+    OURS,
+    Block,
+    Panel,
+    Paragraph,
+    Plots,
+    Spatial,
+    curve,
+    fewer,
+    marks,
+    panel,
+    plain,
+)
 from validate.html.run import FRAMES, POINTS, Drawn, Run
-from validate.html.section import PLOTLY, Block, Section, which
 
 Array = NDArray[np.float64]
 
 DIGITS = 2  # behind the point of places, mm
 # Marks of the other model on a curve: more would hide the line that they are to be seen beside.
 MARKS = 25
-ROUNDING = 1e-6  # mm; a drawing that closes comes back to less
 PLACE = ALWAYS[0].quantities[0].name
 
 
-@dataclass(frozen=True)
-class Spatial:
-    """A drawing in space that moves.
-
-    Attributes:
-        scene: whose it is. caption: what its lines are. json: what is drawn, for the script of the page.
-        count: of its instants. curves: that stand beside it.
-        at_once: whether it is seen before anybody opens it, as the first one is.
-    """
-
-    template: ClassVar[str] = "spatial.html"
-    scripts: ClassVar[tuple[str, ...]] = (PLOTLY, "plots.js", "spatial.js")
-    scene: str
-    caption: str
-    json: str
-    count: int
-    curves: Plots | None = None
-    at_once: bool = False
-
-
-def _blocks(run: Run) -> Sequence[Block]:
-    return [*which(run), *map(_of_scene, run.drawn)]
+def motions(run: Run) -> Iterator[Block]:
+    """A drawing for each scene that is drawn."""
+    yield from map(Paragraph, run.not_drawn)
+    yield from map(_of_scene, run.drawn)
 
 
 def _of_scene(one: Drawn) -> Block:
@@ -90,24 +82,16 @@ def _frames(one: Drawn, model: Solution, known: Mapping[str, Array], shown: Arra
 
     Points of the chassis are given to every model: they are where the chassis is moved to.
     """
-    readout = one.motion.solved.readout
-    chassis, origin = readout.chassis, readout.mechanism.origin
-    still = np.zeros((len(model.times), 3))
-    drawn = {n: known[n] - origin + still for n in one.scene.mechanism.topology.chassis if n in known}
-    laws = readout.laws(model.times)
-    shift = origin + sum(chassis.shifts(laws)[:1], np.zeros(3))
-    turned = chassis.turned_by(laws, [drawn])[0]
-    places: dict[str, Array] = {name: place + shift for name, place in turned.items()}
-    places |= model.numbers.get(PLACE, {})
+    there, chassis = np.isin(one.motion.times, model.times), one.scene.mechanism.topology.chassis
+    places = {name: one.motion.position[name][there] for name in chassis} | {**model.numbers.get(PLACE, {})}
     rows = np.full((len(shown), len(known), 3), np.nan)
     given = np.isin(shown, model.times)
     at = np.searchsorted(model.times, shown[given])
     for i, name in enumerate(known):
         if name in places:
             rows[given, i] = places[name][at]
-    there = np.isfinite(rows).all(axis=-1)
     frames = _rounded(np.nan_to_num(rows))
-    for frame, point in np.argwhere(~there):
+    for frame, point in np.argwhere(~np.isfinite(rows).all(axis=-1)):
         frames[frame][point] = None
     return frames
 
@@ -117,15 +101,10 @@ def _rounded(places: Array) -> Any:
 
 
 def _caption(one: Drawn) -> str:
-    lines, moved = ("wide blue lines", "narrow orange lines"), one.examined.closing
-    told = [f"{model.formulation} in {line}" for model, line in zip(one.models, lines, strict=False)]
-    closing = ""
-    if moved:
-        closing = f"; closing it moves {moved['point']} by {moved['largest']:.3g} mm"
-        if moved["largest"] <= ROUNDING:
-            closing = "; it closes, no point moves by more than rounding"
+    first, second = (model.formulation for model in one.models)
     called = f"{one.examined.title}. " if one.examined.title else ""
-    return f"{called}{', '.join(told)}; dashed: the drawing{closing}"
+    lines = f"{first} in wide blue lines, {second} in narrow orange lines; dashed: the drawing"
+    return f"{called}{lines}; {one.motion.closing.words}"
 
 
 def _wheel_angles(one: Drawn) -> tuple[Plots | None, str]:
@@ -139,36 +118,30 @@ def _wheel_angles(one: Drawn) -> tuple[Plots | None, str]:
 
 
 def _angle_panel(pair: tuple[Number, Number], one: Drawn) -> Panel | None:
-    """The line of the first model and the dots of the second; None where the first does not give it.
-
-    The travel of the wheel is pointcoord's.
-    """
-    traces: list[Trace] = []
-    for model in one.models:
-        there = np.isin(one.motion.times, model.times)
-        try:
-            x, y = (
-                n.shown(one.motion, one.motion)[there] if len(n.path) == 1 else n.shown(one.motion, model)
-                for n in pair
-            )
-        except KeyError:
-            if not traces:
-                return None
-            continue
-        name = plain(model.formulation)
-        if not traces:
-            # Of a stretch of a curve the place farthest out is kept.
-            at = fewer(np.abs(np.nan_to_num(x - np.nanmean(x))), POINTS) if np.isfinite(x).any() else range(0)
-            traces.append(curve(name, x[at], y[at], OURS))
-        else:
-            some = slice(None, None, max(len(x) // MARKS, 1))
-            traces.append(marks(name, x[some], y[some], OTHER, "circle-open", 5))
+    """The line of the first model and the dots of the second; None where the first does not give it."""
+    first, second = (_given(pair, one, model) for model in one.models)
+    if first is None:
+        return None
+    x, y = first
+    # Of a stretch of a curve the place farthest out is kept.
+    at = fewer(np.abs(np.nan_to_num(x - np.nanmean(x))), POINTS) if np.isfinite(x).any() else range(0)
+    line, dots = (plain(model.formulation) for model in one.models)
+    traces = [curve(line, x[at], y[at], OURS)]
+    if second is not None:
+        x, y = (values[:: max(len(values) // MARKS, 1)] for values in second)
+        traces.append(marks(dots, x, y, OTHER, "circle-open", 5))
     across, up = pair
     return panel(f"{up.words} over {across.words}", _title(across), _title(up), traces)
 
 
+def _given(pair: tuple[Number, Number], one: Drawn, model: Solution) -> list[Array] | None:
+    """Two numbers by a model, if it gives both; time, inputs and the travel of the wheel are pointcoord's."""
+    there, own = np.isin(one.motion.times, model.times), one.motion
+    try:
+        return [n.shown(own, own)[there] if len(n.path) == 1 else n.shown(own, model) for n in pair]
+    except KeyError:
+        return None
+
+
 def _title(number: Number) -> str:
     return f"{number.words} [{number.unit_shown}]" + (f", + {number.sign}" if number.sign else "")
-
-
-SECTION = Section("motion", "The suspension in motion", 30, _blocks)

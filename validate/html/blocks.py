@@ -1,6 +1,6 @@
-"""Plots of a page: what plotly draws, as plain data.
+"""What a section of the page is made of, as plain data: text, plots as plotly draws them, and tables.
 
-Texts in it come from our own registries, or through `plain`: plotly reads some HTML in its labels, and a
+Texts in plots come from our own registries, or through `plain`: plotly reads some HTML in its labels, and a
 scene's own words stand around a plot and not in it.
 """
 
@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from validate.html.section import PLOTLY
+from validate.output.table import Table
 
 Array = NDArray[np.float64]
 Trace = dict[str, Any]
@@ -24,6 +24,16 @@ Trace = dict[str, Any]
 
 # Blue and vermilion, which colour-blind eyes tell apart, in tones that stand out of white and of black.
 OURS, OTHER = "#2f86c9", "#d9641c"
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Text, and what kind of verdict it tells, if any, with small print below it."""
+
+    template: ClassVar[str] = "paragraph.html"
+    text: str
+    verdict: str = ""
+    detail: str = ""
 
 
 @dataclass(frozen=True)
@@ -56,10 +66,32 @@ class Plots:
     """
 
     template: ClassVar[str] = "plots.html"
-    scripts: ClassVar[tuple[str, ...]] = (PLOTLY, "plots.js")
     caption: str
     panels: tuple[Panel, ...]
     at_once: bool = False
+
+
+@dataclass(frozen=True)
+class Spatial:
+    """A drawing in space that moves.
+
+    Attributes:
+        scene: whose it is. caption: what its lines are. json: what is drawn, for the script of the page.
+        count: of its instants. curves: that stand beside it.
+        at_once: whether it is seen before anybody opens it, as the first one is.
+    """
+
+    template: ClassVar[str] = "spatial.html"
+    scene: str
+    caption: str
+    json: str
+    count: int
+    curves: Plots | None = None
+    at_once: bool = False
+
+
+Block = Paragraph | Plots | Spatial | Table
+"""A piece of a page; its `template` draws it as `block`."""
 
 
 def panel(words: str, across: str, up: str, traces: Iterable[Trace], logarithmic: str = "") -> Panel:

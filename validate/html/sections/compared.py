@@ -1,0 +1,175 @@
+"""What the scenes of a run come to: the verdict, who agrees in what, differences over time, and by what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.ci.verdict import by_scene, complaints, disagreements, notes, standing, undecided, word
+from validate.comparison.compare import Comparison, Outcome
+from validate.comparison.examined import Examined
+from validate.comparison.over_time import over_time
+from validate.exit_status import ExitStatus
+from validate.html.blocks import Block, Panel, Paragraph, Plots, fewer, gaps, plain
+from validate.html.run import POINTS, Run
+from validate.output.report import (
+    HEAD,
+    about,
+    held_to,
+    pair_of,
+    quantity_rows,
+    used,
+    when,
+    worst_of,
+    worst_rows,
+)
+from validate.output.table import Cell, Table
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+
+LINES = 150  # about all scenes together, at most: there may be hundreds of scenes
+DRAWN = 60  # rows of the picture
+WORDS = (
+    "Share of the tolerance used: the darker the green, the more; red disagrees, amber is not tested, "
+    "empty is not asked for"
+)
+INK = "#000"  # stands out of each of the colours, in light and in dark
+# From -1, not tested, over 0 to 1, shares of the tolerance, to 2, beyond it.
+AMBER, PALE, GREEN, RED = "#e0a92e", "#dff2ea", "#2a9d78", "#d9481c"
+COLOURS = ((0.0, AMBER), (0.33, AMBER), (0.33, PALE), (0.67, GREEN), (0.67, RED), (1.0, RED))
+ROW, EDGE = 1.4, 8.0  # rem, of a row of the picture and of what stands around it
+
+
+def verdict(run: Run) -> Iterator[Block]:
+    """The verdict in a sentence, and what each scene has to say beside its numbers."""
+    # Times compare nothing that could be right or wrong.
+    times = run.head.kind == "cost" and run.status is ExitStatus.AGREE
+    status = f"Exit status {run.status.value}: {run.head.verdict(run.status)}"
+    yield Paragraph(run.sentence, "measured" if times else word(run.status), status)
+    # What concerns the verdict goes first, and what several scenes have to say is said once.
+    lines = by_scene(run.record, disagreements, complaints, undecided, notes)
+    yield from map(Paragraph, lines[:LINES])
+    if len(lines) > LINES:
+        yield Paragraph(f"{len(lines) - LINES} more such lines are in the data beside this page.")
+
+
+def agreement(run: Run) -> Iterator[Block]:
+    """Scenes by quantities: who agrees, and how much of a tolerance is used."""
+    # Where something is not as wanted it is seen however many scenes there are.
+    compared = sorted(run.record.examined, key=lambda one: one.status == 0)
+    agrees = Cell("agrees", verdict="agrees")
+    rows = sorted((row for one in compared for row in _rows(one)), key=lambda row: row[-1] == agrees)
+    drawn = [one for one in compared if one.outcomes and not run.record.files][:DRAWN]
+    if drawn:
+        yield _heat_map(drawn)
+    if rows:
+        caption = "For each quantity the verdict, and the number that is closest to its tolerance."
+        yield Table(("scene", "compared", *HEAD), tuple(rows), caption=caption, folded=bool(drawn))
+
+
+def _rows(one: Examined) -> Iterator[tuple[str | Cell, ...]]:
+    """A row for each quantity of each pair that was compared; of a scene without one, why there is none."""
+    if why := ": ".join(complaints(one)):
+        yield one.name, *("-" for _ in HEAD), Cell(standing(one)[0], why, standing(one)[0])
+    for outcome in one.outcomes:
+        yield from ((one.name, pair_of(outcome), *row) for row in quantity_rows(outcome))
+
+
+def _heat_map(drawn: Sequence[Examined]) -> Block:
+    """The share of each scene and quantity; of several pairs of formulations the one that uses most."""
+    cells = [worst_of(row for outcome in one.outcomes for row in outcome.rows) for one in drawn]
+    quantities = list(dict.fromkeys(name for row in cells for name in row))
+    seen = [[_seen(row[name]) if name in row else (None, "", "") for name in quantities] for row in cells]
+    levels, texts, words = ([[one[i] for one in row] for row in seen] for i in range(3))
+    trace = {
+        "type": "heatmap",
+        "x": [plain(name) for name in quantities],
+        "y": [plain(one.name) for one in drawn],
+        "z": levels,
+        "text": texts,
+        "customdata": words,
+        "texttemplate": "%{text}",
+        "hovertemplate": "%{y}<br>%{customdata}<extra></extra>",
+        "colorscale": COLOURS,
+        "zmin": -1.0,
+        "zmax": 2.0,
+        "showscale": False,
+        "xgap": 1,
+        "ygap": 1,
+        "textfont": {"size": 9, "color": INK},
+    }
+    layout = {
+        "xaxis": {"side": "top", "automargin": True, "showgrid": False},
+        "yaxis": {"autorange": "reversed", "automargin": True, "showgrid": False},
+        "showlegend": False,
+    }
+    return Plots("Every scene and quantity", (Panel(WORDS, (trace,), layout, EDGE + ROW * len(drawn)),), True)
+
+
+def _seen(row: Comparison) -> tuple[float, str, str]:
+    """The place of a cell among the colours, what stands in it, and what the pointer brings."""
+    told = f"{about(row.quantity, row.name)}: {row.verdict}"
+    if row.verdict == "not given":
+        return -1.0, row.verdict, plain(told)
+    words = plain(f"{told}, {used(row.share)} at {when(row, 4)}")
+    if row.verdict == "agrees":
+        return float(f"{row.share:.2g}"), f"{100.0 * row.share:.0f}%", words
+    return (2.0 if row.verdict == "disagrees" else -1.0), row.verdict, words
+
+
+def differences(run: Run) -> Iterator[Block]:
+    """Differences over time against their tolerances."""
+    blocks = []
+    for one in run.drawn:
+        for outcome in one.examined.outcomes:
+            rows = worst_rows(outcome)
+            panels = tuple(panel for row in rows for panel in _panels(outcome, row, one.scene.instants))
+            apart = any(row.verdict == "disagrees" for row in rows)
+            if panels:
+                blocks.append(Plots(f"{outcome.scene}: {pair_of(outcome)}", panels, at_once=apart))
+    if blocks:
+        yield from map(Paragraph, run.not_drawn)
+    yield from blocks
+
+
+def _panels(outcome: Outcome, row: Comparison, instants: Array) -> Iterator[Panel]:
+    """A row over time; none where one of both gives no such numbers."""
+    if (found := over_time(outcome, row, instants)) is not None:
+        at = fewer(found.share, POINTS)
+        words = f"{about(row.quantity, row.name)}: {row.verdict}, at most {row.share:.2g} of its tolerance"
+        yield gaps(words, "time [s]", found.times[at], found.difference[at], found.tolerance[at], row.unit)
+
+
+def machine(run: Run) -> Iterator[Block]:
+    """Where the numbers come from: command, versions, machine, settings."""
+    rows = tuple((name, shown(value)) for name, value in _made_by(run))
+    yield Table(("what", "value"), rows, caption="What this page was made by.")
+
+
+def _made_by(run: Run) -> Iterator[tuple[str, str]]:
+    document = run.document
+    yield "command", document["command_line"]
+    yield "program", " ".join(document["program"].values())
+    if document["started"] is not None:
+        yield "started", document["started"]
+    yield "exit status", f"{document['exit_status']}, {document['verdict']}"
+    if pairs := dict.fromkeys(map(pair_of, run.record.outcomes)):
+        yield "compared", "; ".join(pairs)
+    if run.record.examined:
+        yield "differences", held_to(run.record.factor)
+    # Where times were measured stands with them; where the page is made tells nothing of them.
+    if run.head.kind != "cost":
+        yield from _flat(document["machine"])
+
+
+def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Names and values of plain data; a value that is a mapping stands for its own."""
+    for name, value in data.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value)
+        else:
+            yield name, "not there" if value is None else str(value)

@@ -1,0 +1,93 @@
+"""What others printed, beside ours: the paper with its errata, and other programs' tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from validate.html.blocks import OTHER, OURS, Block, Panel, Paragraph, Plots, curve, marks, panel
+from validate.html.run import Run
+from validate.output.report import paper_sentence, paper_tables, printed_parts
+from validate.output.table import Cell, Table
+from validate.paper.errata import ERRATA
+from validate.paper.tables import WHY_NOT_EQUAL, Figure, PaperRow, figures
+from validate.published.tables import MODELS, Column, Published
+
+DASHES = ("solid", "dash")
+
+
+def paper(run: Run) -> Iterator[Block]:
+    """The paper as its own equations give it, and what is wrong in it by how much."""
+    record = run.record
+    if rows := record.paper:
+        drawn = tuple(map(_figure, figures()))
+        yield Plots("Figures 5 to 8 of the paper: crosses as printed in its tables", drawn)
+        yield Paragraph(f"{WHY_NOT_EQUAL} {paper_sentence(rows)}")
+        for table, number in zip(paper_tables(rows), (2, 3), strict=True):
+            panels = tuple(_panels([row for row in rows if row.printed.table == number]))
+            yield Plots(f"Table {number}: crosses as printed, rings as computed", panels)
+            yield table
+        lines = tuple(
+            (str(number), one.where, one.wrong, one.measures or "changes no number")
+            for number, one in enumerate(ERRATA, start=1)
+        )
+        caption = "What is wrong in the paper, and what it measures."
+        yield Table(("no.", "where", "what", "measures"), lines, caption=caption)
+    for part in printed_parts(record.examined, record.findings):
+        yield Paragraph(part) if isinstance(part, str) else part
+
+
+def _figure(figure: Figure) -> Panel:
+    curves = zip(figure.curves.items(), DASHES, strict=False)
+    traces = [curve(name, figure.times, values, OURS, dash=dash) for (name, values), dash in curves]
+    traces += [marks("printed", *figure.printed, OTHER)] if figure.printed else []
+    return panel(figure.words, "time [s]", f"[{figure.unit}]", traces)
+
+
+def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
+    kinds = (
+        ("wheel centre", "mm", [(row.printed.wheel_centre, row.wheel_centre) for row in rows]),
+        ("omega", "rad/s", [(row.printed.omega, row.omega) for row in rows]),
+        ("alpha", "rad/s^2", [(row.printed.alpha, row.alpha) for row in rows]),
+    )
+    times = [row.printed.time for row in rows]
+    for words, unit, pairs in kinds:
+        for i, component in enumerate("xyz"):
+            printed, ours = np.array(pairs)[:, :, i].T
+            crosses = marks("printed", times, printed, OTHER)
+            rings = marks("computed", times, ours, OURS, "circle-open")
+            yield panel(f"{words}, {component}, over time", "time [s]", f"[{unit}]", (crosses, rings))
+
+
+def published(run: Run) -> Iterator[Block]:
+    """Each number of other programs' tables, ours below it, and the verdict on each column."""
+    for one in run.published:
+        table, notes = one.table, one.outcomes[0].notes
+        told = f"{table.title}, beside the car of {table.scene}. "
+        told += f"Source: {table.source}; licence: {table.licence}."
+        told += f" Note: {'; '.join(notes)}." if notes else ""
+        yield Paragraph(told + (f" Left out: {table.left_out}." if table.left_out else ""))
+        head = (one.over, *(f"{column.name} [{column.unit}]" for column in one.columns))
+        models = " and ".join(MODELS)
+        caption = f"{table.title}: printed, below it what {models} compute; held to printed digits"
+        yield Table(head, tuple(_rows(one)), caption=caption)
+
+
+def _rows(one: Published) -> Iterator[tuple[Cell, ...]]:
+    """A line for each printed one; the last says the verdicts."""
+    for i, at in enumerate(one.at):
+        yield Cell(f"{at:g}"), *(_numbers(column, i) for column in one.columns)
+    yield Cell("verdict"), *(_verdict(column) for column in one.columns)
+
+
+def _numbers(column: Column, row: int) -> Cell:
+    # Rounding of a nothing is none, and adding 0 turns -0 into 0.
+    printed, *ours = (round(values[row] / column.per, 14) + 0.0 for values in (column.printed, *column.ours))
+    return Cell(f"{printed:.9g}", ", ".join(f"{value:.9g}" for value in ours))
+
+
+def _verdict(column: Column) -> Cell:
+    share = max(row.share for row in column.rows)
+    words = f"at most {share:.2f} of what is allowed"
+    return Cell(column.verdict, words, "" if column.open else column.verdict)
