@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, S
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,43 +25,72 @@ from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import Numbers, Solution
 
 Array = NDArray[np.float64]
-Row = tuple[str, str]
-Rows = Mapping[Row, Array]
 Content = dict[str, Any]
 """Of a scene, whose tables and lists are its own."""
 
+
+class Row(NamedTuple):
+    """A quantity of a point, body or angle, whose numbers are looked at as one."""
+
+    quantity: str
+    name: str
+
+    @property
+    def of(self) -> str:
+        """What each number belongs to: a point, a body or the car."""
+        return QUANTITIES[self.quantity].of
+
+    @property
+    def unit(self) -> str:
+        """What its numbers are of, whatever rate they are: mm or rad."""
+        return QUANTITIES[self.quantity].unit.partition("/")[0]
+
+    @property
+    def order(self) -> int:
+        """Which time derivative its numbers are."""
+        return per_second(self.quantity)
+
+    @property
+    def is_place(self) -> bool:
+        """Whether its numbers are where a point is."""
+        return self.of == "point" and self.order == 0
+
+
+Rows = Mapping[Row, Array]
+WouldBe = tuple[Array, Array]
+"""What given numbers would be, and how far from that they may be."""
+
 # How many times what may be left of it a difference is, to be explained; a smaller one may be chance.
 CLEAR = 4.0
+FEW = 25  # instants
+DECIMALS = 7  # that a round number has fewer of
 # Of a quantity's largest number: differences that are rounding, whatever is claimed.
 ROUNDING = 64.0 * EPS
-
-
-def length_or_angle(row: Row) -> str:
-    """What a row's numbers are of, whatever rate they are: mm or rad."""
-    return QUANTITIES[row[0]].unit.partition("/")[0]
-
-
-def order(row: Row) -> int:
-    """Which time derivative a row's numbers are."""
-    return per_second(row[0])
-
-
-def kind_of(row: Row) -> str:
-    """What each number belongs to: a point, a body or the car."""
-    return QUANTITIES[row[0]].of
 
 
 def together(rows: Iterable[Row]) -> list[tuple[Row, ...]]:
     """Rows whose numbers are looked at together: a quantity's vectors; each number of the car by itself."""
     groups: dict[object, list[Row]] = {}
     for row in rows:
-        groups.setdefault(row if kind_of(row) == "car" else row[0], []).append(row)
+        groups.setdefault(row if row.of == "car" else row.quantity, []).append(row)
     return [tuple(some) for some in groups.values()]
 
 
 def numbers_in(numbers: Numbers, rows: Iterable[Row]) -> Array:
     """The numbers of rows, one after the other."""
     return np.concatenate([numbers[quantity][of].ravel() for quantity, of in rows])
+
+
+def roundest(found: Array | float, fits: Callable[[Array], bool], unit: float = 1.0) -> Array:
+    """The roundest of the numbers next to found ones that fits as they do; they themselves if none does.
+
+    Least squares of printed digits miss what was meant by a little.
+
+    Args:
+        unit: in which the numbers are round.
+    """
+    rounder = (unit * np.round(np.asarray(found) / unit, places) for places in range(DECIMALS))
+    return np.asarray(next((near for near in rounder if fits(near)), found))
 
 
 class Solved:
@@ -85,6 +114,11 @@ class Solved:
             with suppress(PointcoordError):
                 self._others[key] = solve(Scene.from_mapping(content, "another car"))
         return self._others[key]
+
+    @cached_property
+    def motion(self) -> Motion | None:
+        """That of the scene itself; None where it cannot be solved."""
+        return self.other("as it is", lambda _: None)
 
     @cached_property
     def fine(self) -> Scene:
@@ -134,15 +168,18 @@ class Evidence:
         """The numbers of all rows that both give, held to what both claim."""
         times, one, two = given_by_both(given, held, scene.instants)
         pairs = {quantity: Pair(quantity, (one, two), outcome.factor) for quantity in one.numbers}
-        rows = [(q, name) for q, pair in pairs.items() for name in pair.names]
-        trusted = {row: two.numbers[row[0]][row[1]] for row in rows}
-        disagree = {(row.quantity, row.name) for row in outcome.disagreements}
+        rows = [Row(q, name) for q, pair in pairs.items() for name in pair.names]
+        trusted = {row: two.numbers[row.quantity][row.name] for row in rows}
+        disagree = {Row(row.quantity, row.name) for row in outcome.disagreements}
         return cls(
             scene=scene,
             times=times,
-            given={row: one.numbers[row[0]][row[1]] for row in rows},
+            given={row: one.numbers[row.quantity][row.name] for row in rows},
             held=trusted,
-            allowed={(q, n): pairs[q].allowed(n).reshape(trusted[q, n].shape) + SMALLEST for q, n in rows},
+            allowed={
+                row: pairs[row.quantity].allowed(row.name).reshape(trusted[row].shape) + SMALLEST
+                for row in rows
+            },
             wrong=tuple(row for row in rows if row in disagree),
             solved=Solved(scene),
         )
@@ -163,22 +200,23 @@ class Evidence:
             known={point: path[places] for point, path in self.known.items()},
         )
 
-    def thinned(self, count: int) -> Evidence:
-        """The same at so many instants at most, evenly."""
+    @cached_property
+    def few(self) -> Evidence:
+        """The same at a few of the instants, evenly: what fits there may fit at all of them."""
         last = len(self.times) - 1
-        return self.at(np.unique(np.linspace(0, last, min(count, last + 1)).astype(np.intp)))
+        return self.at(np.unique(np.linspace(0, last, min(FEW, last + 1)).astype(np.intp)))
 
-    def after(self, rows: Mapping[Row, tuple[Array, Array]], wrong: tuple[Row, ...]) -> Evidence:
-        """The same with other numbers to hold the given ones against: values, and what they may differ."""
+    def after(self, rows: Mapping[Row, WouldBe], wrong: tuple[Row, ...]) -> Evidence:
+        """The same with other numbers to hold the given ones against."""
         held = {**self.held, **{row: value for row, (value, _) in rows.items()}}
         allowed = {**self.allowed, **{row: width for row, (_, width) in rows.items()}}
         return replace(self, held=held, allowed=allowed, wrong=wrong)
 
     def undone(self, rows: Collection[Row], undo: Callable[[Row, Array], Array]) -> Evidence:
         """The same with other given numbers of rows and of vectors beside; wrong is what then disagrees."""
-        quantities = {row[0] for row in rows if kind_of(row) != "car"}
+        quantities = {row.quantity for row in rows if row.of != "car"}
         given = {
-            row: undo(row, array) if row in rows or row[0] in quantities else array
+            row: undo(row, array) if row in rows or row.quantity in quantities else array
             for row, array in self.given.items()
         }
         there = replace(self, given=given)
@@ -188,7 +226,7 @@ class Evidence:
     def in_words(self, row: Row, amount: Array) -> str:
         """An amount of a row with its unit."""
         said = ", ".join(f"{c:.6g}" for c in np.ravel(amount))
-        return f"{f'({said})' if np.ndim(amount) else said} {self.units.get(row, length_or_angle(row))}"
+        return f"{f'({said})' if np.ndim(amount) else said} {self.units.get(row, row.unit)}"
 
     def off_by(self, row: Row) -> Array:
         """How far a row's numbers may be from the held ones."""
@@ -202,17 +240,13 @@ class Evidence:
         )
         return held, given, off_by
 
-    def stacked(self, rows: Sequence[Row], of: Callable[[Row], Array]) -> Array:
-        """Numbers of rows of one shape below each other, (rows * N, 3 or 1)."""
-        return np.concatenate([of(row).reshape(len(self.times), -1) for row in rows])
-
     def left(self, row: Row, value: Array, allowed: Array) -> float:
         """The largest difference of given numbers from others, in parts of what is allowed."""
-        gap = gaps_between(self.given[row], value, QUANTITIES[row[0]].unit)
+        gap = gaps_between(self.given[row], value, QUANTITIES[row.quantity].unit)
         with np.errstate(over="ignore"):  # nothing but zeros allows nothing
             return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
 
-    def explained(self, rows: Mapping[Row, tuple[Array, Array]]) -> bool:
+    def explained(self, rows: Mapping[Row, WouldBe]) -> bool:
         """Whether all given numbers of rows are within what they may be off."""
         return all(self.left(row, *numbers) <= 1.0 for row, numbers in rows.items())
 
@@ -220,7 +254,8 @@ class Evidence:
         """Whether a row is so far off that what is allowed of it does not explain it, nor rounding."""
         if self.left(row, self.held[row], allowed) <= CLEAR:
             return False
-        largest = max(float(np.abs(self.held[r]).max(initial=0.0)) for r in self.held if r[0] == row[0])
+        beside = (held for other, held in self.held.items() if other.quantity == row.quantity)
+        largest = max(float(np.abs(held).max(initial=0.0)) for held in beside)
         return not bool((np.abs(self.given[row] - self.held[row]) <= ROUNDING * largest).all())
 
     def rounded(self, row: Row, *others: Array | float) -> Array:
@@ -233,31 +268,16 @@ class Evidence:
         )
         return np.asarray(2.0 * self.allowed[row] + 8.0 * EPS * largest)
 
-    def by(self, motion: Motion) -> dict[Row, tuple[Array, Array]]:
-        """What each row would be of another motion, and how far from that it may be."""
-        samples = motion.at(self.times)
-        proven = motion.proof_of(samples, rates=True).proven
-        rows: dict[Row, tuple[Array, Array]] = {}
-        for row in self.held:
-            quantity, of = row
-            if of in samples.numbers[quantity]:
-                value = np.array(samples.numbers[quantity][of])
-                # These are off by their own bound, and by as much again for what numbers of its laws, such as
-                # a factor that is found, are rounded by.
-                bound = np.nan_to_num(proven[quantity][of], posinf=0.0)
-                rows[row] = (value, 2.0 * (self.rounded(row, value) + bound))
-        return rows
-
     def distinct(self, rows: Sequence[Row]) -> int:
         """How many distinct numbers that are off rows have, beside one of each axis; the fewer of both sides.
 
         One number of each axis is none to tell anything by.
         """
-        sides = [self.stacked(rows, part.__getitem__) for part in (self.held, self.given)]
-        allowed = self.stacked(rows, self.off_by)
-        off = ~(np.abs(sides[1] - sides[0]) <= allowed)
+        axes = self.held[rows[0]][0].size
+        held, given, allowed = (numbers.reshape(-1, axes) for numbers in self.joined(rows))
+        off = ~(np.abs(given - held) <= allowed)
         counts = []
-        for numbers in sides:
+        for numbers in (held, given):
             # Two numbers of which each may be off by what is allowed, on both sides.
             step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(numbers).max(initial=0.0)))
             apart = (axis[there & np.isfinite(axis)] for axis, there in zip(numbers.T, off.T, strict=True))
@@ -265,35 +285,25 @@ class Evidence:
         return min(counts)
 
     @property
-    def telling(self) -> tuple[tuple[Row, ...], ...]:
-        """Numbers of one unit that disagree: positions, angles, as far as there are any, else the first."""
-        of_a_pose = (
-            tuple(row for row in self.wrong if length_or_angle(row) == of and order(row) == 0)
-            for of in ("mm", "rad")
-        )
-        first = tuple(row for row in self.wrong if row[0] == self.wrong[0][0])
-        return tuple(filter(None, of_a_pose)) or (first,)
-
-    @property
     def wrong_quantities(self) -> tuple[str, ...]:
         """The quantities of which a row disagrees."""
-        return tuple(dict.fromkeys(row[0] for row in self.wrong))
+        return tuple(dict.fromkeys(row.quantity for row in self.wrong))
 
     @property
     def looked(self) -> tuple[Row, ...]:
         """The rows that disagree, and those that agree of the same quantities: would they under a fault?"""
-        beside = (row for row in self.held if row[0] in self.wrong_quantities and row not in self.wrong)
+        beside = (row for row in self.held if row.quantity in self.wrong_quantities and row not in self.wrong)
         return (*self.wrong, *beside)
+
+    @property
+    def vectors(self) -> tuple[Row, ...]:
+        """Of `looked` those that are no numbers of the car."""
+        return tuple(row for row in self.looked if row.of != "car")
 
     def places(self, point: str) -> Array | None:
         """Where a point is, (N, 3), whether the scene reports it or not; None where it cannot be solved."""
-        if point in self.known:
-            return self.known[point]
-        for row, array in self.held.items():
-            if row[1] == point and kind_of(row) == "point" and order(row) == 0:
-                return array
-        motion = self.solved.other("as it is", lambda _: None) if self.over_time else None
-        if motion is None:
-            return None
-        (quantity,) = (q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 0)
-        return np.asarray(motion.at(self.times).numbers[quantity][point])
+        (row,) = (row for quantity in QUANTITIES if (row := Row(quantity, point)).is_place)
+        if point in self.known or row in self.held:
+            return self.known.get(point, self.held.get(row))
+        motion = self.solved.motion if self.over_time else None
+        return None if motion is None else np.asarray(motion.at(self.times).numbers[row.quantity][point])

@@ -24,12 +24,10 @@ import numpy as np
 from pointcoord import PointcoordError, Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Explanation, Outcome
-from validate.diagnosis.evidence import Evidence, Row, Solved, kind_of, length_or_angle, order, together
+from validate.diagnosis.evidence import Evidence, Row, together
 from validate.diagnosis.hypothesis import Hypothesis, Kind, Stage
 from validate.diagnosis.kinds import KINDS
 
-# Instants that pairs of faults are tried at before all are looked at.
-FEW = 8
 # Instants of which one at an end may be left out, and that are looked through twice more in a second or two.
 FEWEST_LATE, MOST_LATE = 8, 2000
 
@@ -99,8 +97,7 @@ def _explained(evidence: Evidence) -> list[_Found]:
 
 def _elsewhere(evidence: Evidence) -> bool:
     """Whether it may be another car or another motion: not where points are given and are in their places."""
-    points = [row for row in evidence.given if order(row) == 0 and kind_of(row) == "point"]
-    moving = [row for row in points if np.ptp(evidence.held[row], axis=0).any()]
+    moving = [row for row in evidence.given if row.is_place and np.ptp(evidence.held[row], axis=0).any()]
     return not moving or any(row in evidence.wrong for row in moving)
 
 
@@ -122,11 +119,11 @@ def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
     merged: dict[Hashable, Hypothesis] = {}
     # A car that cannot be solved, or gives no such numbers, explains nothing.
     with suppress(PointcoordError):
-        for one in kind.suppose(evidence) if evidence.over_time or not kind.of_time else ():
-            known = merged.get(one.key)
-            rows = one.rows if known is None else {**known.rows, **one.rows}
-            merged[one.key] = replace(one, kind=kind.name, rows=rows)
-    return merged.values()
+        for one in kind.suppose(evidence):
+            key = one.key or one.words
+            known = merged[key].rows if key in merged else {}
+            merged[key] = replace(one, kind=kind.name, rows={**known, **one.rows})
+    return [one for one in merged.values() if one.rows]
 
 
 def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
@@ -155,47 +152,36 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
 
 def _pairs(evidence: Evidence) -> Iterator[_Found]:
     """Two faults in the same numbers: the second in what the first makes of ours."""
-    for first in (kind for kind in KINDS if kind.opens):
-        for one in _merged(first, evidence):
+    for place, first in enumerate(KINDS):
+        for one in _merged(first, evidence) if first.opens else ():
             after = evidence.after(one.rows, tuple(row for row in evidence.wrong if row in one.rows))
             if first.name == "unit":
                 after = replace(after, units=dict.fromkeys(after.held, "in its own unit"))
-            few = after.thinned(FEW)
-            for second in KINDS:
-                # Of two kinds that may each be the first, in one order.
-                after_it = KINDS.index(second) > KINDS.index(first)
-                if (
-                    second.closes
-                    and (after_it or not first.closes)
-                    and any(_carried(few, two) for two in _merged(second, few))
-                ):
-                    yield from _both(evidence, one, _merged(second, after))
+            for second in (kind for kind in KINDS[place + 1 :] if kind.closes):
+                if any(_carried(after.few, two) for two in _merged(second, after.few)):
+                    both = (_both(one, two) for two in _merged(second, after))
+                    yield from (found for two in both if (found := _carried(evidence, two)))
 
 
-def _both(evidence: Evidence, one: Hypothesis, seconds: Iterable[Hypothesis]) -> Iterator[_Found]:
-    for two in seconds:
-        both = replace(
-            two,
-            key=(one.key, two.key),
-            kind=f"{one.kind} and {two.kind}",
-            words=f"{one.words}, and {two.words}",
-            fitted=one.fitted + two.fitted,
-            cost=one.cost + two.cost + 1.0,
-            looser=False,
-        )
-        if found := _carried(evidence, both):
-            yield found
+def _both(one: Hypothesis, two: Hypothesis) -> Hypothesis:
+    return replace(
+        two,
+        words=f"{one.words}, and {two.words}",
+        kind=f"{one.kind} and {two.kind}",
+        fitted=one.fitted + two.fitted,
+        cost=one.cost + two.cost + 1.0,
+        looser=False,
+    )
 
 
 def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, str, Evidence]]:
     """Without a fault that all numbers may have, and that hides which car it is: its kind and its words.
 
-    Axes and signs are supposed where some numbers show them, rows in their neighbours' places always, another
-    unit or definition of all angles where it does not make more of their difference.
+    It is supposed where some numbers show it; of all angles, such as another unit, where it leaves less of
+    their difference; rows in their neighbours' places always.
     """
-    hidden = (
-        one for kind in KINDS if kind.hides for one in _merged(kind, evidence) if _may_hide(evidence, one)
-    )
+    opening = (one for kind in KINDS if kind.opens for one in _merged(kind, evidence))
+    hidden = (one for one in opening if _may_hide(evidence, one))
     for fault in (*(one.hypothesis for one in found), *hidden):
         if fault.undo is not None:
             yield fault.kind, fault.words, evidence.undone(fault.rows, fault.undo)
@@ -205,11 +191,11 @@ def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, 
 
 def _may_hide(evidence: Evidence, fault: Hypothesis) -> bool:
     """Whether all angles that are wrong, two at least, may have a fault."""
-    angles = [row for row in evidence.wrong if kind_of(row) == "car" and length_or_angle(row) == "rad"]
+    angles = [row for row in evidence.wrong if row.of == "car" and row.unit == "rad"]
     return len(angles) > 1 and all(
         row in fault.rows
         and evidence.left(row, *fault.rows[row])
-        <= evidence.left(row, evidence.held[row], evidence.allowed[row])
+        < evidence.left(row, evidence.held[row], evidence.allowed[row])
         for row in angles
     )
 
@@ -220,16 +206,8 @@ def _without_a_late_sample(evidence: Evidence) -> Iterator[tuple[str, Evidence]]
     few = FEWEST_LATE < len(evidence.times) <= MOST_LATE
     if not (few and evidence.over_time) or len(evidence.wrong) < 2 or not moving <= {*evidence.wrong}:
         return
-    ends = {
-        "one sample late": (slice(1, None), slice(None, -1)),
-        "one sample early": (slice(None, -1), slice(1, None)),
-    }
-    for words, (theirs, ours) in ends.items():
-        late = evidence.at(ours, theirs)
-        limits = {"start": float(late.times[0]), "stop": float(late.times[-1]), "samples": len(late.times)}
-        time = evidence.scene.time.model_copy(update=limits)
-        scene = evidence.scene.model_copy(update={"time": time})
-        yield words, replace(late, scene=scene, solved=Solved(scene))
+    yield "one sample late", evidence.at(slice(None, -1), slice(1, None))
+    yield "one sample early", evidence.at(slice(1, None), slice(None, -1))
 
 
 def _ranked(found: Iterable[_Found]) -> list[_Found]:
@@ -260,11 +238,11 @@ def _best(ranked: Iterable[_Found]) -> Iterator[_Found]:
 
 def _left_out(evidence: Evidence, found: _Found, quantity: str) -> bool:
     """Whether a quantity has rows that a fault does not explain, or that agree and would not under it."""
-    others = (row for row in evidence.held if row[0] == quantity and row not in found.rows)
+    others = (row for row in evidence.held if row.quantity == quantity and row not in found.rows)
     return any(
         evidence.left(row, *found.hypothesis.rows[row]) > 1.0
         if row in found.hypothesis.rows
-        else row in evidence.wrong or order(row) == 0 or evidence.held[row].any()
+        else row in evidence.wrong or row.order == 0 or evidence.held[row].any()
         for row in others
     )
 
@@ -273,14 +251,13 @@ def _in_words(evidence: Evidence, found: _Found) -> Explanation:
     quantities: list[str] = []
     said: list[str] = []
     for quantity in evidence.wrong_quantities:
-        names = [name for of, name in found.rows if of == quantity]
-        words = QUANTITIES[quantity].words
-        if names and kind_of((quantity, "")) != "car" and not _left_out(evidence, found, quantity):
+        names = [row.name for row in found.rows if row.quantity == quantity]
+        words, of_car = QUANTITIES[quantity].words, QUANTITIES[quantity].of == "car"
+        if names and not of_car and not _left_out(evidence, found, quantity):
             quantities.append(quantity)
             said.append(words)
         elif names:
             quantities += [f"{quantity}.{name}" for name in names]
-            of = "" if kind_of((quantity, "")) == "car" else f"{words} of "
-            said.append(of + ", ".join(names))
+            said.append(("" if of_car else f"{words} of ") + ", ".join(names))
     words = f"{', '.join(said)}: {found.hypothesis.words}"
     return Explanation(words, found.hypothesis.kind, tuple(quantities), found.leftover)

@@ -9,11 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.diagnosis.evidence import Evidence, Row
+from validate.diagnosis.evidence import Evidence, Row, WouldBe
 
 Array = NDArray[np.float64]
-WouldBe = tuple[Array, Array]
-"""What given numbers would be, and how far from that they may be."""
 Undo = Callable[[Row, Array], Array]
 Stage = Literal["numbers", "motion", "drawing", "last"]
 
@@ -23,12 +21,12 @@ class Hypothesis:
     """One fault with its parameters.
 
     Attributes:
-        key: which fault of its kind; that of another quantity is the same fault.
         words: what was done to the numbers.
         rows: what each row would be.
         fitted: how many numbers were chosen so that it fits.
         cost: how far-fetched it is; the fitted numbers and the choices made.
-        decimals: of its amounts; of what is as far-fetched the rounder one is likelier meant.
+        key: which fault of its kind, where its words say more: one of other rows is the same.
+        decimals: of its amount; of what is as far-fetched the rounder one is likelier meant.
         looser: whether it says that the numbers are ours, and may be farther off than is claimed of them.
         whole: whether it is about the whole car, so that rows that agree must agree under it too.
         rests: whether it says where points rest, which one number tells.
@@ -36,11 +34,11 @@ class Hypothesis:
         kind: of fault, two kinds joined by "and".
     """
 
-    key: Hashable
     words: str
     rows: Mapping[Row, WouldBe]
     fitted: int = 0
     cost: float = 1.0
+    key: Hashable = None
     decimals: int = 0
     looser: bool = False
     whole: bool = False
@@ -60,8 +58,6 @@ class Kind:
             not explain.
         opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
             is sought in what the first would make of the held numbers.
-        of_time: whether it makes sense of numbers over time only.
-        hides: whether all angles may have it beside another car, so that neither shows by itself.
     """
 
     name: str
@@ -69,5 +65,3 @@ class Kind:
     stage: Stage = "numbers"
     opens: bool = False
     closes: bool = False
-    of_time: bool = False
-    hides: bool = False

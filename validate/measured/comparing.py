@@ -12,7 +12,7 @@ from pointcoord import MissingLibrary, Scene
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
 from validate.diagnosis import Explanation, explain_evidence
-from validate.diagnosis.evidence import Evidence, Row, Solved, kind_of
+from validate.diagnosis.evidence import Evidence, Row, Solved
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured
@@ -83,7 +83,7 @@ def compare_results(
     there = [h for h in held if np.isfinite(h.series.values).any() or np.isfinite(h.ours).any() or h.unknown]
     by_row: dict[Row, list[Held]] = {}
     for h in sorted(there or held, key=lambda h: [*QUANTITIES].index(h.series.meaning.quantity)):
-        by_row.setdefault(h.series.meaning.row, []).append(h)
+        by_row.setdefault(Row(*h.series.meaning.row), []).append(h)
     rows = tuple(_judged(name, measured, row, columns, factor) for row, columns in by_row.items())
     lacking, absent = _lacking(scene, measured)
     compared = int(np.any([np.isfinite(h.share) for h in held], axis=0).sum())
@@ -164,8 +164,7 @@ def _explained(
     whole = {
         row: columns
         for row, columns in by_row.items()
-        if len(columns) == (1 if kind_of(row) == "car" else 3)
-        and any(np.isfinite(h.share).any() for h in columns)
+        if len(columns) == (1 if row.of == "car" else 3) and any(np.isfinite(h.share).any() for h in columns)
     }
     if not whole.keys() & wrong:
         return ()
@@ -199,7 +198,7 @@ def _explained(
 
 def _side_by_side(row: Row, columns: Sequence[Held], number: Callable[[Held], Array]) -> Array:
     """A number of the columns of a row, (N, 3) or (N,); NaN of an axis that is not given."""
-    if kind_of(row) == "car":
+    if row.of == "car":
         return number(columns[0])
     found = np.full((len(columns[0].ours), 3), np.nan)
     for h in columns:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from curve_files import compared, table
 from numpy.typing import NDArray
+from planted_faults import late
 
 from pointcoord import Scene
 from validate import check
@@ -71,20 +72,6 @@ def diagnosis(scene: Scene, content: Content, *quantities: str) -> tuple[Explana
     return explained(scene, {quantity: numbers[quantity] for quantity in quantities or numbers})
 
 
-def in_a_table(
-    scene: Scene, over: str, values: Array, angles: Mapping[str, Array], digits: int
-) -> tuple[Explanation, ...]:
-    """What explains a file of angles, rad, over an input, mm, that disagree."""
-    columns = {f"{name} [deg]": np.degrees(array) for name, array in angles.items()}
-    found = compared(table({f"input.{over} [mm]": values, **columns}, digits), {}, scene)
-    assert not found.outcome.agreed
-    return found.outcome.explanations
-
-
-def camber_and_toe(solution: Solution) -> dict[str, Array]:
-    return {name: solution.numbers["wheel"][name] for name in ("camber", "toe")}
-
-
 @pytest.mark.parametrize(
     ("name", "rod", "more", "quantities", "told"),
     [
@@ -140,8 +127,7 @@ def test_what_both_wheels_of_an_axle_have_exchanged_is_said_once() -> None:
 def test_a_rod_of_another_length_is_named_where_every_row_is_one_late_besides() -> None:
     scene, content = car("five-link")
     places = absolute(with_rod(content, "upper_rear", 2.0)).numbers["position"]
-    late = {name: np.concatenate([values[:1], values[:-1]]) for name, values in places.items()}
-    (only,) = explained(scene, {"position": late})
+    (only,) = explained(scene, {"position": {name: late(values) for name, values in places.items()}})
     assert only.kind == "link and sample"
     assert only.words.endswith("upper_rear is 2 mm too long, 363.109 mm for 361.109, and one sample late")
 
@@ -151,5 +137,7 @@ def test_angles_from_the_drawing_on_are_said_to_be() -> None:
     scene = scene.model_copy(update={"effects": ["wheel_angles", "caster"]})
     wheel = formulation("absolute").solve(scene).numbers["wheel"]
     from_there = {name: wheel[name] - wheel[name][10] for name in ("kingpin", "caster")}
-    (only,) = in_a_table(scene, "wheel_travel", np.linspace(-40.0, 40.0, 21), from_there, 4)
+    columns = {f"{name} [deg]": np.degrees(array) for name, array in from_there.items()}
+    travel = {"input.wheel_travel [mm]": np.linspace(-40.0, 40.0, 21)}
+    (only,) = compared(table({**travel, **columns}, 4), {}, scene).outcome.explanations
     assert only.words == "kingpin, caster: the value of the drawing is subtracted"

@@ -5,10 +5,10 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from planted_faults import late, misread
 
 from pointcoord import Scene, simulate
 from validate import check
-from validate.formulations.protocol import Numbers
 
 Array = NDArray[np.float64]
 Change = Callable[[Array], Array]
@@ -24,22 +24,8 @@ def over_travel(name: str, *effects: str) -> Scene:
     return Scene.from_mapping(content, name)
 
 
-def misread(scene: Scene, coordinate: str, amount: float) -> Numbers:
-    """The numbers of the car with a coordinate drawn so much more."""
-    content = scene.model_dump(exclude_none=True)
-    points = {name: list(place) for name, place in content["mechanism"]["points"].items()}
-    point, _, axis = coordinate.rpartition(".")
-    points[point]["xyz".index(axis)] += amount
-    content["mechanism"]["points"] = points
-    return simulate(Scene.from_mapping(content, "misread")).numbers
-
-
-def told(scene: Scene, given: Mapping[str, Mapping[str, Array]]) -> list[str]:
-    return [one.words for one in check(lambda _: given, scene, accuracy=1e-5).explanations]
-
-
-def late(values: Array) -> Array:
-    return np.concatenate([values[:1], values[:-1]])
+def told(scene: Scene, given: Mapping[str, Mapping[str, Array]], accuracy: float = 1e-5) -> list[str]:
+    return [one.words for one in check(lambda _: given, scene, accuracy=accuracy).explanations]
 
 
 @pytest.mark.parametrize(
@@ -80,18 +66,18 @@ def test_a_misread_hardpoint_is_named_with_what_is_wrong_with_every_number(
     name: str, coordinate: str, amount: float, change: Change, words: str
 ) -> None:
     scene = over_travel(name)
-    wrong = misread(scene, coordinate, amount)["position"]
+    wrong = misread(scene, amount, coordinate)["position"]
     (only,) = told(scene, {"position": {point: change(places) for point, places in wrong.items()}})
     assert only == f"position: {coordinate} drawn {words}"
 
 
-@pytest.mark.parametrize("amount", [3.1, -40.0])
-def test_a_point_that_moves_nothing_is_misread_all_the_same(amount: float) -> None:
+@pytest.mark.parametrize(("amount", "accuracy"), [(3.1, 1e-5), (-40.0, 1e-5), (1.0, 0.1)])
+def test_a_point_that_moves_nothing_is_misread_all_the_same(amount: float, accuracy: float) -> None:
     """The arm's hinge is along x: where on it its rear point is drawn shows in that point alone."""
     scene = over_travel("double-wishbone")
     right = simulate(scene).numbers["position"]
     there = right["upper_arm_rear"] + [amount, 0.0, 0.0]
-    (only,) = told(scene, {"position": {**right, "upper_arm_rear": there}})
+    (only,) = told(scene, {"position": {**right, "upper_arm_rear": there}}, accuracy)
     assert only.startswith(f"position of upper_arm_rear: upper_arm_rear.x drawn {abs(amount):g} mm too far")
 
 
@@ -105,24 +91,51 @@ def test_angles_of_an_axle_by_another_definition_are_said_to_be() -> None:
     assert only == "left.kingpin, right.kingpin, left.caster, right.caster: the slope, no angle"
 
 
-def test_another_definition_of_all_angles_hides_no_misread_hardpoint() -> None:
+def steered() -> Scene:
     content = Scene.load("double-wishbone").model_dump(exclude_none=True)
     content["inputs"] = {"wheel_travel": {"constant": 0.0}, "rack": {"sweep": (-20.0, 20.0)}}
     content |= {"time": {"start": 0.0, "stop": 1.0, "samples": 9}, "effects": ("wheel_angles", "toe")}
-    scene = Scene.from_mapping(content)
-    wheel = misread(scene, "lower_ball_joint.z", 2.5)["wheel"]
-    (only,) = told(scene, {"wheel": {name: np.tan(angles) for name, angles in wheel.items()}})
-    assert "lower_ball_joint.z drawn 2.5 mm too high" in only
-    assert only.endswith(", and the slope, no angle")
+    return Scene.from_mapping(content)
 
 
-def test_another_unit_of_all_angles_hides_no_misread_hardpoint() -> None:
+def in_bump() -> Scene:
+    return over_travel("five-link", "camber", "toe")
+
+
+@pytest.mark.parametrize(
+    ("car", "coordinate", "amount", "change", "words"),
+    [
+        (
+            steered,
+            "lower_ball_joint.z",
+            2.5,
+            np.tan,
+            "2.5 mm too high, at 97.5 for 95, and the slope, no angle",
+        ),
+        (
+            in_bump,
+            "upper_front_inner.x",
+            3.1,
+            np.degrees,
+            "3.1 mm too far back, at 1103.1 for 1100, and degrees for radians",
+        ),
+        (
+            in_bump,
+            "upper_front_inner.x",
+            3.1,
+            np.negative,
+            "3.1 mm too far back, at 1103.1 for 1100, and the other sign",
+        ),
+    ],
+)
+def test_what_all_angles_have_hides_no_misread_hardpoint(
+    car: Callable[[], Scene], coordinate: str, amount: float, change: Change, words: str
+) -> None:
     """What the hardpoint changes is as large as the angles themselves."""
-    scene = over_travel("five-link", "camber", "toe")
-    wheel = misread(scene, "upper_front_inner.x", 3.1)["wheel"]
-    (only,) = told(scene, {"wheel": {name: np.degrees(angles) for name, angles in wheel.items()}})
-    assert only.startswith("camber, toe: upper_front_inner.x drawn 3.1 mm too far ")
-    assert only.endswith(", and degrees for radians")
+    scene = car()
+    wheel = misread(scene, amount, coordinate)["wheel"]
+    (only,) = told(scene, {"wheel": {name: change(angles) for name, angles in wheel.items()}})
+    assert only == f"{', '.join(wheel)}: {coordinate} drawn {words}"
 
 
 def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> None:
@@ -131,7 +144,7 @@ def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> Non
     content |= {"effects": ("camber", "toe")}
     content["time"]["samples"] = 5
     scene = Scene.from_mapping(content)
-    wheel = misread(scene, "right.lower_arm_front.z", -1.0)["wheel"]
+    wheel = misread(scene, -1.0, "right.lower_arm_front.z")["wheel"]
     said = told(scene, {"wheel": {**wheel, "left.camber": wheel["left.camber"] - 0.01}})
     assert any("right.lower_arm_front.z drawn 1 mm too low" in one for one in said)
     assert "left.camber: a constant offset of -0.01 rad" in said
@@ -140,7 +153,7 @@ def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> Non
 
 def test_a_wheel_that_stands_as_drawn_shows_a_misread_centre() -> None:
     scene = Scene.load("axle-single-wheel")
-    wrong = misread(scene, "left.wheel_centre.z", 6.8)["position"]
+    wrong = misread(scene, 6.8, "left.wheel_centre.z")["position"]
     assert told(scene, {"position": wrong}) == [
         "position of left.wheel_centre: left.wheel_centre.z drawn 6.8 mm too high, at 216.8 for 210"
     ]

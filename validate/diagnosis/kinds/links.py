@@ -10,6 +10,7 @@ is drawn on that line. Only cars of one part are, so no axles.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
@@ -21,9 +22,9 @@ from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
 from pointcoord.method import AUTO
 from pointcoord.simulation import prepare_task, scene_mechanism, solve_task
-from validate.diagnosis.evidence import Content, Evidence, kind_of, order
+from validate.diagnosis.evidence import Content, Evidence
 from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.other_car import Change, any_of
+from validate.diagnosis.other_car import Change, any_of, otherwise
 
 STEP = 0.05  # mm, of differences by a length
 # Of the car's size: how far a length may be off and still be meant, and how far another assembly is away.
@@ -55,7 +56,7 @@ def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:
         said = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
         return f"{rod} is {said}, {drawn + more:.6g} mm for {drawn:.6g}"
 
-    return Change(rod, 0.0, STEP, put, words)
+    return Change(rod, put, words, STEP)
 
 
 def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -78,9 +79,8 @@ def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
                 _put_tables(content, {**tables, "slides": slides})
                 content["mechanism"]["points"] |= moved
 
-            if motion := evidence.solved.other((name, joint), put):
-                words = f"the line of {name} leads through {joint}, not through {slide['through']}"
-                yield Hypothesis((name, joint), words, evidence.by(motion), cost=1.5, whole=True)
+            words = f"the line of {name} leads through {joint}, not through {slide['through']}"
+            yield from otherwise(evidence, words, put, cost=1.5)
 
 
 def _tables(scene: Scene) -> Mapping[str, Any]:
@@ -117,11 +117,9 @@ def other_closures(evidence: Evidence) -> Iterator[Hypothesis]:
         def put(content: Content, closure: str = closure) -> None:
             content["mechanism"]["closure"] = closure
 
-        if closure != part.closure and (
-            motion := evidence.solved.other(("closure", closure), put, _as_it_stands)
-        ):
+        if closure != part.closure:
             words = f"the car is closed as {closure}, where the scene asks for {part.closure}"
-            yield Hypothesis(closure, words, evidence.by(motion), whole=True)
+            yield from otherwise(evidence, words, put, solve=_as_it_stands)
 
 
 def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -131,7 +129,7 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     inputs: if the given places are that car's at every instant, they are another assembly of ours.
     """
     scene, topology = evidence.scene, evidence.scene.mechanism.topology
-    placed = {row[1]: row for row in evidence.given if kind_of(row) == "point" and order(row) == 0}
+    placed = {row.name: row for row in evidence.given if row.is_place}
     free = (*topology.moving, *topology.carried)
     if any(name not in placed for name in free):
         return
@@ -142,15 +140,13 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     if not away.any():
         return
     first = int(np.argmax(away))
-    chassis = ChassisMotion.of(mechanism := scene_mechanism(scene), scene.functions)
+    mechanism = scene_mechanism(scene)
     there = np.stack([evidence.given[placed[name]][first] for name in free]) - mechanism.origin
     when = np.full(len(free), evidence.times[first])
-    pose = drawn | dict(zip(free, chassis.taken_back(when, there) + mechanism.origin, strict=True))
-    plain = scene.mechanism.plain(())
-    # Of every body: a point that only rides on it has its place there too, and misdrawn it is another car.
-    moving = [points for body, points in plain["bodies"].items() if body != CHASSIS]
-    links = {*map(tuple, plain["rods"].values()), *(ends for p in moving for ends in combinations(p, 2))}
+    moved = ChassisMotion.of(mechanism, scene.functions).taken_back(when, there) + mechanism.origin
+    pose = drawn | dict(zip(free, moved, strict=True))
     closed = {name: place * mechanism.unit for name, place in mechanism.places(mechanism.drawn).items()}
+    links = _links(scene)
     missed = [np.linalg.norm(pose[a] - pose[b]) - np.linalg.norm(closed[a] - closed[b]) for a, b in links]
     if np.abs(missed).max() > KEPT * size:
         return
@@ -158,17 +154,27 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     def put(content: Content) -> None:
         content["mechanism"]["points"] |= {name: place.tolist() for name, place in pose.items()}
 
-    motion = evidence.solved.other(("pose", first, there.tobytes()), put, _as_it_stands)
-    if motion is None:
-        return
-    rows = {}
-    for row, (value, allowed) in evidence.by(motion).items():
-        value[:first] = evidence.held[row][:first]
+    since = "" if first == 0 else f" from t = {evidence.times[first]:.6g} s on"
+    words = f"another assembly of the same links{since}: all {len(links)} lengths are kept"
+    for one in otherwise(evidence, words, put, 1.2, _as_it_stands):
         # The drawing is made of given numbers: they are off twice, as it and at each instant.
-        rows[row] = (value, 2.0 * allowed)
-    # Other inputs keep all lengths too, and from the first pose on they are no motion of ours.
-    left = [np.abs(evidence.given[row] - rows[row][0]).max() for row in placed.values() if row in rows]
-    if max(left) <= KEPT * size:
-        since = "" if first == 0 else f" from t = {evidence.times[first]:.6g} s on"
-        words = f"another assembly of the same links{since}: all {len(links)} lengths are kept"
-        yield Hypothesis("branch", words, rows, cost=1.2, whole=True)
+        rows = {row: (value, 2.0 * allowed) for row, (value, allowed) in one.rows.items()}
+        for row, (value, _) in rows.items():
+            value[:first] = evidence.held[row][:first]
+        # Other inputs keep all lengths too, and from the first pose on they are no motion of ours.
+        left = [np.abs(evidence.given[row] - rows[row][0]).max() for row in placed.values() if row in rows]
+        if max(left) <= KEPT * size:
+            yield replace(one, rows=rows)
+
+
+def _links(scene: Scene) -> set[tuple[str, str]]:
+    """The ends of every length: of rods, and of every two points of a moving body.
+
+    A point that only rides on a body has its place there too, and misdrawn it is another car.
+    """
+    plain = scene.mechanism.plain(())
+    moving = [points for body, points in plain["bodies"].items() if body != CHASSIS]
+    return {
+        *map(tuple, plain["rods"].values()),
+        *(ends for points in moving for ends in combinations(points, 2)),
+    }

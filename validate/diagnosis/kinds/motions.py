@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pointcoord.numerics.rounding import EPS
-from validate.diagnosis.evidence import Content, Evidence, Row, numbers_in
-from validate.diagnosis.hypothesis import Hypothesis, WouldBe
-from validate.diagnosis.least import fitted
-from validate.diagnosis.other_car import FEW, Change, any_of
+from validate.diagnosis.evidence import Content, Evidence
+from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.other_car import Change, any_of
 from validate.formulations.input_rates import rates
-
-Array = NDArray[np.float64]
 
 SCALED = {"amplitude", "offset", "values"}  # of a law, what is so many times itself if the law is
 STEP = 1e-3  # of differences by a factor, and by an amount
@@ -24,10 +19,11 @@ FARTHEST = 3  # samples that a motion may be late or early
 
 def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each input by itself, taken so many times, or so much more."""
+    # Of numbers over an input it is that input which is taken otherwise.
+    laws = evidence.scene.inputs if evidence.over_time else {}
     # Of an input at 0 there is no factor.
-    moving = [name for name, law in evidence.scene.inputs.items() if rates(law, evidence.times)[:, 0].any()]
-    factors = [_times(name) for name in moving]
-    return any_of(evidence, [*factors, *(_more(evidence, name) for name in evidence.scene.inputs)])
+    moving = [name for name, law in laws.items() if rates(law, evidence.times)[:, 0].any()]
+    return any_of(evidence, [*map(_times, moving), *(_more(evidence, name) for name in laws)])
 
 
 def _times(name: str) -> Change:
@@ -38,7 +34,7 @@ def _times(name: str) -> Change:
         said = {-1.0: "has the other sign", 0.0: "is taken as 0"}
         return f"the input {name} {said.get(round(factor, 8), f'is taken {factor:.6g} times')}"
 
-    return Change((name, "times"), 1.0, STEP, put, words, COST)
+    return Change((name, "times"), put, words, STEP, ours=1.0, cost=COST)
 
 
 def _more(evidence: Evidence, name: str) -> Change:
@@ -50,7 +46,7 @@ def _more(evidence: Evidence, name: str) -> Change:
     def words(more: float) -> str:
         return f"the input {name} is taken {abs(more):.6g} {unit} {'more' if more > 0.0 else 'less'}"
 
-    return Change((name, "more"), 0.0, STEP, put, words, COST)
+    return Change((name, "more"), put, words, STEP, cost=COST)
 
 
 def _law_times(law: Content, factor: float) -> Content:
@@ -65,29 +61,13 @@ def _law_times(law: Content, factor: float) -> Content:
 
 def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
     """Their numbers at t are ours at t + s, of the whole car, with s a few samples at most."""
-    times, looked = evidence.times, evidence.telling[0]
-    few, time = evidence.thinned(FEW), evidence.solved.content["time"]
-    most = FARTHEST * float(np.diff(times).max(initial=0.0))
-    limits = {"start": time["start"] - most, "stop": time["stop"] + most}
-    motion = evidence.solved.other("longer", lambda content: content["time"].update(limits))
-    if motion is None or not most > 0.0:
-        return  # the car does not go so far
+    most = FARTHEST * float(np.diff(evidence.times).max(initial=0.0))
 
-    def read(shift: float) -> Array | None:
-        return numbers_in(motion.at(few.times + shift).numbers, looked) if abs(shift) < most else None
+    def put(content: Content, shift: float) -> None:
+        content["time"] |= {end: content["time"][end] + shift for end in ("start", "stop")}
 
-    fit = fitted(read, 0.0, 1e-4 * most, few.joined(looked))
-    if fit is None:
-        return
-    shift, found = fit[0], motion.at(times + fit[0]).numbers
-    rows: dict[Row, WouldBe] = {}
-    for row in evidence.held:
-        if row[1] in found[row[0]]:
-            value = np.asarray(found[row[0]][row[1]])
-            # The instants are rounded too, and so moves what is read there.
-            speed = np.abs(np.gradient(value, times, axis=0)).max()
-            # What is claimed varies along the motion: the most of it, since it is read elsewhere.
-            widest = np.broadcast_to(evidence.rounded(row).max(axis=0), value.shape)
-            rows[row] = value, widest + 8.0 * EPS * speed * (abs(shift) + np.abs(times).max())
-    words = f"the same curves {abs(shift):.6g} s {'later' if shift < 0.0 else 'earlier'}"
-    yield Hypothesis("shift", words, rows, 1, 2.0, whole=True)
+    def words(shift: float) -> str:
+        return f"the same curves {abs(shift):.6g} s {'later' if shift < 0.0 else 'earlier'}"
+
+    shift = Change("shift", put, words, 1e-4 * most, farthest=most, cost=2.0, late=True)
+    return any_of(evidence, [shift] if evidence.over_time and most > 0.0 else [])

@@ -1,52 +1,25 @@
-"""What is done to every number by a rule: other signs, axes, units or instants, another definition of an
-angle, or another number's place.
+"""What arithmetic makes of numbers beside a product: an angle by another definition, another row or instant,
+another zero, and the last printed digit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from itertools import combinations, permutations, product
-from math import pi
-from typing import NamedTuple
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord import PointcoordError, solve_poses
+from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.corner import Wheel
 from pointcoord.effects.registry import QUANTITIES, angle_called
 from pointcoord.numerics.rounding import EPS
-from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order
-from validate.diagnosis.hypothesis import Hypothesis, WouldBe
+from validate.diagnosis.evidence import Evidence, Row, WouldBe, roundest, together
+from validate.diagnosis.hypothesis import Hypothesis
 
 Array = NDArray[np.float64]
-
-FEW = 64  # instants at which axes are tried first
-
-
-class Unit(NamedTuple):
-    """Another unit.
-
-    Attributes:
-        words: for what it was taken.
-        of: mm, rad, or s, which it stands for.
-        factor: a number in our unit times this is the number in that one; per second of a rate for s.
-    """
-
-    words: str
-    of: str
-    factor: float
-
-
-UNITS = (
-    Unit("degrees for radians", "rad", 180.0 / pi),
-    Unit("degrees taken for radians and converted once more", "rad", pi / 180.0),
-    Unit("minutes of arc taken for degrees", "rad", 60.0),
-    Unit("m for mm", "mm", 1e-3),
-    Unit("inches for mm", "mm", 1.0 / 25.4),
-    Unit("mm taken for m and converted once more", "mm", 1e3),
-    Unit("per minute for per second", "s", 60.0),
-)
 
 DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
     "arcsin of the component, not projected": lambda p, q, n: np.arcsin(p / n),
@@ -72,107 +45,16 @@ SAMPLES: Mapping[str, Callable[[Array], Array]] = {
 }
 """In words, and what is then given of numbers."""
 
-
-def _turned(matrix: Array, axial: bool, row: Row, numbers: Array) -> Array:
-    """Vectors of a row in other axes; those of a number of the car are no vectors.
-
-    Args:
-        axial: whether axes are changed, and not only the signs that someone writes: what a body turns by
-            keeps its sense only where the axes stay right-handed.
-    """
-    if kind_of(row) == "car":
-        return numbers
-    sense = np.sign(np.linalg.det(matrix)) if axial and kind_of(row) == "body" else 1.0
-    return np.asarray(numbers @ (sense * matrix).T)
-
-
-def _in_axes(
-    evidence: Evidence, matrix: Array, rows: Iterable[Row], axial: bool = True
-) -> dict[Row, WouldBe]:
-    exact = np.isin(np.abs(matrix), (0.0, 1.0)).all()
-    found: dict[Row, WouldBe] = {}
-    for row in rows:
-        if kind_of(row) != "car":
-            allowed = evidence.allowed[row] if exact else evidence.rounded(row)
-            found[row] = _turned(matrix, axial, row, evidence.held[row]), allowed @ np.abs(matrix).T
-    return found
-
-
-def other_signs(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Of one, two or all components of vectors, or of a number of the car as a whole, as of toe in or out."""
-    cars = [row for row in evidence.wrong if kind_of(row) == "car"]
-    for signs in product((1.0, -1.0), repeat=3):
-        flipped = tuple(axis for axis, sign in zip("xyz", signs, strict=True) if sign < 0.0)
-        if flipped and len(cars) < len(evidence.wrong):
-            words, matrix = f"the other sign of {' and '.join(flipped)}", np.diag(signs)
-            rows, undo = (
-                _in_axes(evidence, matrix, evidence.looked, axial=False),
-                partial(_turned, matrix, False),
-            )
-            yield Hypothesis(flipped, words, rows, cost=1.0 + 0.1 * len(flipped), undo=undo)
-    if cars:
-        rows = {row: (-evidence.held[row], evidence.allowed[row]) for row in cars}
-        yield Hypothesis("car", "the other sign", rows)
-
-
-def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Axes in another order, with or without other signs.
-
-    Those that do not even halve a difference at a few instants are left out.
-    """
-    few = evidence.thinned(FEW)
-    before = {r: few.left(r, few.held[r], few.allowed[r]) for r in few.wrong if kind_of(r) != "car"}
-    for places, signs in product([*permutations(range(3))][1:], product((1.0, -1.0), repeat=3)):
-        matrix = np.zeros((3, 3))
-        matrix[range(3), places] = signs
-        there = _in_axes(few, matrix, before)
-        if all(few.left(row, *there[row]) > max(1.0, 0.5 * before[row]) for row in before):
-            continue
-        named = tuple("-" * (s < 0.0) + "xyz"[p] for s, p in zip(signs, places, strict=True))
-        words, rows = (
-            f"other axes: its x, y, z are our {', '.join(named)}",
-            _in_axes(evidence, matrix, evidence.looked),
-        )
-        cost = 1.5 + 0.01 * sum(s < 0.0 for s in signs)
-        yield Hypothesis(named, words, rows, cost=cost, undo=partial(_turned, matrix.T, True))
-
-
-def mirrored(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Left for right: vectors are mirrored in the car's middle plane, angles that count outboard stay."""
-    right = evidence.scene.mechanism.axes.right
-    matrix = np.eye(3) - 2.0 * np.outer(right, right)
-    rows = {row: (evidence.held[row], evidence.allowed[row]) for row in evidence.held}
-    rows |= _in_axes(evidence, matrix, evidence.held)
-    undo = partial(_turned, matrix.T, True)
-    yield Hypothesis("mirror", "left for right: the car is mirrored", rows, whole=True, undo=undo)
-
-
-def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each unit, of all rows that may have it."""
-    for unit in UNITS:
-        rows = {
-            row: (_scale(unit, row) * evidence.held[row], _scale(unit, row) * evidence.rounded(row))
-            for row in evidence.wrong
-            if unit.of == length_or_angle(row) or (unit.of == "s" and order(row))
-        }
-        if rows:
-            yield Hypothesis(unit.words, unit.words, rows, undo=partial(_in_our_unit, unit))
-
-
-def _scale(unit: Unit, row: Row) -> float:
-    return unit.factor ** order(row) if unit.of == "s" else unit.factor
-
-
-def _in_our_unit(unit: Unit, row: Row, numbers: Array) -> Array:
-    return np.asarray(numbers / _scale(unit, row))
+MEANT = 8.0  # times what is allowed of numbers that were computed again: a constant that is meant
+MOST_DIGITS = 10
+SINGLE = float(np.finfo(np.float32).eps)
 
 
 def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each definition, of all angles that disagree."""
-    topology = evidence.scene.mechanism.topology
     for row in evidence.wrong:
-        angle, wheel = angle_called(row[1]), Wheel.of(topology, row[1])
-        if kind_of(row) != "car" or angle is None:
+        angle, wheel = angle_called(row.name), Wheel.of(evidence.scene.mechanism.topology, row.name)
+        if row.of != "car" or angle is None:
             continue
         start, end = (evidence.places(point) for point in angle.ends(wheel))
         if start is None or end is None:
@@ -188,12 +70,34 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
             if np.isfinite(value).all():
                 allowed = evidence.rounded(row, value) + 8.0 * EPS * size / length
                 undo = partial(_projected, BACK[words]) if words in BACK else None
-                yield Hypothesis(words, words, {row: (value, allowed)}, cost=1.2, undo=undo)
+                yield Hypothesis(words, {row: (value, allowed)}, cost=1.2, undo=undo)
 
 
 def _projected(back: Callable[[Array], Array], row: Row, numbers: Array) -> Array:
     """The angles that numbers of a row stand for; those of other rows are no such numbers."""
-    return back(numbers) if kind_of(row) == "car" else numbers
+    return back(numbers) if row.of == "car" else numbers
+
+
+def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Two quantities in each other's place, such as velocities and accelerations."""
+    for one, two in combinations(sorted(evidence.wrong_quantities), 2):
+        other = {one: two, two: one}
+        rows = {row: Row(other[row.quantity], row.name) for row in evidence.wrong if row.quantity in other}
+        words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
+        yield Hypothesis(words, _of_others(evidence, rows), cost=1.1)
+
+
+def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
+    """What two parts of a car have, each under the other's names."""
+    for one, two in combinations(evidence.scene.mechanism.topology.sides, 2):
+        other = {one: two, two: one}
+        rows = {row: row for row in evidence.held}
+        for row in evidence.held:
+            part, dot, name = row.name.partition(".")
+            if dot and part in other:
+                rows[row] = Row(row.quantity, f"{other[part]}.{name}")
+        words = f"what is of {one} stands under {two}, and the other way"
+        yield Hypothesis(words, _of_others(evidence, rows), whole=True)
 
 
 def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, WouldBe]:
@@ -206,30 +110,90 @@ def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, Would
     }
 
 
-def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Two quantities in each other's place, such as velocities and accelerations."""
-    for one, two in combinations(sorted(evidence.wrong_quantities), 2):
-        partner = {one: two, two: one}
-        rows = _of_others(evidence, {r: (partner[r[0]], r[1]) for r in evidence.wrong if r[0] in partner})
-        words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
-        yield Hypothesis((one, two), words, rows, cost=1.1)
-
-
-def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
-    """What two parts of a car have, each under the other's names."""
-    for one, two in combinations(evidence.scene.mechanism.topology.sides, 2):
-        other = {one: two, two: one}
-        parts = {row: row[1].partition(".") for row in evidence.held}
-        others = {
-            row: (row[0], f"{other[part]}.{name}") if dot and part in other else row
-            for row, (part, dot, name) in parts.items()
-        }
-        words = f"what is of {one} stands under {two}, and the other way"
-        yield Hypothesis((one, two), words, _of_others(evidence, others), whole=True)
-
-
 def of_another_instant(evidence: Evidence) -> Iterator[Hypothesis]:
     """Every number is in the row after or before its own."""
     for words, moved in SAMPLES.items():
         rows = {row: (moved(evidence.held[row]), moved(evidence.allowed[row])) for row in evidence.looked}
-        yield Hypothesis(words, words, rows, cost=1.2)
+        yield Hypothesis(words, rows, cost=1.2)
+
+
+def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
+    """What is subtracted of places and angles: the first value, the drawing's, or a constant."""
+    as_drawn = _as_drawn(evidence)
+    for row in evidence.wrong:
+        if row.order > 0:
+            continue
+        more = partial(so_much_more, evidence, row)
+        yield Hypothesis("the value at the first instant is subtracted", more(-evidence.held[row][0]))
+        if row in as_drawn:
+            yield Hypothesis("the value of the drawing is subtracted", more(-as_drawn[row]), cost=1.2)
+        gap = constant_gap(evidence, row, MEANT) if len(evidence.times) > 2 else None
+        if gap is not None:
+            # Every point has that of another origin.
+            undo = partial(_shifted, -gap) if row.of == "point" else None
+            words, count = f"a constant offset of {evidence.in_words(row, gap)}", int(np.count_nonzero(gap))
+            yield Hypothesis(words, more(gap), count, 1.0 + count, undo=undo)
+
+
+def constant_gap(evidence: Evidence, row: Row, least: float = 1.0) -> Array | None:
+    """The constant that a row's numbers are nearest to being off by, as round as they tell.
+
+    None where it is at most so many times what is allowed of numbers that were computed again.
+    """
+    apart, off = evidence.given[row] - evidence.held[row], evidence.rounded(row)
+    noise = float(off.max())
+    off = off + evidence.own.get(row, 0.0)
+    # Amid what its digits leave open.
+    gap = np.asarray(0.5 * ((apart - off).max(axis=0) + (apart + off).min(axis=0)))
+    if not (np.isfinite(gap).all() and np.abs(gap).max() > least * noise):
+        return None
+    gap = np.where(np.abs(gap) <= noise, 0.0, gap)
+    return roundest(gap, lambda near: evidence.explained(so_much_more(evidence, row, near)))
+
+
+def so_much_more(evidence: Evidence, row: Row, amount: Array) -> dict[Row, WouldBe]:
+    """A row that is ours and so much more."""
+    return {row: (evidence.held[row] + amount, evidence.rounded(row, amount))}
+
+
+def _shifted(shift: Array, row: Row, places: Array) -> Array:
+    return np.asarray(places + shift)
+
+
+def _as_drawn(evidence: Evidence) -> dict[Row, Array]:
+    """The numbers of the car, of those that disagree, as it is drawn."""
+    rows = [row for row in evidence.wrong if row.of == "car" and row.order == 0]
+    try:
+        scene = evidence.solved.fine
+        numbers = solve_poses(scene, drawn_inputs(scene)).numbers if rows else {}
+    except PointcoordError:
+        return {}
+    return {
+        row: np.asarray(numbers[row.quantity][row.name]) for row in rows if row.name in numbers[row.quantity]
+    }
+
+
+def printed_digits(evidence: Evidence) -> Iterator[Hypothesis]:
+    """The fewest decimals that the given numbers have, and single precision.
+
+    Half of the last place is what they may be off.
+    """
+    for rows in together(evidence.wrong):
+        _, theirs, _ = evidence.joined(rows)
+        if not np.isfinite(theirs).all():
+            continue
+        for count in range(MOST_DIGITS + 1):
+            places = theirs * 10.0**count
+            if (np.abs(places - np.rint(places)) <= 4.0 * EPS * np.abs(places)).all():
+                found = {row: _looser(evidence, row, np.asarray(10.0**-count)) for row in rows}
+                yield Hypothesis(f"printed with {count} decimals", found, cost=1.05, looser=True)
+                break
+        if (np.abs(theirs) < np.finfo(np.float32).max).all() and (theirs == theirs.astype(np.float32)).all():
+            found = {row: _looser(evidence, row, SINGLE * np.abs(evidence.held[row])) for row in rows}
+            yield Hypothesis("printed or kept in single precision", found, looser=True)
+
+
+def _looser(evidence: Evidence, row: Row, last_place: Array) -> WouldBe:
+    """The numbers as they are held, and half of a last place more that they may be off."""
+    held = evidence.held[row]
+    return held, evidence.allowed[row] + 0.5 * last_place + EPS * np.abs(held)

@@ -11,14 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
-from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order
-from validate.diagnosis.hypothesis import Hypothesis, WouldBe
+from validate.diagnosis.evidence import Evidence, Row, WouldBe
+from validate.diagnosis.hypothesis import Hypothesis
 from validate.formulations.input_rates import rates
 
 Array = NDArray[np.float64]
@@ -29,40 +30,42 @@ def _steps(x: Array, t: Array) -> Array:
     return np.diff(x, axis=0) / np.diff(t).reshape(-1, *[1] * (x.ndim - 1))
 
 
+def _central(x: Array, t: Array, order: Literal[1, 2] = 1) -> Array:
+    return np.asarray(np.gradient(x, t, axis=0, edge_order=order))
+
+
 def _inner(x: Array, t: Array) -> Array:
-    return np.asarray(np.gradient(x, t, axis=0)[1:-1])
+    return _central(x, t)[1:-1]
 
 
 def _second(x: Array, t: Array) -> Array:
     return _steps(_steps(x, t), 0.5 * (t[1:] + t[:-1]))
 
 
-def _padded(rule: Rule, before: int, after: int, zero: bool, x: Array, t: Array) -> Array:
-    ends = [(before, after), *[(0, 0)] * (x.ndim - 1)]
-    return np.pad(rule(x, t), ends) if zero else np.pad(rule(x, t), ends, mode="edge")
+def _padded(rule: Rule, ends: tuple[int, int], mode: Literal["edge", "constant"]) -> Rule:
+    """The rule with so many rows more before and after: the neighbour's numbers, or zeros."""
+    return lambda x, t: np.pad(rule(x, t), [ends, *[(0, 0)] * (x.ndim - 1)], mode=mode)
 
 
-def _twice(rule: Rule, x: Array, t: Array) -> Array:
-    return rule(rule(x, t), t)
+def _twice(rule: Rule) -> Rule:
+    return lambda x, t: rule(rule(x, t), t)
 
 
 ONCE: dict[str, Rule] = {
-    "central differences": lambda x, t: np.asarray(np.gradient(x, t, axis=0)),
-    "central differences, of second order at the ends too": lambda x, t: np.asarray(
-        np.gradient(x, t, axis=0, edge_order=2)
-    ),
-    "central differences, repeated at the ends": partial(_padded, _inner, 1, 1, False),
-    "central differences, zero at the ends": partial(_padded, _inner, 1, 1, True),
-    "forward differences": partial(_padded, _steps, 0, 1, False),
-    "forward differences, zero in the last row": partial(_padded, _steps, 0, 1, True),
-    "backward differences": partial(_padded, _steps, 1, 0, False),
-    "backward differences, zero in the first row": partial(_padded, _steps, 1, 0, True),
+    "central differences": _central,
+    "central differences, of second order at the ends too": partial(_central, order=2),
+    "central differences, repeated at the ends": _padded(_inner, (1, 1), "edge"),
+    "central differences, zero at the ends": _padded(_inner, (1, 1), "constant"),
+    "forward differences": _padded(_steps, (0, 1), "edge"),
+    "forward differences, zero in the last row": _padded(_steps, (0, 1), "constant"),
+    "backward differences": _padded(_steps, (1, 0), "edge"),
+    "backward differences, zero in the first row": _padded(_steps, (1, 0), "constant"),
 }
 RULES: list[tuple[str, Rule, int]] = [
     *((words, rule, 1) for words, rule in ONCE.items()),
-    *((f"{words}, taken twice", partial(_twice, rule), 2) for words, rule in ONCE.items()),
-    ("second differences of positions", partial(_padded, _second, 1, 1, False), 2),
-    ("second differences of positions, zero at the ends", partial(_padded, _second, 1, 1, True), 2),
+    *((f"{words}, taken twice", _twice(rule), 2) for words, rule in ONCE.items()),
+    ("second differences of positions", _padded(_second, (1, 1), "edge"), 2),
+    ("second differences of positions, zero at the ends", _padded(_second, (1, 1), "constant"), 2),
 ]
 """In words, and which derivative each makes."""
 
@@ -70,9 +73,9 @@ RULES: list[tuple[str, Rule, int]] = [
 def _integral(row: Row, below: int, evidence: Evidence) -> Row | None:
     """The row that a row is so many time derivatives of."""
     for quantity in QUANTITIES:
-        other = (quantity, row[1])
-        alike = kind_of(other) == kind_of(row) and length_or_angle(other) == length_or_angle(row)
-        if alike and order(other) == order(row) - below and other in evidence.given:
+        other = Row(quantity, row.name)
+        alike = other.of == row.of and other.unit == row.unit
+        if alike and other.order == row.order - below and other in evidence.given:
             return other
     return None
 
@@ -95,28 +98,28 @@ def differences(evidence: Evidence) -> Iterator[Hypothesis]:
             late = latest / step * float(np.abs(value).max(initial=0.0))
             rounding = 16.0 * EPS * (float(np.abs(numbers).max()) / step**below + late)
             rows[row] = value, evidence.rounded(row) + rounding
-        if rows:
-            yield Hypothesis(words, f"rates by {words}", rows)
+        yield Hypothesis(f"rates by {words}", rows)
 
 
 def per_input(evidence: Evidence) -> Iterator[Hypothesis]:
     """With s the rate of an input that never rests: v / s for v, and (a - v s' / s) / s^2 for a."""
     units = evidence.scene.mechanism.topology.input_units
-    for name, law in evidence.scene.inputs.items():
+    rated = [row for row in evidence.wrong if row.order > 0]
+    for name, law in evidence.scene.inputs.items() if rated else ():
         _, rate, change = rates(law, evidence.times).T
         if not rate.all() or (rate == 1.0).all():
             continue
         rows: dict[Row, WouldBe] = {}
-        for row in evidence.wrong:
-            below, by = _integral(row, 1, evidence), rate.reshape(-1, *[1] * (evidence.held[row].ndim - 1))
-            if order(row) == 1:
+        for row in rated:
+            ones = [1] * (evidence.held[row].ndim - 1)
+            by, bend = rate.reshape(-1, *ones), (change / rate).reshape(-1, *ones)
+            below = _integral(row, 1, evidence)
+            if row.order == 1:
                 value = evidence.held[row] / by
-            elif order(row) == 2 and below is not None:
-                value = (
-                    evidence.held[row] - evidence.held[below] * (change / rate).reshape(by.shape)
-                ) / by**2
+            elif row.order == 2 and below is not None:
+                value = (evidence.held[row] - evidence.held[below] * bend) / by**2
             else:
                 continue
-            rows[row] = value, evidence.rounded(row) / np.abs(by) ** order(row)
+            rows[row] = value, evidence.rounded(row) / np.abs(by) ** row.order
         words = f"rates per {units[name]} of {name}, not per second"
-        yield Hypothesis(name, words, rows, cost=1.1)
+        yield Hypothesis(words, rows, cost=1.1)
