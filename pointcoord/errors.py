@@ -123,7 +123,7 @@ class MissingLibrary(PointcoordError, ImportError):
         libraries: any of which would do.
         problem: what is wrong with them, if they are there.
         extra: of this distribution, that brings them; one of the same name for each unless given.
-        more: what else to try.
+        advice: what to try, if not to install them.
     """
 
     def __init__(
@@ -132,14 +132,15 @@ class MissingLibrary(PointcoordError, ImportError):
         libraries: Iterable[str],
         problem: str = "is not installed",
         extra: str = "",
-        more: str = "",
+        advice: str = "",
     ) -> None:
         self.part = part
         self.libraries = tuple(libraries)
         extras = (extra,) if extra else self.libraries
         brought = " or ".join(f"pip install 'pointcoord[{name}]'" for name in extras)
         named = " or ".join(map(repr, self.libraries))
-        super().__init__(f"{part} needs the package {named}, which {problem}", advice=f"try: {brought}{more}")
+        said = f"{part} needs the package {named}, which {problem}"
+        super().__init__(said, advice=advice or f"try: {brought}")
 
 
 class MechanismError(PointcoordError):

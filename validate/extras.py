@@ -21,8 +21,8 @@ def not_there(part: str, error: ImportError, extra: str = "validate") -> Missing
         return MissingLibrary(repr(part), package, extra=extra)
     # Its cause, where whoever imports the package has already said what to do.
     why = " ".join(str(error.__cause__ or error).split())
-    more = ", and the system's package with the library, if one is named"
-    return MissingLibrary(repr(part), package, f"does not load ({why})", extra, more)
+    advice = "install the system's package with the library that is named, or the package itself anew"
+    return MissingLibrary(repr(part), package, f"is there and does not load ({why})", advice=advice)
 
 
 def needed(part: str, module: str, extra: str = "validate") -> Any:
