@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import NoReturn
 
 from pointcoord.wording import meant, shown
-from validate.commands.pages import page
+from validate.commands.pages import summary
 from validate.errors import NotFinished, UsageError
 from validate.exit_status import HELP, ExitStatus, of_interruption
 from validate.output.console import Console
@@ -127,7 +127,7 @@ def _overview() -> str:
             "usage: pointcoord COMMAND ...\n",
             DESCRIPTION,
             "\ncommands, each with --help:",
-            *(f"  {name.ljust(width)}  {page(name)[0]}" for name in COMMANDS),
+            *(f"  {name.ljust(width)}  {summary(name)}" for name in COMMANDS),
             "\noptions:",
             "  -h, --help  print this",
             "  --version   print the version",

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from validate.html.run import Drawings, Run
 
 
+RESULTS = ("--json", "--junit", "--summary", "--save-baseline")
+"""The files that a run of comparisons may leave."""
+
+
 @dataclass(frozen=True)
 class Page:
     """Where the page of a run goes.
@@ -96,12 +100,6 @@ class Comparing:
         if self.drawings is not None and examined.name not in self.record.files:
             self.drawings.add(examined, scene)
         self.journal.keep()
-
-
-def results_of(options: argparse.Namespace) -> dict[str, str | None]:
-    """The files that a run of comparisons may leave, by option."""
-    names = ("json", "junit", "summary", "save_baseline")
-    return {f"--{name.replace('_', '-')}": getattr(options, name) for name in names}
 
 
 @contextmanager

@@ -13,10 +13,10 @@ from pointcoord import Scene, SceneError
 from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
 from validate.ci.record import Record, ends_the_run
-from validate.commands.comparing import comparing, results_of
+from validate.commands.comparing import RESULTS, comparing
+from validate.commands.pages import Command
 from validate.commands.usage import (
     STANDARD_INPUT,
-    Command,
     given,
     load_scene,
     name_of,
@@ -102,7 +102,7 @@ def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus
         raise UsageError("--save-baseline - is no file; a baseline is not text: give the path of a file")
     # A baseline may take the place of the one that it was compared with.
     kept = {None, options.save_baseline} if options.baseline == options.save_baseline else {None}
-    require_results(results_of(options), [*names, *({options.baseline} - kept)], options, console)
+    require_results(options, console, RESULTS, [*names, *({options.baseline} - kept)])
     for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
         formulation(name)  # found before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)

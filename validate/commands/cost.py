@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validate.commands.comparing import Page
+from validate.commands.pages import Command
 from validate.commands.usage import (
     STANDARD_INPUT,
-    Command,
     given,
     load_scene,
     name_of,
@@ -42,12 +42,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.from_rows and (more := given(options, "scenes", "--ways", "--quick")):
         what = "SCENE" if more[0] == "scenes" else more[0]
         raise UsageError(f"--from-rows shows all rows of {options.rows}; leave {what} out")
-    results, read = {"--json": options.json, "--csv": options.csv}, [*options.scenes]
     if options.from_rows:
-        read.append(options.rows)
+        require_results(options, console, ("--json", "--csv"), (options.rows,))
     else:
-        results["--rows"] = options.rows
-    require_results(results, read, options, console)
+        require_results(options, console, ("--json", "--csv", "--rows"), options.scenes)
     if options.report is not None:
         needed("--report", "matplotlib", "plot")
     page = Page.of(options)

@@ -8,7 +8,7 @@ import os
 from validate.ci.record import Record
 from validate.ci.verdict import next_step
 from validate.closed_drawing import closing_data, closing_of, warnings_of
-from validate.commands.comparing import comparing, results_of
+from validate.commands.comparing import RESULTS, comparing
 from validate.commands.usage import (
     STANDARD_INPUT,
     load_scene,
@@ -37,7 +37,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.accuracy is not None and not 0.0 <= options.accuracy <= FARTHEST:
         raise UsageError(f"--accuracy is {options.accuracy}; allowed: a number from 0 to {FARTHEST:g}")
     (given,) = options.scenes
-    require_results(results_of(options), (given, options.data, options.map), options, console)
+    require_results(options, console, RESULTS, (given, options.data, options.map))
     if options.map is not None and not os.path.exists(options.map):
         return to_be_filled_in(options.map, map_to_fill_in(options.data, load_scene(given)), console)
     name = name_of(given)

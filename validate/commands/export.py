@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from validate.closed_drawing import closed_drawing, closed_mechanism, warnings_of
-from validate.commands.usage import Command, load_scene, name_of, require_results, told_as
+from validate.commands.pages import Command
+from validate.commands.usage import load_scene, name_of, place_of_result, told_as
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
@@ -20,8 +21,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     Returns:
         NO_VERDICT if the drawing cannot be closed, so that there is no home pose.
     """
-    result = {"--mjcf": options.mjcf}
-    require_results(result, (options.scene,), options, console, {"--mjcf": ENDINGS}, says=False)
+    target = place_of_result(options, ENDINGS, console, "--mjcf")
     mjcf = needed("export", "validate.peers.mjcf", "peers")
     scene, name = load_scene(options.scene), name_of(options.scene)
     with told_as(name):
@@ -31,10 +31,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return ExitStatus.NO_VERDICT
     for warning in warnings_of(scene, drawing.closing):
         console.warn(f"{name}: {warning}")
-    target = None if options.mjcf == "-" else options.mjcf
     console.put(target, mjcf.mjcf_of(closed_mechanism(drawing), scene.title or name), "the model")
-    if target is not None:
-        console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={shown(target)}")
+    console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={shown(target)}")
     return ExitStatus.AGREE
 
 

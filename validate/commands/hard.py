@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from validate.commands.comparing import Page
-from validate.commands.usage import Command, given, require_results
+from validate.commands.pages import Command
+from validate.commands.usage import given, require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.registry import missing
@@ -26,7 +27,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     cases = catalogue.chosen(options.cases)
     if options.list and options.report is not None:
         raise UsageError("--report is about cases that are tried; leave it out with --list")
-    require_results({"--json": options.json}, (), options, console)
+    require_results(options, console, ("--json",))
     head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
     if options.list:
         console.say(hard_report.listing(cases))
@@ -79,7 +80,7 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     if others := given(options, "--list", "--report"):
         raise UsageError(f"{others[0]} is about cases; leave it out with --assemblies")
-    require_results({"--json": options.json}, (), options, console)
+    require_results(options, console, ("--json",))
     found: list[scenes.SceneCount] = []
     head, names = Head.of("assemblies", options.command), options.cases or scenes.SHIPPED
     journal = Journal(

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Iterator
 from dataclasses import fields
 
 from validate.closed_drawing import warnings_of
-from validate.commands.usage import TOML, Command, require_results, to_be_filled_in
+from validate.commands.pages import Command
+from validate.commands.usage import TOML, place_of_result, to_be_filled_in
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.format import formats
@@ -24,10 +26,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     Returns:
         DISAGREE if a static angle that the file prints is not that of its points; the scene is written.
     """
-    target: str | None = None if options.output == "-" else options.output
-    result = {"-o": target or "-"}
-    require_results(result, (options.file,), options, console, {"-o": TOML}, says=False)
-    console.mute = False
+    target = place_of_result(options, TOML, console, read="file")
     if options.names is not None and not os.path.exists(options.names):
         text = names_of(options.file, options.format, options.suspension)
         return to_be_filled_in(options.names, text, console)
@@ -36,9 +35,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     name = shown(options.file)
     told = warnings_of(found.scene, found.stands.closing)
     console.put(target, found.text, "the scene")
-    if target is not None:
-        console.say("\n".join(_report(name, found)))
-        console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
+    console.say("\n".join(_report(name, found)))
+    console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
     for warning in told:
         console.warn(f"{name}: {warning}")
     if found.others:
@@ -54,24 +52,20 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return ExitStatus.DISAGREE if wrong else ExitStatus.AGREE
 
 
-def _report(name: str, found: Imported) -> list[str]:
+def _report(name: str, found: Imported) -> Iterator[str]:
+    """What the file is, and what became of each of its points and angles."""
     part = found.scene.mechanism
     width = max(len(point.name) for point in found.points)
     wide = max(len(point.written) for point in found.points)
     kind = f"a {part.type} of the {part.side} wheel" if part.type else "a mechanism of its own"
-    lines = [f"{name}: {found.format.words}, read as {kind}"]
-    lines += [f"  {fact}" for fact in found.facts]
-    lines += [
-        f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"
-        for point in found.points
-    ]
-    lines += [f"  no point of ours: {shown(point.source)}" for point in found.others]
-    lines += [
-        f"  {check.name}: the file prints {check.printed:g} deg, its points give {check.drawn + 0.0:.4f}: "
-        f"{check.verdict}"
-        for check in found.angles
-    ]
-    return lines
+    yield f"{name}: {found.format.words}, read as {kind}"
+    yield from (f"  {fact}" for fact in found.facts)
+    for point in found.points:
+        yield f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"
+    yield from (f"  no point of ours: {shown(point.source)}" for point in found.others)
+    for check in found.angles:
+        there = f"the file prints {check.printed:g} deg, its points give {check.drawn:z.4f}"
+        yield f"  {check.name}: {there}: {check.verdict}"
 
 
 WORDS = {

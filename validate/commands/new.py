@@ -10,7 +10,7 @@ from pathlib import Path
 from pointcoord import UnknownName, built_in_scenes
 from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.scene.scene_file import SCENES
-from validate.commands.usage import Command
+from validate.commands.pages import Command
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console

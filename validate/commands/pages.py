@@ -1,27 +1,130 @@
-"""The pages in `help/`: what a command does, and what it takes; `usage.Command` makes its options of them."""
+"""Commands by their pages in `help/`, which say what each does and takes: a parser is made of them."""
 
 from __future__ import annotations
 
+import argparse
+import math
 import re
+from argparse import ArgumentParser
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
+
+from validate.exit_status import HELP, ExitStatus
+from validate.output.console import Console
+from validate.plain_text import shown
 
 PAGES = Path(__file__).with_name("help")
 
 
-def page(name: str) -> tuple[str, str, str]:
-    """The page of a command in `help/`: what it does in a line, its description, its options.
+def summary(name: str) -> str:
+    """What a command does, in a line: the first of its page."""
+    return _read(name).partition("\n")[0]
 
-    A line `<name>` stands for the part of that name of `shared.txt`.
+
+def page(name: str, words: Mapping[str, object]) -> tuple[str, str]:
+    """The description and the options of a command.
+
+    Args:
+        words: stand for `$name` in its page, beside the parts of `shared.txt`, in which others may stand.
     """
-    names_and_parts = re.split(r"^\[(\w+)\]\n", _read("shared"), flags=re.M)[1:]
-    shared = dict(zip(names_and_parts[::2], names_and_parts[1::2], strict=True))
+    names_and_parts = re.split(r"\s*^\[(\w+)\]\n", _read("shared").rstrip(), flags=re.M)[1:]
+    parts = {**dict(zip(names_and_parts[::2], names_and_parts[1::2], strict=True)), **words}
     text = _read(name)
-    while (whole := re.sub(r"^<(\w+)>\n", lambda found: shared[found[1]], text, flags=re.M)) != text:
-        text = whole
+    while "$" in text:
+        text = re.sub(r"\$(\w+)", lambda found: str(parts[found[1]]), text)
     head, _, options = text.partition("\noptions:\n")
-    summary, _, description = head.partition("\n")
-    return summary, description.strip(), options.strip()
+    return head.partition("\n")[2].strip(), options.strip()
 
 
 def _read(name: str) -> str:
     return (PAGES / f"{name}.txt").read_text(encoding="utf-8")
+
+
+def whole(least: int) -> Callable[[str], int]:
+    """Reads a whole number that is not below the least one."""
+
+    def read(word: str) -> int:
+        if word.isascii() and word.isdigit() and int(word) >= least:
+            return int(word)
+        raise argparse.ArgumentTypeError(f"{shown(word)} is no whole number; allowed: {least} or more")
+
+    return read
+
+
+def positive(word: str) -> float:
+    """Reads a positive, finite number."""
+    with suppress(ValueError):
+        if 0.0 < (value := float(word)) < math.inf:
+            return value
+    raise argparse.ArgumentTypeError(f"{shown(word)!r} is none; allowed: a positive, finite number")
+
+
+TYPES: Mapping[str, Callable[[str], Any]] = {
+    "N": whole(1),
+    "K": whole(0),
+    **dict.fromkeys(("S", "F", "MM"), positive),
+    **dict.fromkeys(("A", "DEG"), float),
+}
+"""What stands for a number in the options of a command: counts, seconds, factors, accuracies, sizes."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command of the program, whose page in `help/` says what it takes.
+
+    An entry of its options begins at the beginning of a line: names and what stands for the value, as `TYPES`
+    reads it, then two blanks and what it does. `NAME ...` may be given again, `NAME = 1` has a default, and
+    `[NAME ...]` takes any number of values. An argument is `name=WORD`, one that may be left out
+    `name=[WORD]`, any number of them `name=[WORD ...]`.
+
+    Attributes:
+        run: does it.
+        words: by name what stands for `$name` in its page.
+        more: what an entry cannot say of an option, as `argparse` takes it.
+        inner: commands of the command; it has no options itself then.
+    """
+
+    run: Callable[[argparse.Namespace, Console], ExitStatus]
+    words: Mapping[str, object] = field(default_factory=dict)
+    more: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    inner: Mapping[str, Command] = field(default_factory=dict)
+
+    def declare(self, parser: ArgumentParser, name: str) -> None:
+        """Declare what it takes."""
+        description, options = page(name, self.words)
+        parser.description, parser.epilog = description, HELP
+        parser.formatter_class = argparse.RawDescriptionHelpFormatter
+        for entry in re.split(r"\n(?=\S)", options) if options else ():
+            names, about = _argument(entry)
+            parser.add_argument(*names, **{**about, **self.more.get(names[-1], {})})
+        if self.inner:
+            inner = parser.add_subparsers(required=True, metavar=name.upper(), dest=name)
+            for one, command in self.inner.items():
+                own = f"{name}-{one}"
+                command.declare(inner.add_parser(one, help=summary(own)), own)
+        parser.set_defaults(run=self.run)
+
+
+def _argument(entry: str) -> tuple[list[str], dict[str, Any]]:
+    """The names of an option or an argument, and what `argparse` is told of it."""
+    head, words = re.split(r"\s{2,}", entry, maxsplit=1)
+    about: dict[str, Any] = {"help": " ".join(words.replace("%", "%%").split())}
+    if not head.startswith("-"):
+        name, _, value = head.partition("=")
+        if value.startswith("["):
+            about["nargs"] = "*" if value.endswith("...]") else "?"
+        return [name], about | {"metavar": value.strip("[].").strip()}
+    head, _, default = head.partition(" = ")
+    names = [word for word in head.split() if word.startswith("-")]
+    value = " ".join(word for word in head.split() if word not in names)
+    if not value:
+        return names, about | {"action": "store_true"}
+    about |= {"type": TYPES.get(value), "default": default or None, "metavar": value.strip("[].").strip()}
+    if value.startswith("["):
+        about |= {"nargs": "+", "default": []}
+    elif value.endswith("..."):
+        about |= {"action": "append", "default": []}
+    return names, about

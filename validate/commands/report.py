@@ -12,7 +12,7 @@ from pathlib import Path
 from pointcoord import built_in_scenes
 from validate.commands.comparison import PAGE_WORDS, require_sense
 from validate.commands.comparison import run as compare
-from validate.commands.usage import Command
+from validate.commands.pages import Command
 from validate.cost.report import Report
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus

@@ -15,7 +15,8 @@ from pointcoord.mechanism.structure import joints_in_words
 from pointcoord.results.closing import ALLOWED
 from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
-from validate.commands.usage import Command, load_scene, name_of, place_of_picture, told_as
+from validate.commands.pages import Command
+from validate.commands.usage import load_scene, name_of, place_of_picture, told_as
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.picture import svg
@@ -168,9 +169,8 @@ def _where_it_stands(scene: Scene, stands: Standing) -> Iterator[str]:
         for word, end in zip(("from", "to  "), ends, strict=True):
             held = f", where it is held by {', '.join(end.limits[:3])}" if end.limits else ""
             yield f"    {word} {_told(end.value, units[one])}{held}"
-    # To a thousandth of a degree, and zero without a sign.
     for angle, value in stands.angles.items():
-        yield f"  {angle} is {round(float(np.degrees(value)), 3) + 0.0:g} deg"
+        yield f"  {angle} is {round(float(np.degrees(value)), 3):zg} deg"
     if topology.wheel_axis:
         inner, centre = (f"{end}{_default(scene, end)}" for end in topology.wheel_axis)
         yield f"  the wheel turns about the line from {inner} to {centre}"

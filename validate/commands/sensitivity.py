@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from pointcoord import sensitivity, sweep
 from pointcoord.effects.numbers import RANKED_FIRST
 from pointcoord.sweeping.sensitivity import numbers_named
-from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
+from validate.commands.pages import Command
+from validate.commands.usage import load_scene, name_of, place_of_result, told_as
 from validate.curves.numbers import asking_for, numbers_asked
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -49,7 +50,7 @@ class Column:
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print or write the derivatives and the spreads."""
     target = place_of_result(options, ENDINGS, console)
-    ending = "" if target is None else Path(target).suffix
+    ending = Path(target).suffix
     if ending in PICTURES:
         needed("sensitivity", "matplotlib", "plot")
     name = name_of(options.scene)
@@ -84,13 +85,12 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return ExitStatus.NO_VERDICT if found.failures else ExitStatus.AGREE
 
 
-def _text(coordinates: Sequence[str], columns: Sequence[Column], target: str | None, tolerance: float) -> str:
+def _text(coordinates: Sequence[str], columns: Sequence[Column], target: str, tolerance: float) -> str:
     """A row for each coordinate, and in text what a tolerance makes."""
     head = ("hardpoint", *(f"{one.name} [{one.unit}/mm]" for one in columns))
-    if target is not None:
+    if target != "-":
         return csv_of(head, zip(coordinates, *(one.changes.tolist() for one in columns), strict=True))
-    # Adding 0 turns a rounded -0 into 0.
-    texts = ([f"{round(change, 5) + 0.0:.5f}" for change in one.changes[:ROWS]] for one in columns)
+    texts = ([f"{change:z.5f}" for change in one.changes[:ROWS]] for one in columns)
     table = Table(head, tuple(zip(coordinates[:ROWS], *texts, strict=True)))
     made = Table(
         (f"by {tolerance:g} mm of each", "standard deviation", f"of {DESIGNS} designs", "worst case"),

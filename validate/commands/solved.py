@@ -11,7 +11,8 @@ from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
-from validate.commands.usage import Command, load_scene, name_of, place_of_picture, place_of_result, told_as
+from validate.commands.pages import Command
+from validate.commands.usage import load_scene, name_of, place_of_picture, place_of_result, told_as
 from validate.curves.numbers import TIME, TRAVEL, Curves, Number, angles_of, asking_for, numbers_called, usual
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -28,7 +29,7 @@ SMOOTH = 401  # a curve of fewer instants has corners
 def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Write the motion."""
     target = place_of_result(options, ENDINGS, console)
-    if target is not None:
+    if target != "-":
         require_table(target)
     method, instants = BY_NAME[options.method], options.instants
     if instants is not None and not method.dense:
@@ -39,7 +40,7 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     def write(motion: Motion) -> str:
         rows = rows_of_motion(motion, instants)
-        if target is None:
+        if target == "-":
             console.write_lines(csv_lines(rows))
         else:
             write_table(target, rows, GROUP)
@@ -79,7 +80,7 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     return solved(scene, target, options, console, write)
 
 
-def _plot_sweep(options: argparse.Namespace, target: str | None, console: Console) -> ExitStatus:
+def _plot_sweep(options: argparse.Namespace, target: str, console: Console) -> ExitStatus:
     """Draw the columns of a sweep's file, a curve for each design."""
     # Imported here: matplotlib and pandas take a second each.
     from validate.curves.of_sweep import columns_called, read_sweep
@@ -97,13 +98,13 @@ def _plot_sweep(options: argparse.Namespace, target: str | None, console: Consol
     return ExitStatus.AGREE
 
 
-def _ending(target: str | None) -> str:
-    return "svg" if target is None else Path(target).suffix.removeprefix(".")
+def _ending(target: str) -> str:
+    return Path(target).suffix.removeprefix(".") or "svg"
 
 
 def solved(
     scene: Scene,
-    target: str | None,
+    target: str,
     options: argparse.Namespace,
     console: Console,
     write: Callable[[Motion], str],
@@ -133,7 +134,7 @@ def solved(
     what = write(motion)
     if problem is None:
         return ExitStatus.AGREE
-    where = f"on {STANDARD_OUTPUT}" if target is None else f"in {target}"
+    where = f"on {STANDARD_OUTPUT}" if target == "-" else f"in {target}"
     console.complain(
         f"{name}: {problem}{advice}; what was solved, {what} up to t = {motion.times[-1]:.10g} s, is {where}"
     )

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from validate.commands.usage import Command, require_results
+from validate.commands.pages import Command
+from validate.commands.usage import require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -26,32 +26,18 @@ LOCAL = "local"
 SOON = 2.0  # seconds before the first line of how far a study is, which waits for others
 
 
-@dataclass(frozen=True)
-class Named:
-    """A study on the command line.
-
-    Attributes:
-        module, function: of `validate.studies`, that make it. options: what it is made of.
-        choices: the option that takes one of some names, and these.
-    """
-
-    module: str
-    function: str
-    options: tuple[str, ...]
-    choices: tuple[str, Sequence[str]] = ("", ())
-
-
-STUDIES: Mapping[str, Named] = {
-    "random": Named("random_cars", "random_cars", ("count",)),
-    "bounds": Named("bounds", "bounds", ("poses", "seed")),
-    "claims": Named("claims", "claims", ("count", "first", "formulation"), ("--formulation", NAMES)),
-    "hard": Named("hard_cases", "hard", ("cases",)),
+# What makes each study, of `validate.studies`; its arguments are options of the command line.
+STUDIES = {
+    "random": ("random_cars", "random_cars"),
+    "bounds": ("bounds", "bounds"),
+    "claims": ("claims", "claims"),
+    "hard": ("hard_cases", "hard"),
 }
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Work out what is not recorded yet, and say what all of it comes to."""
-    named, folder = STUDIES[options.study], Path(options.records or f"pointcoord-{options.study}")
+    folder = Path(options.records or f"pointcoord-{options.study}")
     if options.records is not None and not options.records.strip():
         raise UsageError(f"--records {options.records!r} names no folder")
     if not options.scheduler.strip():
@@ -61,11 +47,12 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             f"--workers {options.workers} counts processes of this machine, a cluster at an address has its "
             "own; leave one of them out"
         )
-    require_results({"--json": options.json}, (), options, console)
+    require_results(options, console, ("--json",))
     for package in ("mpmath", "flint", "pinocchio"):
         needed("study", package)
-    values = {name: getattr(options, name) for name in named.options}
-    make = getattr(needed("study", f"validate.studies.{named.module}"), named.function)
+    module, function = STUDIES[options.study]
+    make = getattr(needed("study", f"validate.studies.{module}"), function)
+    values = {name: getattr(options, name, None) for name in signature(make).parameters}
     study: Study = make(**{name: value for name, value in values.items() if value is not None})
     if not study.tasks:
         raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
@@ -115,13 +102,9 @@ def _worked_out(study: Study, folder: Path, options: argparse.Namespace, console
     return ending.status
 
 
-WORDS = {"formulations": ", ".join(NAMES)}
+FORMULATIONS = {"formulations": ", ".join(NAMES)}, {"--formulation": {"choices": NAMES}}
 COMMANDS = {
     "study": Command(
-        run,
-        inner={
-            name: Command(run, WORDS, {one.choices[0]: {"choices": one.choices[1]}})
-            for name, one in STUDIES.items()
-        },
+        run, inner={name: Command(run, *(FORMULATIONS if name == "claims" else ())) for name in STUDIES}
     )
 }

@@ -25,7 +25,8 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.sweeping.designs import coordinates_named
 from pointcoord.sweeping.swept import Failure, Noted, merged
 from pointcoord.toml_text import read_file
-from validate.commands.usage import Command, load_scene, name_of, require_results, told_as
+from validate.commands.pages import Command
+from validate.commands.usage import load_scene, name_of, require_results, told_as
 from validate.commands.values import finite, values_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -69,16 +70,13 @@ class Summary:
         for quantity, channel in block.numbers.items():
             for name, array in channel.items() if channel.quantity.of == "car" else ():
                 if np.isfinite(array).any():
-                    low, high = (int(of(array) // len(block.times)) for of in (np.nanargmin, np.nanargmax))
-                    here = (
-                        (float(np.nanmin(array)), block.first + low),
-                        (
-                            float(np.nanmax(array)),
-                            block.first + high,
-                        ),
+                    # Of a row for each design.
+                    places = int(np.nanargmin(array)), int(np.nanargmax(array))
+                    low, high = (
+                        (float(array.flat[at]), block.first + at // len(block.times)) for at in places
                     )
-                    before = self.ends.get((quantity, name), here)
-                    self.ends[quantity, name] = min(before[0], here[0]), max(before[1], here[1])
+                    before = self.ends.get((quantity, name), (low, high))
+                    self.ends[quantity, name] = min(before[0], low), max(before[1], high)
 
     def failed_lines(self) -> list[str]:
         """Why designs failed, the most frequent reason first."""
@@ -90,22 +88,20 @@ class Summary:
     def parts(self) -> tuple[Part, ...]:
         """For people, angles in degrees."""
         solved = self.tried - sum(count for count, _ in self.failures.values())
-        instants = counted_as(self.instants, "instant")
         rows = []
         for (quantity, name), ends in self.ends.items():
             factor, unit = degrees_of(QUANTITIES[quantity].unit)
-            # Adding 0 turns a rounded -0 into 0.
-            told = (f"{round(factor * end, 4) + 0.0:.6g} (design {design})" for end, design in ends)
+            told = (f"{round(factor * end, 4):z.6g} (design {design})" for end, design in ends)
             rows.append((f"{name} [{unit}]", *told))
         table = [Table(("over designs and instants", "lowest", "highest"), tuple(rows))] if rows else []
-        said = f"solved: {solved} of {self.tried} designs, at {instants} each"
+        said = f"solved: {solved} of {self.tried} designs, at {counted_as(self.instants, 'instant')} each"
         return (said, *self.failed_lines(), *table)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the designs, write them as they come, and say what came of them."""
-    target, read = options.output, (options.scene, options.designs)
-    require_results({"-o": target}, read, options, console, {"-o": ENDINGS})
+    target = options.output
+    require_results(options, console, ("-o",), (options.scene, options.designs), ENDINGS)
     if target not in (None, "-"):
         require_table(target)
     name = name_of(options.scene)

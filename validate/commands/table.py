@@ -14,8 +14,9 @@ from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.numbers import READ_FIRST
 from pointcoord.wording import meant
+from validate.commands.pages import Command
 from validate.commands.solved import solved
-from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import load_scene, name_of, place_of_result, told_as
 from validate.commands.values import values_of
 from validate.curves.numbers import Number, asking_for, numbers_asked, numbers_of
 from validate.errors import UsageError
@@ -78,7 +79,7 @@ def _on_grid(
     axes: Mapping[Number, Array],
     read: Sequence[Number],
     name: str,
-    target: str | None,
+    target: str,
     console: Console,
 ) -> ExitStatus:
     """A row for each combination of values; status 3 where one of them is out of reach."""
@@ -124,7 +125,7 @@ def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
     return found
 
 
-def _text(columns: Columns, target: str | None, reasons: Mapping[int, str] | None = None) -> str:
+def _text(columns: Columns, target: str, reasons: Mapping[int, str] | None = None) -> str:
     """CSV, or Markdown or text with what is positive.
 
     Args:
@@ -139,7 +140,7 @@ def _text(columns: Columns, target: str | None, reasons: Mapping[int, str] | Non
         f"{'-' if one.minus else ''}{name} [{one.unit_shown}]"
         for name, one in zip(names, numbers, strict=True)
     )
-    if target is not None and target.endswith(".csv"):
+    if target.endswith(".csv"):
         lines = zip(*(each.tolist() for each in values), strict=True)
         if reasons is None:
             return csv_of(head, lines)
@@ -152,7 +153,7 @@ def _text(columns: Columns, target: str | None, reasons: Mapping[int, str] | Non
     signs |= {one.called: one.sign for one in numbers if len(one.path) > 2 and not one.is_force}
     told = [f"{number}: positive {sign}" for number, sign in signs.items() if sign]
     told += [f"forces: {LOADS.sign}"] * any(one.is_force for one in numbers)
-    if target is not None:
+    if target != "-":
         return "\n".join([table.markdown, "", *(f"- {line}" for line in told), ""])
     return text_for(sys.stdout, [table, "", *told, ""])
 
@@ -162,10 +163,7 @@ def _rounded(values: Array) -> list[str]:
     largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
     decimals = FIGURES - 1 - int(np.floor(np.log10(largest))) if largest > 0.0 else 0
     decimals = min(max(decimals, DECIMALS[0]), DECIMALS[1])
-    # Adding 0 turns a rounded -0 into 0.
-    return [f"{round(one, decimals) + 0.0:.{decimals}f}" if np.isfinite(one) else "-" for one in values]
+    return [f"{one:z.{decimals}f}" if np.isfinite(one) else "-" for one in values]
 
 
-COMMANDS = {
-    "table": Command(run, {"rows": ROWS, "conventions": ", ".join(CONVENTIONS)}),
-}
+COMMANDS = {"table": Command(run, {"rows": ROWS, "conventions": ", ".join(CONVENTIONS)})}

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator, Sequence
 
 from validate.ci.record import Record
-from validate.commands.comparing import comparing, results_of
+from validate.commands.comparing import RESULTS, comparing
 from validate.commands.usage import require_results
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
@@ -18,7 +18,7 @@ from validate.published.tables import MODELS, NOT_HELD, Column, Published, compa
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Compare every printed table."""
-    require_results(results_of(options), (), options, console)
+    require_results(options, console, RESULTS)
     record = Record([table.name for table in tables()])
     with comparing(options, console, record, "table") as compared:
         found = compare_published()

@@ -6,32 +6,31 @@ import argparse
 from pathlib import Path
 
 import pointcoord
-import validate
-from validate.commands.usage import Command
+from validate.commands.pages import Command
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 
 PAGE = "README.md"
 TOPICS = {
-    "scenes": (pointcoord, "scenes"),
-    "mechanisms": (pointcoord, "mechanisms"),
-    "effects": (pointcoord, "effects"),
-    "python": (pointcoord, ""),
-    "models": (validate, "formulations"),
-    "solvers": (validate, "solvers"),
-    "results": (validate, "measured"),
-    "tables": (validate, "published"),
-    "fit": (validate, "fitting"),
-    "tests": (validate, "testing"),
-    "ci": (validate, "ci"),
-    "report": (validate, "html"),
-    "hard": (validate, "hard"),
-    "study": (validate, "studies"),
-    "cost": (validate, "cost"),
-    "program": (validate, "commands"),
+    "scenes": "pointcoord/scenes",
+    "mechanisms": "pointcoord/mechanisms",
+    "effects": "pointcoord/effects",
+    "python": "pointcoord",
+    "models": "validate/formulations",
+    "solvers": "validate/solvers",
+    "results": "validate/measured",
+    "tables": "validate/published",
+    "fit": "validate/fitting",
+    "tests": "validate/testing",
+    "ci": "validate/ci",
+    "report": "validate/html",
+    "hard": "validate/hard",
+    "study": "validate/studies",
+    "cost": "validate/cost",
+    "program": "validate/commands",
 }
-"""Every topic: the package and the folder in it whose page it is."""
+"""Every topic: the folder whose page it is."""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -47,8 +46,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def page(topic: str) -> str:
     """The page of a topic, Markdown."""
-    package, folder = TOPICS[topic]
-    return (Path(str(package.__file__)).parent / folder / PAGE).read_text(encoding="utf-8")
+    root = Path(str(pointcoord.__file__)).parents[1]
+    return (root / TOPICS[topic] / PAGE).read_text(encoding="utf-8")
 
 
 COMMANDS = {"help": Command(run, {"topics": ", ".join(TOPICS)})}

@@ -1,65 +1,80 @@
-"""Suspected sets of coordinates in words, as plain data, and as a table."""
+"""What is said of suspected sets of coordinates: in words, as plain data, and as a table."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from textwrap import wrap
 from typing import Any
 
-from validate.extras import needed
+from validate.exit_status import ExitStatus
 from validate.fitting.fit import CONFIDENCE, Fit
 from validate.fitting.suspects import Suspects
-from validate.fitting.words import coordinates_of
-from validate.plain_text import shown
+from validate.fitting.words import COORDINATE, Said, cells_of, coordinates_of, moved
+from validate.output.table import csv_of
 
 SIZES = ("coordinate alone", "sets of two", "sets of three")
 REFUSED = 3  # sets that are named one by one
+WIDE = 100  # characters of a line
 
 
-def text_of_suspects(found: Suspects, name: str, source: str) -> str:
-    """Everything that is to be said of them."""
-    drawn = math.sqrt(found.left / found.count)
-    lines = [
-        f"{name}: which hardpoints would explain {source} (a diagnosis: nothing is corrected)",
-        f"  as drawn {drawn:.3g} times what the digits explain is left, r.m.s. of {found.count} numbers",
-    ]
-    if found.drawn:
-        return "\n".join([*lines, "  The car as drawn explains the file: there is nothing to look for."])
-    fitted = (
-        f"{'each ' if size == 0 else ''}{SIZES[size]}: {some} of {all_} fitted"
-        for size, (some, all_) in enumerate(found.tried)
+def said_of_suspects(found: Suspects, name: str, source: str) -> Said:
+    """What is said of suspects; status 3 if nothing explains the file and some fits did not end."""
+    surely = found.ended or found.explaining or found.drawn
+    return Said(
+        kind="fit-suspects",
+        what="the suspects",
+        status=ExitStatus.AGREE if surely else ExitStatus.NO_VERDICT,
+        text="\n".join(_lines(found, name, source)),
+        notes=found.notes,
+        warnings=tuple(_warnings(found)),
+        results=_data(found),
+        table=_table(found),
     )
-    lines.append(f"  {'; '.join(fitted)}; the others explain less in the linear problem")
-    if found.unseen:
-        lines.append(f"  change nothing that the file shows: {', '.join(found.unseen)}")
-    sets = found.explaining or found.nearest
-    head = "sets that explain the file" if found.explaining else "no set explains the file; nearest are"
-    where = f"where it lies {100.0 * CONFIDENCE:g} times in 100"
-    lines += ["", f"  {head}, with what each leaves in times of the digits, and its offsets, mm, {where}"]
-    width = max((len(at) for one in sets for at in one.coordinates), default=0)
-    for rank, one in enumerate(sets, 1):
-        for i, (at, moved) in enumerate(one.coordinates.items()):
-            known = f"+- {moved.deviation:.2g}   {moved.low:+z.4f} to {moved.high:+z.4f}"
-            known = "on its bound" if moved.on_bound else known
-            before = f"{rank:4}. {times(one):8.3g}" if i == 0 else " " * 14
-            lines.append(f"  {before}  {at.ljust(width)} {moved.correction:+z10.4f} {known}")
-    return "\n".join([*lines, "", f"  {verdict(found)}"])
+
+
+def _lines(found: Suspects, name: str, source: str) -> Iterator[str]:
+    yield f"{name}: which hardpoints would explain {source} (a diagnosis: nothing is corrected)"
+    drawn = f"{times(found.left, found.count):.3g} times what the digits explain is left"
+    yield f"  as drawn {drawn}, r.m.s. of {found.count} numbers"
+    if not found.drawn:
+        fitted = (
+            f"{'each ' if size == 0 else ''}{SIZES[size]}: {some} of {every} fitted"
+            for size, (some, every) in enumerate(found.tried)
+        )
+        yield f"  {'; '.join(fitted)}; the others explain less in the linear problem"
+        if found.unseen:
+            yield f"  change nothing that the file shows: {', '.join(found.unseen)}"
+        head = "sets that explain the file" if found.explaining else "no set explains the file; nearest are"
+        where = f"where it lies {100.0 * CONFIDENCE:g} times in 100"
+        yield f"\n  {head}, with what each leaves in times of the digits, and its offsets, mm, {where}"
+        sets = found.explaining or found.nearest
+        width = max((len(at) for one in sets for at in one.coordinates), default=0)
+        for rank, one in enumerate(sets, 1):
+            before = f"  {rank:4}. {left_of(one):8.3g}"
+            for at, offset in one.coordinates.items():
+                yield f"{before}  {at.ljust(width)} {moved(offset)}"
+                before = " " * len(before)
+        yield ""
+    yield from (f"  {line}" for line in wrap(verdict(found), WIDE, break_on_hyphens=False))
 
 
 def verdict(found: Suspects) -> str:
-    """In a sentence, which sets explain the file."""
+    """In a sentence, which sets explain the file; sets by their ranks."""
     if found.drawn:
-        return "The car as drawn explains the file."
+        return "The car as drawn explains the file: there is nothing to look for."
+    if (equal := len(found.equal)) > 1:
+        which = "1 and 2" if equal == 2 else f"1 to {equal}"
+        return f"Sets {which} explain it equally well: the file cannot tell them apart."
     if found.explaining:
-        best, *others = (names(one) for one in found.equal)
-        if not others:
-            verb = "explain" if len(found.explaining[0].coordinates) > 1 else "explains"
-            return f"{best} {verb} it best; the file can tell that from every other set that was fitted."
-        return f"These sets explain it equally well: {'; '.join((best, *others))}."
+        best = found.explaining[0]
+        verb = "explain" if len(best.coordinates) > 1 else "explains"
+        return f"{names(best)} {verb} it best; the file can tell that from every other set that was fitted."
     if not found.nearest:
         return "No set explains the file: none could be fitted."
     nearest = found.nearest[0]
     return (
-        f"No set explains the file; nearest is {names(nearest)}, which leaves {times(nearest):.3g} times "
+        f"No set explains the file; nearest is {names(nearest)}, which leaves {left_of(nearest):.3g} times "
         "what the digits explain: another unit, sign or definition of a column, or more is off than these."
     )
 
@@ -69,51 +84,54 @@ def names(fit: Fit) -> str:
     return " and ".join(fit.coordinates)
 
 
-def times(fit: Fit) -> float:
+def left_of(fit: Fit) -> float:
     """What a set leaves, r.m.s. in times of what the digits explain."""
-    return math.sqrt(fit.left / max(fit.freedom, 1))
+    return times(fit.left, max(fit.freedom, 1))
 
 
-def warnings_of_suspects(found: Suspects) -> tuple[str, ...]:
+def times(left: float, count: int) -> float:
+    """A sum of squares of so many numbers, r.m.s. in times of what the digits explain."""
+    return math.sqrt(left / count)
+
+
+def _warnings(found: Suspects) -> Iterator[str]:
     """What must not be overlooked."""
-    warned = []
     if not (found.ended or found.explaining):
-        warned.append("some fits did not end at a minimum: such a set might explain the file yet")
+        yield "some fits did not end at a minimum: such a set might explain the file yet"
     if found.refused:
         some = "; ".join(found.refused[:REFUSED])
-        warned.append(f"{len(found.refused)} sets could not be fitted: {some}")
-    return tuple(warned)
+        yield f"{len(found.refused)} sets could not be fitted: {some}"
 
 
-def data_of_suspects(found: Suspects, name: str, source: str) -> dict[str, Any]:
-    """Everything that is said of them."""
-    equal = {id(one) for one in found.equal}
-
-    def told(one: Fit) -> dict[str, Any]:
-        own = {"left_over_digits": times(one), "freedom": one.freedom, "converged": one.converged}
-        return {"coordinates": coordinates_of(one), "equally_well": id(one) in equal, **own}
-
+def _data(found: Suspects) -> dict[str, Any]:
+    """The sets and what became of the others."""
+    equal = len(found.equal)
     return {
-        "scene": name,
-        "data": shown(source),
         "explained_as_drawn": found.drawn,
-        "left_over_digits": math.sqrt(found.left / found.count),
-        "explaining": [told(one) for one in found.explaining],
-        "nearest": [told(one) for one in found.nearest],
+        "left_over_digits": times(found.left, found.count),
+        "explaining": [_set(one, rank < equal) for rank, one in enumerate(found.explaining)],
+        "nearest": [_set(one, False) for one in found.nearest],
         "tried": [{"fitted": some, "sets": every} for some, every in found.tried],
         "changes_nothing": list(found.unseen),
         "words": verdict(found),
-        "confidence": CONFIDENCE,
-        "notes": [shown(note) for note in found.notes],
-        "warnings": [shown(words) for words in warnings_of_suspects(found)],
     }
 
 
-def table_of_suspects(found: Suspects) -> str:
-    """A row for each coordinate of each set (CSV), the best set first."""
+def _set(fit: Fit, equally_well: bool) -> dict[str, Any]:
+    return {
+        "coordinates": coordinates_of(fit),
+        "equally_well": equally_well,
+        "left_over_digits": left_of(fit),
+        "freedom": fit.freedom,
+        "converged": fit.converged,
+    }
+
+
+def _table(found: Suspects) -> str:
+    """A row for each coordinate of each set, the best set first."""
     rows = [
-        {"set": rank, "explains": str(one in found.explaining).lower(), "left_over_digits": times(one)} | row
+        (rank, str(one in found.explaining).lower(), left_of(one), *cells_of(row))
         for rank, one in enumerate((*found.explaining, *found.nearest), 1)
         for row in coordinates_of(one)
     ]
-    return str(needed("fit", "pandas").DataFrame(rows).to_csv(index=False))
+    return csv_of(("set", "explains", "left_over_digits", *COORDINATE), rows)

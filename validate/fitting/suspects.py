@@ -2,7 +2,7 @@ r"""Which few hardpoint coordinates, moved, would explain a file: a diagnosis, t
 
 Every coordinate that the file sees is fitted alone, then sets of two and of three, until some sets of a size
 explain the file. Not all sets are fitted. With r the misfit and J its slopes, both in standard deviations
-(see `fit`), a set S leaves in the linear problem
+(see `problem`), a set S leaves in the linear problem
 
     |r|^2 - g_S . (J_S^T J_S + 1 / prior^2)^-1 g_S,    g_S = J_S^T r.
 
@@ -19,21 +19,19 @@ than what one coordinate more explains of nothing but rounding in 95 of 100 file
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtri
 
-from pointcoord import PointcoordError, Scene
-from validate.fitting.fit import BOUNDS, CONFIDENCE, PRIOR, Fit, Problem, fit_hardpoints, require_limits
-from validate.measured.mapping import Measured
-from validate.measured.tolerances import out_of_reach
+from pointcoord import PointcoordError
+from validate.fitting.fit import CONFIDENCE, Fit, Told, fit_hardpoints
+from validate.fitting.problem import Problem
 
 Array = NDArray[np.float64]
-Set = tuple[str, ...]
 
 LARGEST = 3  # coordinates of a set: a point that is misread
 LEVEL = 1000.0
@@ -49,33 +47,44 @@ class Suspects:
     """Sets of coordinates that would explain a file.
 
     Attributes:
-        explaining: those that do, by what they leave, of one size. Empty if as drawn it is explained.
-        nearest: of the sets that do not, those that leave least.
+        fits: of all sets that could be fitted, by what they leave.
         tried: by size, how many sets were fitted, and how many there are.
         unseen: coordinates whose correction within the bounds changes nothing that the file shows.
         left, count: the sum of squares of the car as drawn, and of how many numbers.
-        drawn: whether as drawn it explains the file.
+        drawn: whether as drawn it explains the file; then nothing is fitted.
         refused: sets whose designs could not be solved, and why.
-        ended: whether all other fits came to an end.
         notes: what was taken without being told, and rows that were left out.
     """
 
-    explaining: tuple[Fit, ...]
-    nearest: tuple[Fit, ...]
-    tried: tuple[tuple[int, int], ...]
-    unseen: Set
     left: float
     count: int
     drawn: bool
-    refused: tuple[str, ...]
-    ended: bool
     notes: tuple[str, ...]
+    fits: tuple[Fit, ...] = ()
+    tried: tuple[tuple[int, int], ...] = ()
+    unseen: tuple[str, ...] = ()
+    refused: tuple[str, ...] = ()
+
+    @property
+    def explaining(self) -> tuple[Fit, ...]:
+        """Sets that explain the file, all of one size."""
+        return tuple(one for one in self.fits if _explained(one))
+
+    @property
+    def nearest(self) -> tuple[Fit, ...]:
+        """Of the sets that do not, those that leave least."""
+        return tuple(one for one in self.fits if not _explained(one))[:SHOWN]
 
     @property
     def equal(self) -> tuple[Fit, ...]:
         """The best of those that explain it, and those that the file cannot tell from it."""
-        told = float(chdtri(1, 1.0 - CONFIDENCE))
-        return tuple(one for one in self.explaining if one.left - self.explaining[0].left <= told)
+        explaining, told = self.explaining, float(chdtri(1, 1.0 - CONFIDENCE))
+        return tuple(one for one in explaining if one.left - explaining[0].left <= told)
+
+    @property
+    def ended(self) -> bool:
+        """Whether all fits came to an end."""
+        return all(one.converged for one in self.fits)
 
 
 def explains(left: float, largest: float, freedom: int) -> bool:
@@ -83,60 +92,51 @@ def explains(left: float, largest: float, freedom: int) -> bool:
     return freedom > 0 and left <= float(chdtri(freedom, 1.0 / LEVEL)) and largest <= TWICE
 
 
-def suspected(
-    scene: Scene,
-    measured: Measured,
-    among: Sequence[str] = (),
-    bounds: float = BOUNDS,
-    prior: float = PRIOR,
-    accuracy: float = 0.0,
-    told: Callable[[str, int], None] = lambda words, count: None,
-) -> Suspects:
-    """The sets of coordinates that would explain a file.
+def _explained(fit: Fit) -> bool:
+    return explains(fit.left, fit.largest, fit.freedom)
+
+
+def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspects:
+    """The sets of a problem's free coordinates that would explain its file.
 
     Args:
-        among: coordinates such as lower_ball_joint.z, or points for all three; empty: of every point.
-        bounds, prior, accuracy, told: as `fit_hardpoints` takes them; told counts sets.
+        told: is called with words and how many sets were fitted.
     Raises:
-        As `fit_hardpoints`.
+        FileError: a number of the car as drawn has no slope.
     """
-    require_limits(bounds, prior, accuracy)
-    problem = Problem.of(scene, measured, among, accuracy)
-    free = problem.curves.free
-    first = problem.misfit(problem.first)
-    left, notes = float(first @ first), (*problem.curves.driven.notes, *out_of_reach(measured, problem.start))
-    drawn = explains(left, float(np.abs(first).max()), len(first))
+    free, first = problem.free, problem.misfit(problem.first)
+    left, count = float(first @ first), len(first)
+    drawn = explains(left, float(np.abs(first).max()), count)
+    found = Suspects(left, count, drawn, problem.notes)
     if drawn:
-        return Suspects((), (), (), (), left, len(first), True, (), True, notes)
+        return found
     slopes = problem.slopes(np.zeros(len(free)))
-    seen = [i for i, size in enumerate(np.linalg.norm(slopes, axis=0)) if size * bounds >= 1.0]
-    unseen = tuple(name for i, name in enumerate(free) if i not in seen)
-    found, refused, tried, every = list[Fit](), list[str](), list[tuple[int, int]](), list[Fit]()
-    for size in range(1, min(LARGEST, len(seen), len(first) - 1) + 1):
-        sets = [(i,) for i in seen] if size == 1 else _ranked(first, slopes, seen, size, prior)[:CANDIDATES]
-        for start in found[:STARTS]:
-            sets += _beside(problem, start, seen, prior)[: CANDIDATES // STARTS]
-        sets, found = list(dict.fromkeys(sets)), []
+    seen = [i for i, size in enumerate(np.linalg.norm(slopes, axis=0)) if size * problem.bounds >= 1.0]
+    fits, refused, tried, best = list[Fit](), list[str](), list[tuple[int, int]](), list[Fit]()
+    for size in range(1, min(LARGEST, len(seen), count - 1) + 1):
+        most = len(seen) if size == 1 else CANDIDATES
+        sets = _ranked(first, slopes, seen, size, problem.prior)[:most]
+        for start in best:
+            sets += _beside(problem, start, seen)[: CANDIDATES // STARTS]
+        sets, here = list(dict.fromkeys(sets)), list[Fit]()
         for chosen in sets:
             names = [free[i] for i in chosen]
-            told(f"{', '.join(names)} is fitted", len(every) + len(refused) + 1)
+            told(f"{', '.join(names)} is fitted", len(fits) + len(here) + len(refused) + 1)
             try:
-                fit = fit_hardpoints(scene, measured, names, bounds, prior, accuracy)
+                here.append(fit_hardpoints(problem.among(names)))
             except PointcoordError as error:
                 refused.append(f"{', '.join(names)}: {error}")
-                continue
-            found.append(fit)
-            every.append(fit)
         tried.append((len(sets), math.comb(len(seen), size)))
-        found.sort(key=lambda one: one.left)
-        if any(explains(one.left, one.largest, one.freedom) for one in found):
+        fits += here
+        if any(map(_explained, here)):
             break
-    explaining = tuple(one for one in found if explains(one.left, one.largest, one.freedom))
-    others = sorted((one for one in every if one not in explaining), key=lambda one: one.left)
-    ended = all(one.converged for one in every)
-    nearest = tuple(others[:SHOWN])
-    return Suspects(
-        explaining, nearest, tuple(tried), unseen, left, len(first), False, tuple(refused), ended, notes
+        best = sorted(here, key=lambda one: one.left)[:STARTS]
+    return replace(
+        found,
+        fits=tuple(sorted(fits, key=lambda one: one.left)),
+        tried=tuple(tried),
+        unseen=tuple(name for i, name in enumerate(free) if i not in seen),
+        refused=tuple(refused),
     )
 
 
@@ -151,14 +151,14 @@ def _ranked(
     return [tuple(one) for one in sets[order].tolist()]
 
 
-def _beside(problem: Problem, start: Fit, seen: Sequence[int], prior: float) -> list[tuple[int, ...]]:
+def _beside(problem: Problem, start: Fit, seen: Sequence[int]) -> list[tuple[int, ...]]:
     """A fitted set with one more coordinate, likewise, by the slopes where it ended."""
-    free = problem.curves.free
+    free = problem.free
     chosen = [free.index(name) for name in start.coordinates]
     amounts = np.zeros(len(free))
     amounts[chosen] = [one.correction for one in start.coordinates.values()]
     try:
-        misfit, slopes = problem.misfit(problem.curves.at(amounts)), problem.slopes(amounts)
+        misfit, slopes = problem.misfit(problem.numbers(problem.solved(amounts))), problem.slopes(amounts)
     except PointcoordError:
         return []
     if not np.isfinite(misfit).all():
@@ -167,4 +167,4 @@ def _beside(problem: Problem, start: Fit, seen: Sequence[int], prior: float) -> 
     # What the set explains already is taken out, so that each other one counts by what it adds.
     basis, _ = np.linalg.qr(slopes[:, chosen])
     rest = slopes - basis @ (basis.T @ slopes)
-    return [tuple(sorted((*chosen, *one))) for one in _ranked(misfit, rest, others, 1, prior)]
+    return [tuple(sorted((*chosen, *one))) for one in _ranked(misfit, rest, others, 1, problem.prior)]

@@ -1,18 +1,19 @@
-"""A fit in words, as plain data, its corrections as a table, and the corrected scene as a file."""
+"""What is said of a fit: in words, as plain data, as a table; and the corrected scene as a file."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, astuple, dataclass, fields
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
-from validate.extras import needed
-from validate.fitting.fit import CONFIDENCE, Combination, Fit
+from validate.exit_status import ExitStatus
+from validate.fitting.fit import CONFIDENCE, Combination, Coordinate, Fit
+from validate.output.table import csv_of
 from validate.plain_text import shown
 from validate.tables.units import degrees_of
 from validate.toml_written import written
@@ -24,71 +25,102 @@ SAID, SAID_EXACT = 0.2, 0.005
 # Singular values below this part of the largest are rounding: differences over 0.02 mm to either side lack
 # (0.02 / L)^2 / 6 of a slope, with lines of L = 60 mm and more.
 NOTHING = 2e-8
+COORDINATE = ("coordinate", *(one.name for one in fields(Coordinate)))
 # Times what the digits explain, from which on something else than hardpoints is likelier.
 STRANGE = 5.0
 
 
-def text_of(fit: Fit, name: str, source: str) -> str:
-    """Everything that is to be said of a fit."""
-    lines = [f"{name}: hardpoints fitted to {source}"]
+@dataclass(frozen=True)
+class Said:
+    """What is said and written of what was found.
+
+    Attributes:
+        kind: of the document. what: is found, in words.
+        results: for programs, angles in rad. table: the same of the coordinates (CSV).
+    """
+
+    kind: str
+    what: str
+    status: ExitStatus
+    text: str
+    notes: tuple[str, ...]
+    warnings: tuple[str, ...]
+    results: Mapping[str, Any]
+    table: str
+
+    def data(self, name: str, source: str) -> dict[str, Any]:
+        """The results of a scene and a file, with all that goes with them."""
+        about = {"scene": name, "data": shown(source), "confidence": CONFIDENCE}
+        said = {"notes": self.notes, "warnings": self.warnings}
+        return {**about, **self.results, **{key: [*map(shown, words)] for key, words in said.items()}}
+
+
+def said_of_fit(fit: Fit, name: str, source: str) -> Said:
+    """What is said of a fit; status 3 if least squares did not end."""
+    return Said(
+        kind="fit",
+        what="the fit",
+        status=ExitStatus.AGREE if fit.converged else ExitStatus.NO_VERDICT,
+        text="\n".join(lines_of(fit, name, source)),
+        notes=fit.notes,
+        warnings=tuple(warnings_of_fit(fit)),
+        results=data_of(fit),
+        table=table_of(fit),
+    )
+
+
+def lines_of(fit: Fit, name: str, source: str) -> Iterator[str]:
+    """A fit in words."""
+    yield f"{name}: hardpoints fitted to {source}"
     for unit, (before, after, count) in fit.rms.items():
-        lines.append(f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({count} numbers)")
-    for column in fit.columns:
-        parts = (_of(column.unit, part) for part in (column.before, column.after, column.known_to))
-        lines.append(f"    {shown(column.column)}: " + "{} before, {} after; known to {}".format(*parts))
+        yield f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({count} numbers)"
+    for one in fit.columns:
+        ends = f"{_of(one.unit, one.before)} before, {_of(one.unit, one.after)} after"
+        yield f"    {shown(one.column)}: {ends}; known to {_of(one.unit, one.known_to)}"
     more = f"{fit.factor:.3g} times what" if fit.factor > 1.0 else "no more than"
-    lines += [
-        f"  what is left is {more} the digits explain",
-        "",
-        f"  correction, mm, within +-{fit.bounds:g}, its standard deviation, and where it lies "
-        f"{100.0 * CONFIDENCE:g} times in 100",
-    ]
+    yield f"  what is left is {more} the digits explain\n"
+    where = f"where it lies {100.0 * CONFIDENCE:g} times in 100"
+    yield f"  correction, mm, within +-{fit.bounds:g}, its standard deviation, and {where}"
     width = max(len(at) for at in fit.coordinates)
-    for at, one in fit.coordinates.items():
-        known = f"+- {one.deviation:.2g}   {one.low:+z.4f} to {one.high:+z.4f}"
-        known = "  on its bound, and held there" if one.on_bound else known
-        lines.append(f"    {at.ljust(width)} {one.correction:+z10.4f} {known}")
-    lines += [
-        "",
-        "  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm",
-    ]
+    yield from (f"    {at.ljust(width)} {moved(one)}" for at, one in fit.coordinates.items())
+    yield "\n  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm"
     for combined in fit.combinations:
         known = f"{combined.deviation:.3g}" if combined.seen else "not seen"
-        lines.append(f"    {combined.singular_value:10.3g}  {known}")
+        yield f"    {combined.singular_value:10.3g}  {known}"
     if not fit.unseen:
-        return "\n".join(
-            [*lines, "", "  The data settle every combination of these coordinates: unique near here."]
-        )
+        yield "\n  The data settle every combination of these coordinates: unique near here."
+        return
     unseen = f"{len(fit.unseen)} of {len(fit.combinations)} combinations of coordinates"
-    lines += [
-        "",
-        f"  The answer is not unique: the data cannot see {unseen}. Along these the",
-        f"  correction is what the prior of {fit.prior:g} mm makes it, no finding. Any may be added:",
-    ]
-    return "\n".join([*lines, *(f"    {words}" for words in unseen_words(fit))])
+    yield f"\n  The answer is not unique: the data cannot see {unseen}. Along these the"
+    yield f"  correction is what the prior of {fit.prior:g} mm makes it, no finding. Any may be added:"
+    yield from (f"    {words}" for words in unseen_words(fit))
 
 
-def warnings_of_fit(fit: Fit) -> tuple[str, ...]:
+def moved(one: Coordinate) -> str:
+    """A correction, and how well it is known."""
+    known = f"+- {one.deviation:.2g}   {one.low:+z.4f} to {one.high:+z.4f}"
+    return f"{one.correction:+z10.4f} " + ("  on its bound, and held there" if one.on_bound else known)
+
+
+def warnings_of_fit(fit: Fit) -> Iterator[str]:
     """What must not be overlooked."""
-    found = []
     if not fit.converged:
         why = f"; a design on the way could not be solved ({fit.failures[-1]})" if fit.failures else ""
-        found.append(
+        yield (
             f"least squares did not end at a minimum, {fit.solves} designs were tried{why}; take fewer "
             "coordinates, closer bounds or a smaller prior"
         )
     if fit.factor > STRANGE:
-        found.append(
+        yield (
             f"what is left is {fit.factor:.3g} times what the digits explain: other hardpoints than "
             "these, or another unit, sign or definition of a column; pointcoord validate SCENE --data FILE "
             "says column by column how far they are apart"
         )
     if on := ", ".join(at for at, one in fit.coordinates.items() if one.on_bound):
-        found.append(f"{on} would go beyond the bounds of {fit.bounds:g} mm: less might be left")
+        yield f"{on} would go beyond the bounds of {fit.bounds:g} mm: less might be left"
     if fit.unseen:
         unseen = counted(len(fit.unseen))
-        found.append(f"the answer is not unique: the data do not see {unseen} of coordinates")
-    return tuple(found)
+        yield f"the answer is not unique: the data do not see {unseen} of coordinates"
 
 
 def counted(number: int) -> str:
@@ -132,36 +164,27 @@ def _of(unit: str, number: float) -> str:
     return f"{factor * number:.4g} {unit}"
 
 
-def data_of(fit: Fit, name: str, source: str) -> dict[str, Any]:
-    """Everything that is said of a fit; angles in rad."""
+def data_of(fit: Fit) -> dict[str, Any]:
+    """What a fit has found."""
+    rms = ("unit", "before", "after", "count")
     return {
-        "scene": name,
-        "data": shown(source),
-        "rms": [
-            dict(zip(("unit", "before", "after", "count"), (unit, *rms), strict=True))
-            for unit, rms in fit.rms.items()
-        ],
+        "rms": [dict(zip(rms, (unit, *found), strict=True)) for unit, found in fit.rms.items()],
         "columns": [asdict(one) | {"column": shown(one.column)} for one in fit.columns],
         "coordinates": coordinates_of(fit),
         "combinations": [asdict(one) for one in fit.combinations],
         "unique": not fit.unseen,
         "unseen": unseen_words(fit),
         "left_over_digits": fit.factor,
-        "confidence": CONFIDENCE,
         **{key: getattr(fit, key) for key in ("freedom", "bounds", "prior", "converged", "solves")},
         "failures": [shown(failure) for failure in fit.failures],
-        "notes": [shown(note) for note in fit.notes],
-        "warnings": [*warnings_of_fit(fit)],
     }
 
 
 def table_of(fit: Fit) -> str:
-    """A row for each coordinate (CSV); what one that is held on its bound is known to is left empty."""
-    frame = needed("fit", "pandas").DataFrame(coordinates_of(fit))
-    frame["on_bound"] = frame["on_bound"].astype(str).str.lower()
+    """A row for each coordinate."""
     names = {"deviation": "standard_deviation", "low": "low_95", "high": "high_95"}
-    lengths = {key: f"{names.get(key, key)} [mm]" for key in frame if key not in ("coordinate", "on_bound")}
-    return str(frame.rename(columns=lengths).to_csv(index=False))
+    lengths = (f"{names.get(key, key)} [mm]" for key in COORDINATE[1:-1])
+    return csv_of((COORDINATE[0], *lengths, COORDINATE[-1]), map(cells_of, coordinates_of(fit)))
 
 
 def corrected_text(fit: Fit, name: str, source: str) -> str:
@@ -180,6 +203,13 @@ def corrected_text(fit: Fit, name: str, source: str) -> str:
 
 
 def coordinates_of(fit: Fit) -> list[dict[str, Any]]:
-    """Each coordinate; nothing is known of one that is held on its bound."""
-    rows = [{"coordinate": name, **asdict(one)} for name, one in fit.coordinates.items()]
+    """Each coordinate, by the names of `COORDINATE`; nothing is known of one that is held on its bound."""
+    rows = [
+        dict(zip(COORDINATE, (name, *astuple(one)), strict=True)) for name, one in fit.coordinates.items()
+    ]
     return [r | (dict.fromkeys(("deviation", "low", "high")) if r["on_bound"] else {}) for r in rows]
+
+
+def cells_of(row: Mapping[str, Any]) -> list[Any]:
+    """A coordinate as the cells of a table; what is not known is left empty."""
+    return [str(cell).lower() if isinstance(cell, bool) else cell for cell in row.values()]

@@ -71,7 +71,7 @@ def test_a_library_that_is_not_there_is_named_with_its_extra(monkeypatch: pytest
     with pytest.raises(MissingLibrary, match=r"'polars', which is not .* 'pointcoord\[polars\]'$"):
         motion.to_dataframe("polars")
     pretend(monkeypatch)
-    with pytest.raises(ImportError, match="pandas or polars"):
+    with pytest.raises(ImportError, match="'pandas' or 'polars'"):
         motion.to_dataframe()
     with pytest.raises(UnknownName, match="did you mean 'pandas'"):
         motion.to_dataframe("panda")

@@ -18,7 +18,7 @@ from pointcoord import Samples, Scene, built_in_scenes, simulate
 from pointcoord.results.named_columns import columns
 from validate import cli
 from validate.cli import main
-from validate.commands.pages import page
+from validate.commands.pages import summary
 from validate.exit_status import MEANINGS, ORDER, ExitStatus
 from validate.output.columns import csv_lines, rows_of_motion
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
@@ -33,7 +33,7 @@ def test_every_command_has_its_help_and_the_overview_names_it(
     assert told.startswith(f"usage: pointcoord {name} ")
     assert main(["--help"]) == 0
     overview = capsys.readouterr().out
-    assert re.search(rf"^  {name} +{re.escape(page(name)[0])}$", overview, flags=re.M)
+    assert re.search(rf"^  {name} +{re.escape(summary(name))}$", overview, flags=re.M)
     # Every status is explained where a user looks.
     for status in ExitStatus:
         line = rf"^ +{status.value}  {re.escape(MEANINGS[status])}$"

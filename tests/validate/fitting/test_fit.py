@@ -3,7 +3,7 @@
 import csv
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -18,9 +18,10 @@ from pointcoord import Scene, designs_of, simulate
 from validate import paper
 from validate.cli import main
 from validate.exit_status import ExitStatus
-from validate.fitting.curves import STEP, Curves
-from validate.fitting.fit import fit_hardpoints, free_coordinates
-from validate.fitting.words import NOTHING, text_of, warnings_of_fit
+from validate.fitting.fit import Fit, fit_hardpoints
+from validate.fitting.problem import STEP, Problem
+from validate.fitting.words import NOTHING, said_of_fit, warnings_of_fit
+from validate.measured.mapping import Measured
 from validate.measured.poses import Driven
 from validate.output.document import schema_text
 from validate.paper.tables import TABLE_2, TABLE_3
@@ -29,10 +30,11 @@ Array = NDArray[np.float64]
 
 CAR = Scene.load("double-wishbone")
 ANGLES = np.linspace(1.40, 1.66, 9)
-TOLD = ("camber", "toe")
-
-
 ROWS = len(ANGLES)
+TOLD = ("camber", "toe")
+FREE = ("upper_ball_joint.z", "tie_rod_outer.z")
+# A ball joint 5 mm off where another car has it, beside coordinates that are right.
+MISREAD = {"upper_ball_joint.y": 5.0, "tie_rod_outer.z": 0.0, "lower_arm_rear.z": 0.0}
 
 
 def wheel_table(car: Scene, digits: int) -> str:
@@ -42,7 +44,8 @@ def wheel_table(car: Scene, digits: int) -> str:
     return table(columns | {f"wheel.{name} [deg]": np.degrees(wheel[name]) for name in TOLD}, digits)
 
 
-FREE = ("upper_ball_joint.z", "tie_rod_outer.z")
+def fitted(scene: Scene, data: Measured, free: Sequence[str], solves: int = 60, **limits: float) -> Fit:
+    return fit_hardpoints(Problem.of(scene, data, free, **limits), solves)
 
 
 def paper_data() -> str:
@@ -79,20 +82,18 @@ def test_the_corrected_scene_is_read_back_and_leaves_what_the_fit_said(
     again, told = Scene.load(scene), json.loads(Path(found).read_text())
     jsonschema.validate(told, json.loads(schema_text()))
     assert again.inputs == CAR.inputs
-    fit = fit_hardpoints(again, measured(text, again), FREE)
+    fit = fitted(again, measured(text, again), FREE)
     # What the file left to rounding of its inputs widens no difference: before is what was left.
     assert fit.rms["rad"][0] == pytest.approx(told["rms"][0]["after"], rel=1e-9)
     assert told["rms"][0]["before"] > 100.0 * told["rms"][0]["after"]
-    for row, own in zip(csv.DictReader(rows_of(rows)), told["coordinates"], strict=True):
+    for row, own in zip(
+        csv.DictReader(Path(rows).read_text().splitlines()), told["coordinates"], strict=True
+    ):
         point, _, axis = row["coordinate"].partition(".")
         place = again.mechanism.points[point]["xyz".index(axis)]
         assert float(row["corrected [mm]"]) == own["corrected"] == place
         assert float(row["correction [mm]"]) == own["correction"]
         assert own["low"] < own["correction"] < own["high"]
-
-
-def rows_of(file: str) -> list[str]:
-    return Path(file).read_text().splitlines()
 
 
 def test_a_wrong_command_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -117,21 +118,10 @@ def test_a_wrong_command_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert capsys.readouterr().out.startswith("coordinate,drawn [mm],")
 
 
-# A ball joint 5 mm off where another car has it, beside coordinates that are right.
-MISREAD = {"upper_ball_joint.y": 5.0, "tie_rod_outer.z": 0.0, "lower_arm_rear.z": 0.0}
-
-
-AXES = ((0, "x"), (1, "y"), (2, "z"))
-
-
-def other_car() -> Scene:
-    return designs_of(CAR, offsets=MISREAD).design(0)
-
-
 @cache
 def of_the_other_car() -> Mapping[str, tuple[str, Mapping[str, object]]]:
     """Its curves over whatever they can be over, each found another way than a fit does."""
-    car = other_car()
+    car = designs_of(CAR, offsets=MISREAD).design(0)
     angles = np.linspace(1.4, 1.65, 7)
     held = at_inputs(car, {"arm_angle": (1.4, 1.65), "rack": (0.0, 0.0)}, 7)
     travels = np.linspace(-40.0, 40.0, 7)
@@ -146,7 +136,7 @@ def of_the_other_car() -> Mapping[str, tuple[str, Mapping[str, object]]]:
         "time": (
             table(
                 {"time [s]": motion.times[some]}
-                | {f"velocity.wheel_centre.{a} [mm/s]": speed[some, i] for i, a in AXES},
+                | {f"velocity.wheel_centre.{a} [mm/s]": speed[some, i] for i, a in enumerate("xyz")},
                 3,
             ),
             {},
@@ -161,7 +151,7 @@ def degrees(over: Mapping[str, Array], wheel: Mapping[str, Array]) -> str:
 @pytest.mark.parametrize("over", ["angle", "travel", "time"])
 def test_a_hardpoint_misread_by_5_mm_is_found_to_the_noise(over: str) -> None:
     text, content = of_the_other_car()[over]
-    fit = fit_hardpoints(CAR, measured(text, CAR, **content), [*MISREAD])
+    fit = fitted(CAR, measured(text, CAR, **content), [*MISREAD])
     assert fit.converged
     for name, right in MISREAD.items():
         # Digits are spread evenly: their sums are within four deviations but for one in 10^4.
@@ -181,10 +171,9 @@ def test_what_angles_cannot_see_is_what_moves_no_angle_in_closed_form() -> None:
     numbers = at_inputs(car, inputs, 31)
     wheel = {f"wheel.{name} [deg]": np.degrees(one) for name, one in numbers["wheel"].items()}
     text = table({"input.arm_angle [rad]": np.linspace(1.1, 1.9, 31), **wheel}, 6)
-    free = free_coordinates(car, ())
-    data = measured(text, car, held={"rack": 0.0})
-    curves, zero = Curves(car, data, free), np.zeros(len(free))
-    matrix = curves.slopes(zero, np.ones(len(wheel) * 31, dtype=bool))
+    problem = Problem.of(car, measured(text, car, held={"rack": 0.0}))
+    assert problem.used.all()
+    free, matrix = problem.free, problem.slopes(np.zeros(len(problem.free)))
     points = {name: np.array(place) for name, place in car.mechanism.points.items() if f"{name}.x" in free}
     drawn = np.arccos(
         (points["lower_ball_joint"] - points["lower_arm_front"])[2]
@@ -254,10 +243,10 @@ def test_what_a_prior_knows_better_than_the_file_is_not_known_from_the_file(
     right, accuracy = np.array([3.0, -2.0, 1.0]), 5.0
     data = measured(centre_table(moved["wheel_centre"] + turns @ right), CAR)
     known = accuracy / math.sqrt(3.0) / math.sqrt(ROWS)
-    fit = fit_hardpoints(CAR, data, CENTRE, prior=times * known, accuracy=accuracy)
+    fit = fitted(CAR, data, CENTRE, prior=times * known, accuracy=accuracy)
     assert [one.deviation for one in fit.combinations] == pytest.approx([known] * 3, rel=1e-9)
     assert (not fit.unseen) is settled
-    assert ("settle every combination" in text_of(fit, "x", "y")) is settled
+    assert ("settle every combination" in said_of_fit(fit, "x", "y").text) is settled
 
 
 @pytest.mark.parametrize("noise", [0.0, 4.0])
@@ -279,7 +268,7 @@ def test_columns_weigh_as_they_are_known_and_missing_numbers_do_not(noise: float
         lines[row + 1][2 + axis] = ""
     columns = {f"position.wheel_centre.{a}": {"accuracy": x} for a, x in zip("xyz", accuracies, strict=True)}
     text = "\n".join(map(",".join, lines))
-    fit = fit_hardpoints(CAR, measured(text, CAR, columns=columns), CENTRE, prior=2.0)
+    fit = fitted(CAR, measured(text, CAR, columns=columns), CENTRE, prior=2.0)
     weights = np.where(gaps, 0.0, 3.0 / np.square(accuracies))
     by_file = np.einsum("nij,ni,nik->jk", turns, weights, turns)
     prior = np.eye(3) / 2.0**2  # Tikhonov's: a prior of 2 mm draws corrections back
@@ -303,14 +292,14 @@ def test_columns_weigh_as_they_are_known_and_missing_numbers_do_not(noise: float
 def test_a_correction_ends_on_its_bound_and_the_others_are_fitted_to_it_there() -> None:
     misread = designs_of(CAR, offsets={"upper_ball_joint.z": 5.0}).design(0)
     data = measured(wheel_table(CAR, 5), CAR)
-    fit = fit_hardpoints(misread, data, FREE, bounds=4.0)
+    fit = fitted(misread, data, FREE, bounds=4.0)
     assert fit.converged
     assert [at for at, one in fit.coordinates.items() if one.on_bound] == ["upper_ball_joint.z"]
     assert fit.coordinates["upper_ball_joint.z"].correction == pytest.approx(-4.0, abs=1e-9)
-    assert "on its bound" in text_of(fit, "x", "y")
+    assert "on its bound" in said_of_fit(fit, "x", "y").text
     assert any("beyond the bounds" in words for words in warnings_of_fit(fit))
     held = designs_of(misread, offsets={"upper_ball_joint.z": -4.0}).design(0)
-    alone = fit_hardpoints(held, data, FREE[1:], bounds=4.0)
+    alone = fitted(held, data, FREE[1:], bounds=4.0)
     other, alone = fit.coordinates[FREE[1]], alone.coordinates[FREE[1]]
     assert other.correction == pytest.approx(alone.correction, abs=1e-4)
     assert other.deviation == pytest.approx(alone.deviation, rel=1e-4)
@@ -323,7 +312,7 @@ def test_a_force_is_fitted_to_in_its_own_unit() -> None:
     content["mechanism"] |= {"wheel_radius": 270.0, "loads": {"force": [0.0, 0.0, 3000.0]}}
     scene = Scene.from_mapping(content, "loaded")
     text = "time [s],rod_force.tie_rod [N]\n0,100.0\n0.2,101.0\n0.4,103.0\n"
-    assert [*fit_hardpoints(scene, measured(text, scene), ["tie_rod_outer.z"], solves=2).rms] == ["N"]
+    assert [*fitted(scene, measured(text, scene), ["tie_rod_outer.z"], solves=2).rms] == ["N"]
 
 
 def off_by_10_deg(stop: float) -> str:
@@ -334,7 +323,7 @@ def off_by_10_deg(stop: float) -> str:
 
 def test_a_search_that_is_stopped_by_designs_that_do_not_close_says_so() -> None:
     data = measured(off_by_10_deg(1.8), CAR, held={"rack": 0.0})
-    fit = fit_hardpoints(CAR, data, ["lower_ball_joint.y"], bounds=300.0, solves=20)
+    fit = fitted(CAR, data, ["lower_ball_joint.y"], bounds=300.0, solves=20)
     assert not fit.converged
     (words,) = (words for words in warnings_of_fit(fit) if "did not end at a minimum" in words)
     assert "cannot be assembled" in words
@@ -343,13 +332,13 @@ def test_a_search_that_is_stopped_by_designs_that_do_not_close_says_so() -> None
 def test_designs_that_do_not_close_on_the_way_are_steps_too_far() -> None:
     """The best upper pivot lies where steps towards it leave the last row without a pose."""
     data = measured(off_by_10_deg(2.23), CAR, held={"rack": 0.0})
-    fit = fit_hardpoints(CAR, data, ["upper_arm_front.y"], bounds=300.0)
+    fit = fitted(CAR, data, ["upper_arm_front.y"], bounds=300.0)
     assert fit.failures
     assert "line 6" in fit.failures[0]
     assert fit.converged
-    curves = Curves(CAR, data, ("upper_arm_front.y",))
-    theirs = np.concatenate([s.values for s in data.numbers])
+    problem = Problem.of(CAR, data, ("upper_arm_front.y",))
     best = fit.coordinates["upper_arm_front.y"].correction
-    costs = [np.sum((curves.at(np.array([best + off])) - theirs) ** 2) for off in (-0.02, 0.0, 0.02)]
+    designs = (problem.solved(np.array([best + off])) for off in (-0.02, 0.0, 0.02))
+    costs = [np.sum(problem.misfit(problem.numbers(one)) ** 2) for one in designs]
     assert costs[1] < costs[0]
     assert not costs[2] < costs[1]

@@ -13,7 +13,8 @@ from curve_files import at_inputs, measured, table
 from pointcoord import Scene, designs_of
 from validate.cli import main
 from validate.exit_status import ExitStatus
-from validate.fitting.suspect_words import text_of_suspects, verdict
+from validate.fitting.problem import Problem
+from validate.fitting.suspect_words import said_of_suspects, verdict
 from validate.fitting.suspects import Suspects, explains, suspected
 from validate.output.document import schema_text
 
@@ -39,7 +40,7 @@ def curves(name: str, offsets: Mapping[str, float], turned: float = 0.0) -> str:
 
 def found_in(name: str, text: str, among: Sequence[str] = ()) -> Suspects:
     car = Scene.load(name)
-    return suspected(car, measured(text, car), among)
+    return suspected(Problem.of(car, measured(text, car), among))
 
 
 @pytest.mark.parametrize(
@@ -69,7 +70,9 @@ def test_two_ends_of_the_spin_axis_explain_angles_equally_well() -> None:
     moved = {at: one.correction for fit in found.equal for at, one in fit.coordinates.items()}
     assert {"wheel_centre.z", "wheel_axis_inner.z"} <= moved.keys()
     assert moved["wheel_centre.z"] == pytest.approx(-moved["wheel_axis_inner.z"], abs=1e-4)
-    assert "explain it equally well" in verdict(found)
+    # They are named by their ranks: the first ones.
+    assert all(one is other for one, other in zip(found.equal, found.explaining, strict=False))
+    assert f" {len(found.equal)} explain it equally well" in verdict(found)
 
 
 def test_what_no_hardpoints_explain_is_said_with_the_nearest() -> None:
@@ -85,7 +88,7 @@ def test_a_car_that_explains_its_file_has_no_suspects() -> None:
     found = found_in("double-wishbone", curves("double-wishbone", {}))
     assert found.drawn
     assert not found.tried
-    assert "nothing to look for" in text_of_suspects(found, "car", "x.csv")
+    assert "nothing to look for" in said_of_suspects(found, "car", "x.csv").text
 
 
 def test_rounding_leaves_as_much_as_explains_but_for_one_file_in_a_thousand() -> None:
@@ -102,16 +105,8 @@ def test_the_command_says_writes_and_corrects_nothing(
 ) -> None:
     data, said, rows, scene = (str(tmp_path / name) for name in ("x.csv", "x.json", "y.csv", "z.toml"))
     Path(data).write_text(curves("double-wishbone", {"upper_ball_joint.y": 3.0}))
-    words = [
-        "fit",
-        "double-wishbone",
-        "--data",
-        data,
-        "--suspects",
-        "--free",
-        "upper_ball_joint",
-        "tie_rod_outer.z",
-    ]
+    free = ("upper_ball_joint", "tie_rod_outer.z")
+    words = ["fit", "double-wishbone", "--data", data, "--suspects", "--free", *free]
     assert ExitStatus(main([*words, "-o", scene])) is ExitStatus.WRONG_INPUT
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not Path(scene).exists()

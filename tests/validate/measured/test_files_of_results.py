@@ -17,7 +17,7 @@ from validate.ci.record import Record
 from validate.cli import main
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
-from validate.fitting.curves import Curves
+from validate.fitting.problem import Problem
 from validate.measured.comparing import DataOutcome
 from validate.measured.mapping import understood
 from validate.measured.poses import Driven
@@ -274,7 +274,8 @@ def test_a_travel_counts_from_the_closed_drawing_and_the_rack_as_drawn(point: st
     content = {"rolling_radius": radius, "columns": {"bump": {"is": f"travel.{point}"}, "rack": {}}}
     measured = understood(columns_of_text("\n".join(lines), "mine.csv"), content, car, "map.toml")
     if fitted:
-        found = Curves(car, measured, ("wheel_centre.x",)).at(np.zeros(1))
+        problem = Problem.of(car, measured, ("wheel_centre.x",))
+        found = problem.numbers(problem.solved(np.zeros(1)))
     else:
         found = (
             Driven.of(car, measured)
