@@ -9,12 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from exact_states import exact_states
 from many_digits import DIGITS
-from mechanism_checks import instants, scene_inputs
 from mechanism_files import plain_scene
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 
 import absolute
+from pointcoord import Scene
+from validate.formulations.input_rates import laws_of
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
@@ -32,14 +33,10 @@ class Motion(NamedTuple):
 
 @cache
 def shipped(scene: str, count: int = 5) -> Motion:
-    """The motion of a shipped scene at some of its instants."""
-    plain, places = plain_scene(scene), instants(scene, count)
-    orders = [scene_inputs(scene, places, order) for order in range(3)]
-    laws = {
-        name: np.array([[float(order[k][name]) for order in orders] for k in range(len(places))])
-        for name in orders[0][0]
-    }
-    return Motion(plain, laws)
+    """The motion of a shipped scene at some of its instants, the first and the last among them."""
+    asked = Scene.load(scene)
+    places = np.linspace(0, len(asked.instants) - 1, count).round().astype(int)
+    return Motion(plain_scene(scene), laws_of(asked, asked.instants[places]))
 
 
 def exact(motion: Motion) -> list[tuple[dict[str, Any], ...]]:

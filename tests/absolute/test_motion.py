@@ -7,7 +7,6 @@ import pickle
 
 import numpy as np
 import pytest
-from mechanism_files import plain_scene
 from one_arm import plain
 from shipped import EPS, Array, Motion, shipped
 
@@ -55,44 +54,6 @@ def test_instants_do_not_depend_on_each_other_nor_positions_on_rates(motion: Mot
     assert not bare.angular_velocity
     assert not bare.angular_acceleration
     assert all((bare.position[name] == place).all() for name, place in whole.position.items())
-
-
-@pytest.mark.parametrize("scale", [2.0**-300, 2.0**318])
-def test_a_drawing_of_any_size_moves_alike(motion: Motion, scale: float) -> None:
-    angles = {name for name, drive in motion.plain["inputs"].items() if drive.keys() & {"angle", "turns"}}
-    described = motion.plain | {
-        "points": {name: scale * np.array(place) for name, place in motion.plain["points"].items()},
-        "wheel_radius": motion.plain["wheel_radius"] and scale * motion.plain["wheel_radius"],
-    }
-    inputs = {name: law * (1.0 if name in angles else scale) for name, law in motion.inputs.items()}
-    before, after = motion.solve(), Motion(described, inputs).solve()
-    # Without a unit; of rows that depend on each other another may be left out.
-    assert (after.condition <= 4.0 * before.condition).all()
-    for order in range(3):
-        for name, found in after.derivatives[order].items():
-            off = np.abs(found / scale - before.derivatives[order][name])
-            assert (off <= 2.0 * rounding(before, order)).all(), (order, name)
-
-
-def test_a_wheel_far_from_the_origin_is_driven_as_one_near_it() -> None:
-    """Drawn on a grid that both places hold exactly; far out a place is rounded by 2^-23 mm."""
-    contact = {"contact": ["wheel_axis_inner", "wheel_centre"]}
-    t = np.linspace(0.0, 1.0, 5)
-    laws = {
-        n: np.stack([a * t, a + 0.0 * t, 0.0 * t], axis=-1) for n, a in (("rack", 12.0), ("wheel", -40.0))
-    }
-    velocities = []
-    for far in (0.0, 2.0**30):
-        described = plain_scene("double-wishbone", ["rack"], wheel_radius=270.0)
-        described["inputs"] |= {"wheel": contact}
-        leaning = {"wheel_axis_inner": np.add(described["points"]["wheel_axis_inner"], (7.0, 0.0, 13.0))}
-        places = {n: np.round(np.array(p) * 2.0**10) for n, p in (described["points"] | leaning).items()}
-        points = {n: place / 2.0**10 + far for n, place in places.items()}
-        model = absolute.compile({**described, "points": points})
-        velocities.append(absolute.solve(model, laws).velocity)
-    for name, near in velocities[0].items():
-        # No point is faster than 100 mm/s, and no condition number above 100.
-        assert np.abs(near - velocities[1][name]).max() < 100.0 * EPS * 100.0, name
 
 
 def test_a_car_that_has_rolled_many_times_stands_as_one_that_rolled_the_rest() -> None:

@@ -53,7 +53,7 @@ def test_every_number_is_one_of_some_car() -> None:
     assert any("loads" in asked(name, True).effects for name in one_of_each())
 
 
-@pytest.mark.parametrize("name", [*one_of_each(), TURNED, FAR])
+@pytest.mark.parametrize("name", [*one_of_each(), TURNED, TURNED + FAR])
 @pytest.mark.parametrize("who", OF_EVERY_NUMBER)
 def test_every_number_of_a_car_is_right_within_what_is_claimed(name: str, who: str) -> None:
     outcome = compared(name, who, True)

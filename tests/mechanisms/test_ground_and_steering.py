@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from changed_scenes import content_of, scene_with
+from changed_scenes import scene_with
 
 from pointcoord import Scene
 from validate.comparison.compare import compare_solutions
@@ -50,13 +50,3 @@ def test_all_numbers_are_the_references_within_what_is_claimed(who: str, name: s
     assert all(row.share <= 1.0 for row in given)
     # Trees of joints give no rates of a knuckle or gradients of their own.
     assert {row.quantity for row in given} >= {"position", "velocity", "acceleration", "wheel"}
-
-
-def test_the_travel_of_a_turn_is_a_length() -> None:
-    content = steered(44.0).model_dump(exclude_none=True)
-    points = {n: [1e-3 * x for x in p] for n, p in content["mechanism"]["points"].items()}
-    metres = {"units": "m", "mechanism": content["mechanism"] | {"rack_per_turn": 0.044, "points": points}}
-    inputs = content["inputs"] | {"wheel_travel": {"constant": 0.009}}
-    found = Scene.from_mapping(content_of("double-wishbone") | content | metres | {"inputs": inputs})
-    assert found.mechanism.rack_per_turn == pytest.approx(44.0, rel=1e-15)
-    assert found.inputs["steering_wheel"] == steered(44.0).inputs["steering_wheel"]

@@ -4,30 +4,31 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
-from every_effect import NUMBERS_OF_A_CAR, asking_for_all
-from sample_cars import PAPER_STRUT, SampleCar
+from changed_scenes import scene_with
+from every_number import NUMBERS_OF_A_CAR, asking_for_all
 
 from pointcoord import Scene
 from pointcoord.linkage.mechanism import Mechanism
-from validate.cars.car import Points
-from validate.cars.paper_car import PAPER
+from pointcoord.simulation import scene_mechanism
+
+Points = Mapping[str, tuple[float, ...]]
 
 
 @pytest.fixture(scope="session")
 def table() -> Points:
     """Table 1 of the paper, mm."""
-    return dict(PAPER)
+    return Scene.load("bounce").mechanism.points
 
 
 @pytest.fixture(scope="session")
 def strut() -> Mechanism:
     """The strut of table 1, axes x rearward, y right, z up."""
-    return PAPER_STRUT.mechanism()
+    return scene_mechanism(Scene.load("bounce"))
 
 
 @pytest.fixture(scope="session")
 def make_scene() -> Callable[..., Scene]:
-    """A scene of some car; an input is a mapping as in a scene file, or the numbers of a polynomial."""
+    """A scene of some shipped car; an input is a law as in a scene file, or the numbers of a polynomial."""
 
     def make(
         arm_angle: Any = (0.8, 0.25, 0.0625),
@@ -39,29 +40,18 @@ def make_scene() -> Callable[..., Scene]:
         samples: int = 9,
         effects: tuple[str, ...] | None = None,
         tolerance: float = 1e-9,
-        car: SampleCar = PAPER_STRUT,
-        points: Mapping[str, Any] | None = None,
-        closure: str | None = None,
+        car: str = "bounce",
+        **mechanism: Any,
     ) -> Scene:
         given = {"arm_angle": arm_angle, "rack": rack} | ({} if heave is None else {"heave": heave})
-        content = {
-            "effects": effects or (),
-            "tolerance": tolerance,
-            "mechanism": {
-                "type": car.type,
-                "closure": closure or car.closure,
-                "side": car.side,
-                "points": {n: tuple(map(float, place)) for n, place in (points or car.points).items()},
-                "wheel_radius": 300.0,
-                "car": {"axle": "front", **NUMBERS_OF_A_CAR},
-            },
-            "inputs": {
-                name: law if isinstance(law, Mapping) else {"polynomial": [*map(float, law)]}
-                for name, law in given.items()
-            },
-            "time": {"start": float(start), "stop": float(stop), "samples": samples},
+        inputs = {
+            name: law if isinstance(law, Mapping) else {"polynomial": [*map(float, law)]}
+            for name, law in given.items()
         }
-        scene = Scene.from_mapping(content)
+        own = {"wheel_radius": 300.0, "car": {"axle": "front", **NUMBERS_OF_A_CAR}, **mechanism}
+        time = {"start": float(start), "stop": float(stop), "samples": samples}
+        asked = {"effects": effects or (), "tolerance": tolerance}
+        scene = scene_with(car, own, inputs=inputs, time=time, **asked)
         return scene if effects is not None else asking_for_all(scene)
 
     return make

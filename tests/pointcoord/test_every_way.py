@@ -1,49 +1,36 @@
 """However a car is solved, every number that it has is within its proven bound of the many-digit reference.
 
-Of every mechanism and closure, of a car that rolls, pitches and heaves and of that car far from the origin.
+Of every mechanism and closure, of a car that rolls, pitches and heaves far from the origin, of cars that
+stand askew in their axes, and of cars at random.
 """
 
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 import pytest
-from every_number import FAR, OF_A_TURN, asked, exact, one_of_each
+from every_number import ASKEW, FAR, OF_A_TURN, TURNED, asked, exact, one_of_each
 from numpy.typing import NDArray
+from within_bounds import Numbers, among, bounds_of, outside
 
-from pointcoord import Samples, Scene, kinematic_map, simulate, solve_poses, sweep
-from pointcoord.bounds.proof import Proof
+from pointcoord import PointcoordError, Scene, kinematic_map, simulate, solve_poses, sweep
 from pointcoord.effects.point_states import NAMED, STATES
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS
+from validate.cars.random_scenes import random_scene
+from validate.formulations.reference_solution import reference_solution
+from validate.reference import NoReferenceError
 
 Array = NDArray[np.float64]
-Numbers = Mapping[str, Mapping[str, Array]]
 Way = Callable[[Scene], tuple[Numbers, Numbers]]
-
-
-def bounds_of(proof: Proof) -> Numbers:
-    """What is proven and what is claimed before: neither may be passed."""
-    return {
-        quantity: {name: np.minimum(bound, proof.expected[quantity][name]) for name, bound in bounds.items()}
-        for quantity, bounds in proof.proven.items()
-    }
 
 
 def by_method(scene: Scene, method: str) -> tuple[Numbers, Numbers]:
     motion = simulate(scene, method)
     return motion.numbers, bounds_of(motion.proof(rates=True))
-
-
-def among(samples: Samples, which: Array) -> Samples:
-    numbers = {
-        quantity: channel.with_arrays({name: array[which] for name, array in channel.items()})
-        for quantity, channel in samples.numbers.items()
-    }
-    return Samples(samples.times[which], numbers)
 
 
 def among_close_instants(scene: Scene) -> tuple[Numbers, Numbers]:
@@ -119,10 +106,12 @@ WAYS: dict[str, Way] = {
 MAPPED = tuple(way for way in WAYS if way.endswith(" map"))
 # No way asks which mechanism it solves, so each is tried with every third one. Those of the most numbers
 # share the ways; one of them has more inputs than a map.
-COSTLY = ("axle-roll", "axle-steer", FAR)
-OTHERS = [name for name in one_of_each() if name not in COSTLY]
+COSTLY = ("axle-roll" + ASKEW, "axle-steer", TURNED + FAR)
+OTHERS = [name for name in one_of_each() if not name.startswith("axle-")]
 CASES = [(name, way) for i, name in enumerate(OTHERS) for k, way in enumerate(WAYS) if (i + k) % 3 == 0]
 CASES += [(COSTLY[k % 3 or 2 * (way in MAPPED)], way) for k, way in enumerate(WAYS)]
+# A chassis that heaves askew.
+CASES += [(f"bounce-on-a-heaving-chassis{ASKEW}", "series")]
 
 
 def given(effect: str, way: str) -> bool:
@@ -138,14 +127,29 @@ def test_every_number_is_within_its_proven_bound_of_the_reference(name: str, way
     effects = [effect for effect in scene.effects if given(effect, way)]
     numbers, bounds = WAYS[way](scene.model_copy(update={"effects": effects}))
     assert numbers["position"]
-    for quantity, channel in numbers.items():
-        for own, found in channel.items():
-            if own in OF_A_TURN:
-                continue
-            right, bound = truth[quantity][own], np.broadcast_to(bounds[quantity][own], found.shape)
-            there = np.isfinite(right)
-            assert (np.isfinite(found) == there).all(), (quantity, own)
-            # The truth is rounded to doubles.
-            allowed = bound[there] + 2.0**-53 * np.abs(right[there])
-            assert (np.abs(found - right)[there] <= allowed).all(), (quantity, own)
-            assert np.isfinite(allowed).all(), (quantity, own)
+    told = {q: {n: a for n, a in of.items() if n not in OF_A_TURN} for q, of in numbers.items()}
+    assert outside(told, truth, bounds, exact(name).accuracy.claims) == []
+
+
+@pytest.mark.parametrize("numbers", [*(range(k, k + 5) for k in range(0, 20, 5)), (238, 2490)], ids=str)
+def test_every_number_of_a_car_at_random_is_within_its_proven_bound(numbers: Sequence[int]) -> None:
+    """As far as both sides answer: turned anyhow, moved and scaled. The last ones are rings drawn askew, of
+    which the reference leaves out other rows, which differ in the last digits; of one that has moved it
+    proves nothing.
+    """
+    checked = 0
+    for number in numbers:
+        scene = random_scene(number).scene
+        few = 1 if scene.mechanism.type == "bricard" else 2
+        first, last = scene.instants[[0, few - 1]].tolist()
+        time = {"start": first, "stop": last, "samples": few}
+        try:
+            truth = reference_solution(scene.model_copy(update={"time": time}))
+            motion = simulate(scene)
+        except (PointcoordError, NoReferenceError):
+            continue
+        found = motion.part(0, few)
+        bounds = bounds_of(motion.proof_of(found, rates=True))
+        assert outside(found.numbers, truth.numbers, bounds, truth.accuracy.claims) == []
+        checked += sum(array.size for of in found.numbers.values() for array in of.values())
+    assert checked > 200

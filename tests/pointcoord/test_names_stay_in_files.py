@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from every_effect import OF_A_WHEEL
+from every_number import OF_A_WHEEL
 from table_of_effects import rows, table
 
 import pointcoord

@@ -1,4 +1,4 @@
-"""Scenes with every number that their cars can have, at few instants, and what these exactly are."""
+"""Scenes that ask for all that their cars have; at few instants with what that exactly is."""
 
 from __future__ import annotations
 
@@ -6,18 +6,41 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from every_effect import NUMBERS_OF_A_CAR
 from mechanism_files import SCENES
 
 from pointcoord import Scene
+from pointcoord.effects.car_number import BY_ROLL
+from pointcoord.effects.registry import EFFECTS
+from validate.cars.car import any_rotation
 from validate.formulations.protocol import Solution
 from validate.formulations.reference_solution import reference_solution
 
+NUMBERS_OF_A_CAR = {
+    "wheelbase": 2618.5,
+    "centre_of_gravity_height": 511.75,
+    "brake_share": 0.375,
+    "drive_share": 0.9375,
+    "spring_rate": 31.75,
+    "spring_free_length": 823.25,
+}
+"""All that a scene may say of the whole car but which of its axles this is, in few bits."""
+
+OF_A_WHEEL = tuple(
+    name
+    for name, effect in EFFECTS.items()
+    if (effect.lines or effect.derivative)
+    and not (effect.reports_states and effect.base)
+    and not getattr(effect, "of_axle", False)
+    and effect.way != BY_ROLL
+)
+"""The effects that a mechanism without parts, loads and a chassis that rolls may have, without derivatives of
+points that have only a number."""
+Content = dict[str, Any]
 SAMPLES = 4
 # Scenes beside the shipped ones: a car that rolls, pitches and heaves.
 OWN = Path(__file__).parents[1] / "mechanisms"
 TURNED = "roll-pitch-heave"
-FAR = f"{TURNED} far"
+FAR, ASKEW = " far", " askew"
 # What an axle has only where both wheels are steered to the same side.
 OF_A_TURN = {"ackermann", "ackermann_error", "turning_radius"}
 CAR = {"axle": "rear", **NUMBERS_OF_A_CAR}
@@ -25,44 +48,70 @@ LOAD = {"force": (-310.0, 1870.0, 3105.0), "moment": (4100.0, -73000.0, 21000.0)
 
 
 def load(name: str) -> Scene:
-    """A shipped scene, or one of `tests/mechanisms`, which may be drawn far from the origin."""
-    near, _, far = name.partition(" ")
-    own = OWN / f"{near}.toml"
-    scene = Scene.load(own if own.exists() else near)
-    if not far:
+    """A shipped scene, or one of `tests/mechanisms`; drawn far from the origin, or turned in its axes."""
+    plain = name.removesuffix(FAR).removesuffix(ASKEW)
+    own = OWN / f"{plain}.toml"
+    scene = Scene.load(own if own.exists() else plain)
+    if name == plain:
         return scene
-    points = {n: (x + 1e5, y, z - 3e5) for n, (x, y, z) in scene.mechanism.points.items()}
-    return scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
+    part, changed = scene.mechanism, {}
+    if name.endswith(FAR):
+        changed["points"] = {n: (x + 1e5, y, z - 3e5) for n, (x, y, z) in part.points.items()}
+    else:
+        turn = any_rotation(5)
+        changed["points"] = {n: tuple((turn @ place).tolist()) for n, place in part.points.items()}
+        changed |= {axis: tuple((turn @ getattr(part, axis)).tolist()) for axis in ("up", "right")}
+    return scene.model_copy(update={"mechanism": part.model_copy(update=changed)})
 
 
-def one_of_each() -> list[str]:
-    """The last scene of each mechanism and closure."""
-    parts = {name: load(name).mechanism for name in SCENES}
-    return [*{(part.type, part.closure): name for name, part in parts.items()}.values()]
+def one_of_each(inputs: bool = False) -> list[str]:
+    """The last scene of each mechanism and closure, and of each set of inputs if these matter."""
+    kinds: dict[object, str] = {}
+    for name in SCENES:
+        scene = load(name)
+        driven = sorted(scene.inputs) if inputs else []
+        kinds[scene.mechanism.type, scene.mechanism.closure, *driven] = name
+    return [*kinds.values()]
 
 
 @cache
 def asked(name: str, every: bool = True) -> Scene:
     """A scene at few instants; with every effect that its car has, given what they need."""
-    content: dict[str, Any] = load(name).model_dump(exclude_none=True, exclude={"points"})
+    content: Content = load(name).model_dump(exclude_none=True, exclude={"points"})
     # At the start of a scene an axle goes straight ahead, where it has no turning radius.
     time = content["time"]
     start = time["start"] + 0.05 * (time["stop"] - time["start"])
     content["time"] = {**time, "start": start, "samples": SAMPLES}
     if not every:
         return Scene.from_mapping(content, name)
-    content["mechanism"].setdefault("wheel_radius", 300.0)
-    content["mechanism"]["car"] = {**CAR, **content["mechanism"].get("car", {})}
-    topology = load(name).mechanism.topology
-    wheels = [role.removesuffix("wheel_axis") for role in topology.roles if role.endswith("wheel_axis")]
-    content["mechanism"]["loads"] = {wheel.removesuffix("."): LOAD for wheel in wheels}
-    plain = Scene.from_mapping(content | {"effects": ()}, name)
+    return Scene.from_mapping(with_everything(content, name), name)
+
+
+def with_everything(content: Content, name: str) -> Content:
+    """The content of a scene whose car has all that numbers are made of, and which asks for all of them."""
+    part, plain = content["mechanism"], content | {"effects": ()}
+    roles = Scene.from_mapping(plain, name).mechanism.topology.roles
+    wheels = [role.removesuffix("wheel_axis") for role in roles if role.endswith("wheel_axis")]
+    given = {"car": CAR | part.get("car", {}), "loads": {wheel.removesuffix("."): LOAD for wheel in wheels}}
+    plain |= {"mechanism": {"wheel_radius": 300.0, **part, **given}}
+    effects = Scene.from_mapping(plain, name).mechanism.effects
     # What loads make of one axle is enough: each rod of two wheels is a way of the car of its own.
-    effects = [one for one in plain.mechanism.effects if (name, one) != ("axle-roll", "loads")]
-    return Scene.from_mapping(content | {"effects": effects}, name)
+    few = name.startswith("axle-roll")
+    return plain | {"effects": [effect for effect in effects if not (few and effect == "loads")]}
 
 
 @cache
 def exact(name: str) -> Solution:
     """By the reference, with every effect, which the scene as it is may ask for fewer of."""
     return reference_solution(asked(name))
+
+
+def every_effect(name: str) -> Scene:
+    """A built-in scene with every effect of its car but derivatives by an input."""
+    return asking_for_all(Scene.load(name))
+
+
+def asking_for_all(scene: Scene) -> Scene:
+    """The same of any scene."""
+    had = [name for name in scene.mechanism.effects if not EFFECTS[name].way]
+    return scene.model_copy(update={"effects": had})

@@ -70,18 +70,14 @@ class Check:
         return self.deviations([position for position, *_ in states])
 
 
-def instants(scene: str, count: int) -> list[int]:
-    """Indices of some samples of a scene, the first and the last among them."""
-    return [round(k) for k in np.linspace(0, scene_file(scene)["time"]["samples"] - 1, count)]
-
-
-def scene_inputs(scene: str, indices: Sequence[int], derivative: int = 0) -> list[Inputs]:
-    """What a scene drives at some of its samples, or a time derivative of that, in many digits."""
+def scene_inputs(scene: str, count: int) -> list[Inputs]:
+    """What a scene drives at some of its samples, the first and the last among them, in many digits."""
     asked = Scene.load(scene)
+    places = np.linspace(0, len(asked.instants) - 1, count).round().astype(int)
     with mp.workdps(DIGITS):
         return [
-            {name: number(law[derivative]) for name, law in inputs_at(asked, asked.instants[k]).items()}
-            for k in indices
+            {name: number(law[0]) for name, law in inputs_at(asked, asked.instants[k]).items()}
+            for k in places
         ]
 
 
@@ -143,7 +139,7 @@ def farthest(found: Sequence[Points], right: Sequence[Points]) -> float:
 @cache
 def closed_form_check(scene: str) -> Check:
     """The points of a scene against its closed form."""
-    path = scene_inputs(scene, instants(scene, 3))
+    path = scene_inputs(scene, 3)
     right, radius = right_form(scene, path), scene_file(scene)["mechanism"].get("wheel_radius")
     return Check(scene, path, lambda found: {"position": farthest(found, right)}, {"position": EXACT}, radius)
 

@@ -23,9 +23,14 @@ def mechanism_file(name: str) -> Tables:
     return tomllib.loads((ROOT / "mechanisms" / f"{name}.toml").read_text(encoding="utf-8"))
 
 
+def scene_text(name: str) -> str:
+    """A shipped scene as it is written."""
+    return (ROOT / "scenes" / f"{name}.toml").read_text(encoding="utf-8")
+
+
 def scene_file(name: str) -> Tables:
     """The tables of a shipped scene."""
-    return tomllib.loads((ROOT / "scenes" / f"{name}.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(scene_text(name))
 
 
 def plain_scene(name: str, driven: Iterable[str] | None = None, **changes: Any) -> Plain:

@@ -12,7 +12,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from every_effect import every_effect
+from every_number import every_effect
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate

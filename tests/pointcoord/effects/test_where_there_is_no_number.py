@@ -1,4 +1,4 @@
-"""Where an effect has no number, and what loads are in other units."""
+"""Where an effect has no number."""
 
 import numpy as np
 import pytest
@@ -24,18 +24,6 @@ def test_where_there_is_no_number_a_note_says_why() -> None:
     motion = simulate(Scene.from_mapping(content))
     assert np.isfinite(motion.angle_gradient["toe_by_travel"]).tolist() == [False, True, True]
     assert any("does not travel" in note for note in motion.notes)
-
-
-def test_a_load_in_other_units_has_its_moment_in_these() -> None:
-    mm = content_of("double-wishbone", {"loads": LOAD}, effects=["loads"])
-    part = mm["mechanism"]
-    points = {n: [c / 1000.0 for c in place] for n, place in part["points"].items()}
-    lengths = {"points": points, "wheel_radius": part["wheel_radius"] / 1000.0, "car": {}}
-    moment = [m / 1000.0 for m in LOAD["moment"]]
-    metres = {**part, **lengths, "loads": {**LOAD, "moment": moment}}
-    one, other = (Scene.from_mapping(c).mechanism for c in (mm, {**mm, "units": "m", "mechanism": metres}))
-    assert other.plain(())["loads"][""]["force"] == one.plain(())["loads"][""]["force"]
-    assert other.plain(())["loads"][""]["moment"] == pytest.approx(LOAD["moment"])
 
 
 def test_a_mechanism_that_is_held_twice_has_no_forces() -> None:

@@ -1,6 +1,7 @@
 """How an input becomes a known coordinate: against many digits, with all that is said of what is lost."""
 
 from collections.abc import Callable
+from math import factorial
 from typing import Any
 
 import mpmath
@@ -88,16 +89,22 @@ def test_a_coordinate_is_right_to_its_stated_doubt(kind: str) -> None:
 
 
 @by_kind
-def test_the_series_of_a_coordinate_are_its_equations_derivatives(kind: str) -> None:
+def test_the_derivatives_of_a_coordinate_are_those_of_its_equation(kind: str) -> None:
+    """As a series, alone and among others, and enclosed in twice the working precision."""
     drive, equation, _ = CASES[kind]
     rows = laws(kind, 4)
     together = drive.series(np.array(rows), DRAWING)
-    for row, found in zip(rows, together, strict=True):
-        alone = drive.series(np.array(row), DRAWING)
+    rates = [Enclosed.of(factorial(order) * np.array(rows)[:, order]) for order in range(3)]
+    enclosed = drive.enclosed(rates, DRAWING)
+    for i, row in enumerate(rows):
         with mpmath.workdps(60):
             exact = mpmath.taylor(lambda t, row=row: equation(polynomial(row, t)), 0, 4)
+            for order, part in enumerate(enclosed):
+                found = mpf(float(part.high[i])) + mpf(float(part.low[i]))
+                assert abs(factorial(order) * exact[order] - found) <= float(part.radius[0, i]) + 1e-40
+                assert float(part.radius[0, i]) <= 1e-27
         size = float(max(map(abs, exact)))
-        for series in (alone, found):
+        for series in (drive.series(np.array(row), DRAWING), together[i]):
             # Sums of some twenty products, of terms that are larger than what is left of them.
             assert np.abs(series - np.array(exact, dtype=float)).max() <= 1e3 * U * max(size, 1.0)
 
@@ -128,20 +135,6 @@ def test_a_series_over_a_range_is_as_near_as_it_says_with_its_derivatives(kind: 
                 shares.append(worst / float(doubt[0]) if doubt[0] else 0.0)
     # What is left out depends on the middle: at some it is near the doubt.
     assert order > 4 or "turn" not in kind or max(shares) > 0.5
-
-
-@by_kind
-def test_an_exact_coordinate_has_the_rates_of_the_chain_rule(kind: str) -> None:
-    drive, equation, _ = CASES[kind]
-    rows = laws(kind, 2)
-    found = drive.enclosed([Enclosed.of(law) for law in np.array(rows).T], DRAWING)
-    with mpmath.workdps(60):
-        for i, (x, rate, second) in enumerate(rows):
-            exact = mpmath.taylor(lambda t, x=x, v=rate, a=second: equation(x + t * (v + t * a / 2)), 0, 2)
-            for true, part in zip((exact[0], exact[1], 2 * exact[2]), found, strict=True):
-                off = abs(true - mpf(float(part.high[i])) - mpf(float(part.low[i])))
-                assert off <= float(part.radius[0, i]) + 1e-40
-                assert float(part.radius[0, i]) <= 1e-27
 
 
 @pytest.mark.parametrize("angle", [-1e-3, 3.2, 90.0, 180.0, 181.0, 6.0, np.nan])

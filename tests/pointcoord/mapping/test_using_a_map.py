@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from within_bounds import differing
 
 from pointcoord import (
     InputOutOfRange,
@@ -42,11 +43,7 @@ def test_inputs_of_any_shape_give_arrays_of_that_shape(steered: KinematicMap) ->
     assert found.velocity["wheel_centre"].shape == (2, 4, 3, 3)
     assert found.wheel["camber"].shape == (2, 4, 3)
     assert not found.acceleration.computed
-    one = steered({"arm_angle": float(angles[1, 0, 2]), "rack": float(racks[3, 0])})
-    assert one.position["wheel_centre"].shape == (3,)
-    np.testing.assert_allclose(
-        one.position["wheel_centre"], found.position["wheel_centre"][1, 3, 2], rtol=0.0, atol=1e-11
-    )
+    assert steered(AT).position["wheel_centre"].shape == (3,)
     assert steered({"arm_angle": np.empty((0, 2)), "rack": 0.0}).position["wheel_centre"].shape == (0, 2, 3)
 
 
@@ -176,24 +173,18 @@ def test_what_makes_no_map_is_refused_in_words(
 def test_a_saved_map_comes_back_to_the_last_bit(steered: KinematicMap, tmp_path: Path) -> None:
     rates = {"arm_angle": 0.3, "rack": 7.0}
     inputs = {"arm_angle": np.linspace(0.9, 1.1, 60), "rack": np.linspace(10.0, -10.0, 60)}
+    gaps = kinematic_map(Scene.load("steer"), {"arm_angle": (1.0, 1.0), "rack": (-10.0, 300.0)}, halvings=3)
+    gaps.save(tmp_path / "gaps.npz")
+    assert KinematicMap.load(tmp_path / "gaps.npz").uncovered == gaps.uncovered != ()
     steered.save(tmp_path / "map.npz")
     for again in (KinematicMap.load(tmp_path / "map.npz"), pickle.loads(pickle.dumps(steered))):
         one, other = (map(inputs, rates, rates) for map in (again, steered))
-        for quantity, channel in other.numbers.items():
-            for name, array in channel.items():
-                assert np.array_equal(one.numbers[quantity][name], array)
+        assert differing(one.numbers, other.numbers) == []
         assert again.bound == steered.bound
         assert again.uncovered == steered.uncovered
         assert dict(again.ranges) == dict(steered.ranges)
         assert again.scene == steered.scene
         assert repr(again) == repr(steered)
-
-
-def test_a_map_with_gaps_keeps_them(tmp_path: Path) -> None:
-    map = kinematic_map(Scene.load("steer"), {"arm_angle": (1.0, 1.0), "rack": (-10.0, 300.0)}, halvings=3)
-    assert map.uncovered
-    map.save(tmp_path / "map.npz")
-    assert KinematicMap.load(tmp_path / "map.npz").uncovered == map.uncovered
 
 
 def _changed(path: Path, name: str, change: Callable[[Any], Any]) -> None:

@@ -2,22 +2,20 @@
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 
 from pointcoord import Scene, SceneError, simulate
 from pointcoord.results.motion import Motion
 
-ARM_SCENE = Scene.load("semi-trailing-arm").model_dump(exclude_none=True)
-
 
 def turned_arm(polynomial: list[float]) -> Motion:
-    time = {"start": 0.0, "stop": 1.0, "samples": 9}
-    effects = ["velocity", "knuckle_rates"]
-    law = {"arm_turn": {"polynomial": polynomial}}
-    return simulate(Scene.from_mapping({**ARM_SCENE, "inputs": law, "time": time, "effects": effects}))
+    parts = {"time": {"start": 0.0, "stop": 1.0, "samples": 9}, "effects": ["velocity", "knuckle_rates"]}
+    return simulate(scene_with("semi-trailing-arm", inputs={"arm_turn": {"polynomial": polynomial}}, **parts))
 
 
 def test_a_turn_is_right_handed_about_the_hinge_and_goes_round_as_often_as_it_says() -> None:
-    inner, outer = (np.array(ARM_SCENE["mechanism"]["points"][f"pivot_{end}"]) for end in ("inner", "outer"))
+    points = Scene.load("semi-trailing-arm").mechanism.points
+    inner, outer = (np.array(points[f"pivot_{end}"]) for end in ("inner", "outer"))
     hinge = (outer - inner) / np.linalg.norm(outer - inner)
     motion = turned_arm([0.0, 8.0 * np.pi])
     assert np.abs(motion.angular_velocity["arm"] - 8.0 * np.pi * hinge).max() < 1e-10

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 
 from pointcoord import (
     MechanismError,
@@ -14,6 +15,7 @@ from pointcoord import (
     solve_poses,
     sweep,
 )
+from pointcoord.mechanism.file import MECHANISMS
 
 
 def four_bar(tilt: float) -> Scene:
@@ -69,32 +71,11 @@ def test_a_violated_row_is_named_by_maps_poses_and_sweeps() -> None:
     assert reasons == ["the mechanism locks", "the drawing is refused"]
 
 
-AXLE = """
-title = "Axle"
-[parts]
-left  = { mechanism = "double_wishbone", side = "left", mirrored = true }
-right = { mechanism = "double_wishbone", side = "right" }
-[inputs]
-steer = { travel = ["left.rack", "right.rack"] }
-"""
-POINTS = Scene.load("double-wishbone").mechanism.points
-
-
-@pytest.fixture
-def axle(tmp_path: Path) -> Scene:
-    (tmp_path / "axle.toml").write_text(AXLE)
-    points = "\n".join(f"{name} = {list(place)}" for name, place in POINTS.items())
-    scene = tmp_path / "scene.toml"
-    scene.write_text(
-        f'[mechanism]\ntype = "axle.toml"\n[mechanism.points]\n{points}\n[inputs]\n'
-        "steer = { constant = 7.0 }\nleft.arm_angle = { constant = 1.49 }\n"
-        "right.arm_angle = { constant = 1.53 }\n[time]\nstart = 0.0\nstop = 0.0\nsamples = 1\n"
-    )
-    return Scene.load(scene)
-
-
-def test_a_scene_keeps_its_mechanism_when_the_file_is_gone(axle: Scene, tmp_path: Path) -> None:
-    (tmp_path / "axle.toml").unlink()
+def test_a_scene_keeps_its_mechanism_when_the_file_is_gone(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_bytes((MECHANISMS / "axle.toml").read_bytes())
+    axle = scene_with("axle-steer", {"type": str(file)})
+    file.unlink()
     assert Scene.from_mapping(axle.model_dump()) == axle
     assert Scene.from_mapping(axle.model_dump(mode="json", exclude_none=True)) == axle
     again = pickle.loads(pickle.dumps(axle))

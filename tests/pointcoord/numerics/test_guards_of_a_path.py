@@ -1,28 +1,17 @@
-"""What keeps a path and a series on their branch, on the parabola u^2 = w, whose branches meet at w = 0.
-
-There C_u = 2 u, X = 1 / (2 u) and the Lipschitz constant of X C_u is 1 / u, so everything is known by hand.
-"""
+"""What keeps a path and a series on their branch, on the parabola u^2 = w, whose branches meet at w = 0."""
 
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from parabola import AT_ONE, PARABOLA
 
-from pointcoord.numerics.branch import (
-    NEAR,
-    on_branch,
-    regular_on,
-)
+from pointcoord.numerics.branch import NEAR, on_branch, regular_on
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import Converged
-from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.solve.follower import SMALLEST_STEP, follow
 
-# y = (u, w, 0, 1)
-PARABOLA: QuadraticMap = quadratic_map(
-    [(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], unknowns=1, size=4
-)
 S = 0.5
 
 
@@ -79,7 +68,7 @@ def test_a_series_is_proven_regular_up_to_where_the_next_singular_pose_lies(
 
 def path_to(w: float) -> tuple[float, float]:
     """The share done of the path from w = 1, and u at its end."""
-    path = follow(PARABOLA, np.array([1.0, 1.0, 0.0, 1.0]), np.array([w, 0.0, 1.0]))
+    path = follow(PARABOLA, AT_ONE, np.array([w, 0.0, 1.0]))
     return float(path.done), float(path.y[0])
 
 

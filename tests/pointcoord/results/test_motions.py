@@ -1,45 +1,38 @@
-"""Motions are read by name, cannot be written, and come back whole from a pickle."""
+"""Motions are read by name, cannot be written, and come back whole from a pickle.
+
+One that stops before its scene ends is a motion with a status, and its error says the same.
+"""
 
 import pickle
 from collections.abc import Callable
-from dataclasses import fields
 
 import numpy as np
 import pytest
+from within_bounds import beyond_claims, differing
 
-from pointcoord import Motion, Samples, Scene, UnknownName, simulate
+from pointcoord import AssemblyError, Motion, PointcoordError, Samples, Scene, UnknownName, simulate
 from pointcoord.effects.point_states import NAMED, STATES
-from pointcoord.method import METHODS, Method
+from pointcoord.method import METHODS, SERIES, Method
+from pointcoord.solve.status import COMPLETE
 from validate.paper.printed import PRINTED
-
-
-def assert_same(one: Motion, other: Motion) -> None:
-    """Numbers and proofs, to the last bit, and what is said of them."""
-    assert (one.method, one.notes, one.unit, one.work) == (other.method, other.notes, other.unit, other.work)
-    assert one.closing == other.closing
-    assert_same_numbers(one, other)
-    for field in fields(one.proof()):
-        first, second = (getattr(motion.proof(), field.name) for motion in (one, other))
-        assert np.array_equal(first, second), field.name
-
-
-def assert_same_numbers(one: Samples, other: Samples) -> None:
-    assert np.array_equal(one.times, other.times)
-    assert list(one.numbers) == list(other.numbers)
-    for channel, again in zip(one.numbers.values(), other.numbers.values(), strict=True):
-        assert (channel.quantity, channel.topology) == (again.quantity, again.topology)
-        assert channel.keys() == again.keys()
-        assert all(np.array_equal(channel[name], again[name]) for name in channel)
 
 
 @pytest.mark.parametrize("method", [*METHODS.values(), PRINTED], ids=str)
 def test_a_motion_is_pickled_with_all_that_it_can_be_asked_for_and_stays_read_only(method: Method) -> None:
     motion = simulate("bounce" if method is PRINTED else "bounce-on-a-heaving-chassis", method)
     again = pickle.loads(pickle.dumps(motion))
-    assert_same(motion, again)
+    for name in ("method", "notes", "unit", "work", "closing"):
+        assert getattr(motion, name) == getattr(again, name)
+    same: list[tuple[Samples, Samples]] = [(motion, again)]
     if method.dense:
-        assert_same_numbers(motion.at([0.3, 0.1]), again.at([0.3, 0.1]))
-        assert_same_numbers(motion.at(0.3), pickle.loads(pickle.dumps(motion.at(0.3))))
+        same.append((motion.at([0.3, 0.1]), again.at([0.3, 0.1])))
+        same.append((motion.at(0.3), pickle.loads(pickle.dumps(motion.at(0.3)))))
+    for one, other in same:
+        assert np.array_equal(one.times, other.times)
+        assert differing(one.numbers, other.numbers) == []
+    proof, its = (each.proof(rates=True) for each in (motion, again))
+    assert np.array_equal(proof.pose_bound, its.pose_bound)
+    assert differing(proof.proven, its.proven) == []
     for one in (motion, again):
         for array in (one.times, *(a for channel in one.numbers.values() for a in channel.values())):
             with pytest.raises(ValueError, match="read-only"):
@@ -84,3 +77,50 @@ def test_names_are_those_of_the_car_and_unknown_ones_are_refused_with_them(
         assert set(caught.value.valid) >= set(channel)
     with pytest.raises(AttributeError, match="its quantities: position"):
         str(motion.places)
+
+
+ARM = (1.5, 1.0)  # rad: past the last angle, 152.013 degrees, at t = 1.153 s
+LAST = 1.15  # s
+
+
+def stopped_by(kind: type[PointcoordError], scene: Scene, method: Method) -> PointcoordError:
+    with pytest.raises(kind) as caught:
+        simulate(scene, method)
+    return caught.value
+
+
+@pytest.mark.parametrize("method", [*METHODS.values(), PRINTED], ids=str)
+def test_a_whole_motion_is_complete_and_a_part_of_one_says_what_stopped_it(
+    make_scene: Callable[..., Scene], method: Method
+) -> None:
+    whole = simulate(make_scene(ARM, samples=24, stop=LAST), method)
+    assert whole.status is COMPLETE
+    assert whole.status.complete
+    assert whole.status.error(whole) is None
+    error = stopped_by(AssemblyError, make_scene(ARM, samples=31, stop=1.5), method)
+    part = error.partial
+    assert isinstance(part, Motion)
+    assert not part.status.complete
+    assert str(part.status.error(part)) == str(error)
+    assert repr(part).startswith(f"<part of a Motion by {'series' if method.name == 'auto' else method}")
+    # Both scenes have an instant every 0.05 s, and up to the end they ask for the same.
+    assert np.array_equal(part.times, whole.times)
+    assert error.reduce == "arm_angle"
+    assert error.wanted["arm_angle"] > error.reached["arm_angle"]
+    # A map ends with a box, and the printed formulas at an instant.
+    short = {"map": 1e-3, "printed": 0.05}.get(method.name, np.deg2rad(1e-3))
+    assert np.deg2rad(152.013) - short <= error.reached["arm_angle"] <= np.deg2rad(152.014)
+    if method is not PRINTED:
+        assert "rise of lower_ball_joint over lower_arm_front" in error.limits
+        assert beyond_claims(part.proof(rates=True)) == []
+    again = pickle.loads(pickle.dumps(part))
+    assert str(again.status.error()) == str(error)
+
+
+def test_nothing_is_kept_where_no_instant_was_solved(
+    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # No trial step is good enough: the chain cannot leave its start.
+    monkeypatch.setattr("pointcoord.solve.taylor.on_branch", lambda *_: np.array(False))
+    error = stopped_by(PointcoordError, make_scene(ARM, samples=2, stop=LAST), SERIES)
+    assert error.partial is None

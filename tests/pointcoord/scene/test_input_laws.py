@@ -1,24 +1,21 @@
 """What a law of an input may be written as, and what it then stands for."""
 
-import tomllib
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from mechanism_files import scene_file, scene_text
 
 from pointcoord import Scene, SceneError, simulate
+from validate.toml_written import written
 
 AROUND = {"sine": {"amplitude": 0.1, "angular_frequency": 6.0}}
-
-
 HELD = {"constant": 0.0}
 
 
-def wishbone(arm_angle: Any, rack: Any = HELD) -> dict[str, Any]:
-    text = resources.files("pointcoord").joinpath("scenes", "double-wishbone.toml").read_text("utf-8")
-    return {**tomllib.loads(text), "inputs": {"arm_angle": arm_angle, "rack": rack}}
+def wishbone(arm_angle: Any) -> dict[str, Any]:
+    return {**scene_file("double-wishbone"), "inputs": {"arm_angle": arm_angle, "rack": HELD}}
 
 
 @pytest.mark.parametrize(
@@ -55,17 +52,13 @@ def test_a_scene_whose_inputs_are_constant_is_one_pose_and_needs_no_time(still: 
 
 def test_units_and_tables_in_files_hold_for_terms_too(tmp_path: Path) -> None:
     (tmp_path / "bump.csv").write_text("0,0\n0.5,0.01\n1,0.02\n2,0.01\n")
-    laws = '{ sum = [{ table = "bump.csv" }, { constant = 0.005 }] }'
-    lines = ["wheel_radius = 0.3", "[inputs]", f"wheel_travel = {laws}", "rack = { constant = 0.0 }"]
     content = wishbone({"constant": "drawn"})
-    points = (
-        f"{name} = {[c / 1000 for c in place]}" for name, place in content["mechanism"]["points"].items()
-    )
-    text = ['units = "m"', "[mechanism.points]", *points]
-    text += ["[mechanism]", 'type = "double_wishbone"', 'side = "right"', *lines, "[time]"]
-    text += ["start = 0.0", "stop = 2.0", "samples = 5"]
+    points = {n: [c / 1000 for c in place] for n, place in content["mechanism"]["points"].items()}
+    part = {"type": "double_wishbone", "side": "right", "points": points, "wheel_radius": 0.3}
+    laws = {"wheel_travel": {"sum": [{"table": "bump.csv"}, {"constant": 0.005}]}, "rack": HELD}
+    time = {"start": 0.0, "stop": 2.0, "samples": 5}
     path = tmp_path / "car.toml"
-    path.write_text("\n".join(text))
+    path.write_text("\n".join(written({"units": "m", "mechanism": part, "inputs": laws, "time": time})))
     travel = Scene.load(path).functions["wheel_travel"].series(np.array([0.0, 1.0]), 0)[:, 0]
     # mm, of one product and one sum.
     assert np.abs(travel - [5.0, 25.0]).max() <= 4 * np.spacing(25.0)
@@ -75,9 +68,8 @@ TIMES, VALUES = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], [-50.0, -32.0, -7.5, 8.25, 31.0,
 
 
 def wheel_travel(folder: Path, law: str) -> Path:
-    text = resources.files("pointcoord").joinpath("scenes", "wheel-travel.toml").read_text("utf-8")
     path = folder / "car.toml"
-    path.write_text(text.replace("{ polynomial = [-50.0, 100.0] }", law))
+    path.write_text(scene_text("wheel-travel").replace("{ polynomial = [-50.0, 100.0] }", law))
     return path
 
 

@@ -1,13 +1,12 @@
 """Every fault of a scene or mechanism file is one line with file, key, value and what is allowed."""
 
-import tomllib
 from pathlib import Path
 
 import pytest
 from changed_scenes import change, content_of, scene_with
+from mechanism_files import mechanism_file
 
 from pointcoord import PointcoordError, Scene, SceneError, simulate, standing
-from pointcoord.mechanism.file import MECHANISMS
 from validate.cli import main
 from validate.toml_written import written
 
@@ -28,9 +27,7 @@ def test_a_fault_names_the_file_the_key_and_what_is_meant(
     kind, _, mechanism = base.partition(" ")
     if mechanism:
         content = content_of("double-wishbone", {"type": source})
-        tables = change(
-            tomllib.loads((MECHANISMS / f"{mechanism}.toml").read_text(encoding="utf-8")), changes
-        )
+        tables = change(mechanism_file(mechanism), changes)
         if kind == "file":
             written_file(tmp_path / "mine.toml", tables)
         else:

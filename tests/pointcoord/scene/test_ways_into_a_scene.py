@@ -9,7 +9,6 @@ import socket
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mechanism_files import scene_text
 from pydantic import ValidationError
 
 from pointcoord import PointcoordError, Scene, SceneError, simulate
@@ -31,10 +31,6 @@ CONTENT = BOUNCE.model_dump(exclude_none=True)
 plain = settings(deadline=None)
 # Red, the start of a line, a turned line, no width at all, a line that is none, half a character, no end.
 STEERING = "\x1b[31m\r\n\u202etxt\u200b\u2028\udc80" + 10_000 * "x"
-
-
-def bounce_text() -> str:
-    return resources.files("pointcoord").joinpath("scenes", "bounce.toml").read_text("utf-8")
 
 
 @pytest.mark.parametrize("bad", [float("nan"), 0.0, "small", None, True])
@@ -127,7 +123,7 @@ def test_instants_are_the_decimal_numbers_that_a_person_would_write(
 
 @pytest.mark.parametrize("source", ["file", "stream"])
 def test_a_byte_order_mark_is_no_part_of_a_scene(tmp_path: Path, source: str) -> None:
-    text = b"\xef\xbb\xbf" + bounce_text().encode()
+    text = b"\xef\xbb\xbf" + scene_text("bounce").encode()
     path = tmp_path / "scene.toml"
     path.write_bytes(text)
     assert (Scene.load(path) if source == "file" else Scene.read(io.BytesIO(text))) == BOUNCE
@@ -236,7 +232,7 @@ def test_a_scene_does_not_change_but_comes_back_from_a_copy_a_pickle_and_its_pla
 
 def test_a_scene_is_simulated_by_its_name_or_path_too(tmp_path: Path) -> None:
     path = tmp_path / "car.toml"
-    path.write_text(resources.files("pointcoord").joinpath("scenes", "steer.toml").read_text("utf-8"))
+    path.write_text(scene_text("steer"))
     motions = [simulate(given) for given in (Scene.load("steer"), "steer", path, str(path))]
     for motion in motions[1:]:
         assert np.array_equal(motion.position["wheel_centre"], motions[0].position["wheel_centre"])

@@ -6,23 +6,25 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sample_cars import SAMPLES, SampleCar
+from sample_cars import CARS
 from scipy.spatial.transform import Rotation
 
 import pointcoord.solve.assembly
-from pointcoord import AssemblyError, MechanismError
+from pointcoord import AssemblyError, MechanismError, Scene
 from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.solve.assembly import close_drawing
 from pointcoord.solve.proven_step import Proof
 
 Array = NDArray[np.float64]
 # Only a drawing that closes says by itself on which side it stands.
-CLOSING = [car for car in SAMPLES if car.closure == "drawn"]
+CLOSING = [part for part in (Scene.load(car).mechanism for car in CARS) if part.closure == "drawn"]
+by_part = pytest.mark.parametrize("part", CLOSING, ids=lambda part: part.type)
 
 
-def steering_side(car: SampleCar, points: Mapping[str, Array]) -> int:
+def steering_side(part: MechanismPart, points: Mapping[str, Array]) -> int:
     """The exact sign of (k x inner end of the tie rod) . outer end, from the lower end of the kingpin k."""
-    lower, upper = car.topology.role("steering_axis")
+    lower, upper = part.topology.role("steering_axis")
     exact = {name: [Fraction(float(x)) for x in place] for name, place in points.items()}
     k, inner, outer = (
         [x - y for x, y in zip(exact[name], exact[lower], strict=True)]
@@ -33,10 +35,10 @@ def steering_side(car: SampleCar, points: Mapping[str, Array]) -> int:
     return (product > 0) - (product < 0)
 
 
-def drawn_with_a_dead_tie_rod(car: SampleCar, sine: float, turn: Rotation) -> dict[str, Array]:
+def drawn_with_a_dead_tie_rod(part: MechanismPart, sine: float, turn: Rotation) -> dict[str, Array]:
     """The car turned, its tie rod drawn out of the plane of kingpin and steering arm by an angle."""
-    points = {name: np.array(place, float) for name, place in car.points.items()}
-    lower, upper = (points[name] for name in car.topology.role("steering_axis"))
+    points = {name: np.array(place, float) for name, place in part.points.items()}
+    lower, upper = (points[name] for name in part.topology.role("steering_axis"))
     outer = points["tie_rod_outer"]
     normal = np.cross(upper - lower, outer - lower)
     normal /= np.linalg.norm(normal)
@@ -47,18 +49,14 @@ def drawn_with_a_dead_tie_rod(car: SampleCar, sine: float, turn: Rotation) -> di
     return {name: turn.apply(place) for name, place in points.items()}
 
 
-def plain(vectors: Mapping[str, Array]) -> dict[str, tuple[float, ...]]:
-    return {name: tuple(vector.tolist()) for name, vector in vectors.items()}
-
-
-def sides(car: SampleCar, sine: float, count: int) -> list[bool]:
+def sides(part: MechanismPart, sine: float, count: int) -> list[bool]:
     """Of some turned cars, whether the closed drawing is on the side of the drawing; none that is refused."""
     found = []
     for turn in Rotation.random(count, rng=np.random.default_rng(1)):
-        points = drawn_with_a_dead_tie_rod(car, sine, turn)
+        points = drawn_with_a_dead_tie_rod(part, sine, turn)
         axes = {"up": turn.apply([0.0, 0.0, 1.0]), "right": turn.apply([0.0, 1.0, 0.0])}
         try:
-            mechanism = build_mechanism(car.topology, plain(points), plain(axes))
+            mechanism = build_mechanism(part.topology, points, axes)
             closed = close_drawing(mechanism).y
         except (AssemblyError, MechanismError):
             continue
@@ -66,22 +64,22 @@ def sides(car: SampleCar, sine: float, count: int) -> list[bool]:
             n: closed[list(mechanism.layout.vector(n))]
             for n in (*mechanism.topology.chassis, *mechanism.topology.moving)
         }
-        found.append(steering_side(car, places) == steering_side(car, points))
+        found.append(steering_side(part, places) == steering_side(part, points))
     return found
 
 
-@pytest.mark.parametrize("car", CLOSING, ids=lambda car: car.name)
+@by_part
 @pytest.mark.parametrize("power", [-12, -9, -8, -6])
 def test_a_drawing_with_a_tie_rod_all_but_at_its_dead_point_keeps_its_side(
-    car: SampleCar, power: int
+    part: MechanismPart, power: int
 ) -> None:
     for sine in (5.0 * 10.0**power, -5.0 * 10.0**power):
-        assert all(sides(car, sine, 6))
+        assert all(sides(part, sine, 6))
 
 
-@pytest.mark.parametrize("car", CLOSING, ids=lambda car: car.name)
-def test_one_that_rounding_cannot_put_on_the_fold_is_closed(car: SampleCar) -> None:
-    assert len(sides(car, 1e-5, 20)) == 20
+@by_part
+def test_one_that_rounding_cannot_put_on_the_fold_is_closed(part: MechanismPart) -> None:
+    assert len(sides(part, 1e-5, 20)) == 20
 
 
 def test_without_what_guards_the_end_of_a_step_a_side_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,5 +88,5 @@ def test_without_what_guards_the_end_of_a_step_a_side_is_lost(monkeypatch: pytes
     )
     monkeypatch.setattr(Proof, "within", lambda self, apart: np.ones(apart.shape[:-1], bool))
     assert not all(
-        side for car in CLOSING for power in (-9, -8) for side in sides(car, 5.0 * 10.0**power, 40)
+        side for part in CLOSING for power in (-9, -8) for side in sides(part, 5.0 * 10.0**power, 40)
     )

@@ -6,13 +6,14 @@ from functools import partial
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sample_cars import SampleCar, by_car
+from parabola import AT_ONE, PARABOLA
+from sample_cars import by_car
 
 from pointcoord import AssemblyError, Scene, simulate
+from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import MAP, METHODS, NEWTON, Method
 from pointcoord.numerics.linear import factorise
-from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.simulation import pose_tolerance, prepare_task
 from pointcoord.solve import pointwise
 from pointcoord.solve.assembly import Pose, assemble
@@ -23,9 +24,6 @@ from pointcoord.time_functions import Sine, TimeFunction
 
 solve_by_chord = partial(solve_instants, chord=True)
 SWING: dict[str, TimeFunction] = {"arm_angle": Sine(0.2, 2.0, 0.0, 1.5), "rack": Sine(10.0, 3.0)}
-# u^2 = w in y = (u, w, 0, 1), at u = w = 1.
-PARABOLA = quadratic_map([(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], unknowns=1, size=4)
-AT_ONE = np.array([1.0, 1.0, 0.0, 1.0])
 
 
 def start_of(mechanism: Mechanism, functions: dict[str, TimeFunction]) -> Pose:
@@ -131,9 +129,9 @@ def test_no_pose_is_reached_across_poses_that_do_not_exist(
 
 @by_car
 def test_another_assembly_is_not_taken_for_the_next_pose(
-    make_scene: Make, car: SampleCar, monkeypatch: pytest.MonkeyPatch
+    make_scene: Make, car: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    offset = car.drawn_inputs["arm_angle"]
+    offset = drawn_inputs(Scene.load(car))["arm_angle"]
     scene = make_scene([offset, 0.1], [0.0, 5.0], car=car, samples=12, stop=1.0, effects=())
     plain, allowed, unit = plainly(scene)
     system = prepare_task(scene, NEWTON).readout.mechanism.map

@@ -7,25 +7,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from sample_cars import SAMPLES
+from parabola import AT_ONE, PARABOLA
+from sample_cars import CARS
 
+from pointcoord import Scene
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
-from pointcoord.numerics.quadratic import Product, quadratic_map
+from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
 from pointcoord.solve.follower import follow
 from pointcoord.solve.proven_step import ROOM, Proof, prove
 
 Array = NDArray[np.float64]
-MECHANISMS = {car.name: car.mechanism() for car in SAMPLES}
+MECHANISMS = {car: scene_mechanism(Scene.load(car)) for car in CARS}
 by_mechanism = pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS.keys())
 few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 4))
-# u^2 = w in y = (u, w, 0, 1): the branches meet at w = 0, and along w = 1 - s the series of u is that of
-# sqrt(1 - s).
-PARABOLA = quadratic_map([(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], unknowns=1, size=4)
-AT_ONE = np.array([1.0, 1.0, 0.0, 1.0])
 
 
 def known_at(mechanism: Mechanism, angle: float, rack: float) -> Array:
@@ -53,7 +51,7 @@ def proven(mechanism: Mechanism, pose: Pose, target: Array) -> tuple[Array, Proo
 @given(
     angle=st.floats(0.5, 2.4),
     rack=st.floats(-80.0, 100.0),
-    off=st.sampled_from([0.0, 1e-6, 1e-3]),
+    off=st.sampled_from([0.0, 1e-6, 1e-3, 1e-2]),
     seed=st.integers(0, 2**32 - 1),
 )
 def test_what_is_proven_of_a_step_holds_all_along_it(
@@ -68,30 +66,17 @@ def test_what_is_proven_of_a_step_holds_all_along_it(
     places = shares[:, None] ** np.arange(len(series)) @ series
     signs = np.linalg.slogdet(system.jacobian(places))[0]
     assert (signs == signs[0]).all()
-    reached = newton_refine(system, places, (1.0 - shares)[:, None] * system.residual(y))
+    lacking = (1.0 - shares)[:, None] * system.residual(y)
+    reached = newton_refine(system, places, lacking)
     assert reached.converged.all()
     assert proof.within(np.abs(reached.y - places)[-1:, :n]).all()
-
-
-@by_mechanism
-def test_without_one_of_its_terms_a_proof_lies(mechanism: Mechanism) -> None:
-    """eta and z of a step, by their definition from the series alone, are what the proof finds."""
-    system, n, rng = mechanism.map, mechanism.layout.unknowns, np.random.default_rng(3)
-    start = at(mechanism, 1.3, 10.0)
-    for off in (0.0, 1e-5, 1e-2):
-        y = start.y.copy()
-        y[:n] += off * rng.uniform(-1.0, 1.0, n)
-        series, proof = proven(mechanism, replace(start, y=y), known_at(mechanism, 1.9, -30.0))
-        h, g = float(proof.length[0]), proof.weights[0]
-        inverse = np.linalg.inv(system.jacobian(y))
-        omega = float(system.lipschitz(inverse, g))
-        for s in np.linspace(0.0, h, 9):
-            place = s ** np.arange(len(series)) @ series
-            lacking = system.residual(place) - (1.0 - s) * system.residual(y)
-            eta = (np.abs(inverse @ lacking) / g).max()
-            z = (np.abs(np.eye(n) - inverse @ system.jacobian(place)) @ g / g).max()
-            assert z + np.sqrt(2.0 * omega * eta) <= ROOM + 1e-6
-            assert float(proof.alone[0]) <= (1.0 - z) / omega * (1.0 + 1e-6)
+    # eta and z of a step, by their definition from the series alone, are what the proof finds.
+    g, inverse = proof.weights[0], np.linalg.inv(system.jacobian(y))
+    omega = float(system.lipschitz(inverse, g))
+    eta = (np.abs((system.residual(places) - lacking) @ inverse.T) / g).max(axis=-1)
+    z = (np.abs(np.eye(n) - inverse @ system.jacobian(places)) @ g / g).max(axis=-1)
+    assert (z + np.sqrt(2.0 * omega * eta) <= ROOM + 1e-6).all()
+    assert float(proof.alone[0]) <= (1.0 - z.max()) / omega * (1.0 + 1e-6)
 
 
 @pytest.mark.parametrize("w", [-1.0, -1e-3, 0.0, 1e-9])

@@ -1,24 +1,22 @@
 """Derivatives by hardpoints: laws that hold of any car, cars drawn anew, the reference, and another model."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
-from every_effect import NUMBERS_OF_A_CAR
+from every_number import asked, one_of_each
 from random_mechanisms import random_mechanism
 
 from pointcoord import Scene, SweepError, UnknownName, sensitivity, simulate, sweep
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.results.samples import Channel
-from pointcoord.scene.scene_file import LoadPart, built_in_scenes
 from pointcoord.sweeping.hardpoint_slopes import ByHardpoints
 from validate.formulations.reference_solution import inputs_at
 from validate.reference import Design, instants_of
 
 TIME = {"start": 0.0, "stop": 0.4, "samples": 3}
-LOAD = LoadPart(force=(-310.0, 1870.0, 3105.0), moment=(1e4, -2e4, 3e4))
 # (-f(-3h) + 9 f(-2h) - 45 f(-h) + 45 f(h) - 9 f(2h) + f(3h)) / 60 h is exact up to degree 6 (Fornberg, 1988).
 PLACES = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
@@ -35,26 +33,11 @@ def car(name: str, *effects: str) -> Scene:
     return Scene.load(name).model_copy(update={"time": TIME, "effects": effects or ("wheel_angles", "toe")})
 
 
-def one_of_each() -> Iterator[str]:
-    """Built-in scenes, one for each mechanism, closure and set of inputs, the last as it steers."""
-    kinds: dict[object, str] = {}
-    for name in built_in_scenes():
-        scene = Scene.load(name)
-        kinds[scene.mechanism.type, scene.mechanism.closure, *sorted(scene.inputs)] = name
-    yield from kinds.values()
-
-
-def with_everything(scene: Scene) -> Scene:
-    """A scene with loads and car data, at two instants, with every effect that its car has."""
-    part = scene.mechanism
-    wheels = [*part.topology.sides] or [""] * bool(part.topology.wheel_axis and part.topology.bodies)
-    given = {"loads": dict.fromkeys(wheels, LOAD), "car": {"axle": "front", **NUMBERS_OF_A_CAR}}
-    part = part.model_copy(update={**given, "wheel_radius": part.wheel_radius or 300.0})
-    time = {"start": scene.time.start, "stop": scene.time.stop, "samples": 2}
+def at_two_instants(name: str) -> Scene:
+    """A scene with every number that its car can have, at two instants."""
+    scene = asked(name)
     # Designs by themselves share no series, and truncate it by what a tolerance allows.
-    more = {"mechanism": part, "time": time, "tolerance": 1e-12, "effects": ()}
-    scene = scene.model_copy(update=more)
-    return scene.model_copy(update={"effects": scene.mechanism.effects})
+    return scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 2}), "tolerance": 1e-12})
 
 
 def every_number(channels: Mapping[str, Channel]) -> dict[str, tuple[str, str, Any]]:
@@ -105,9 +88,9 @@ def hold_to_differences(scene: Scene, *coordinates: str) -> None:
     assert np.mean(sharp) > 0.9, np.mean(sharp)
 
 
-@pytest.mark.parametrize("name", [*one_of_each()])
+@pytest.mark.parametrize("name", one_of_each(inputs=True))
 def test_every_number_of_every_mechanism_changes_as_that_of_cars_drawn_anew(name: str) -> None:
-    hold_to_differences(with_everything(Scene.load(name)))
+    hold_to_differences(at_two_instants(name))
 
 
 @pytest.mark.parametrize("number", [16, 28, 29, 35, 43, 50])
@@ -142,8 +125,7 @@ def test_so_they_do_where_a_steering_wheel_turns_and_a_rack_that_is_drawn_at_the
 def test_derivatives_are_those_of_the_many_digit_reference(
     name: str, coordinate: str, numbers: tuple[str, ...]
 ) -> None:
-    scene = with_everything(Scene.load(name))
-    scene = scene.model_copy(update={"time": TIME})
+    scene = at_two_instants(name).model_copy(update={"time": TIME})
     found, every = sensitivity(scene, numbers, [coordinate]), sensitivity(scene, numbers)
     point, _, axis = coordinate.rpartition(".")
     plain, step = scene.mechanism.plain(tuple(scene.inputs)), Fraction(1, 10**20)
@@ -182,7 +164,7 @@ def test_however_a_motion_was_solved_its_derivatives_are_the_same(method: str) -
 def test_instants_and_coordinates_that_are_asked_for_beside_change_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    scene = with_everything(Scene.load("wheel-travel"))
+    scene = at_two_instants("wheel-travel")
     scene = scene.model_copy(update={"time": TIME, "effects": ("loads", "velocity")})
     numbers = ["rod_force.tie_rod", "velocity.wheel_centre.z"]
     every = sensitivity(scene, numbers)

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_files import mechanism_file, plain, plain_scene
+from mechanism_files import plain_scene, scene_file
 from numpy.typing import NDArray
-from sample_cars import GENERAL_STRUT, PAPER_STRUT, SampleCar
 
+from pointcoord import Scene
+from pointcoord.drawing_stands import drawn_inputs
 from validate.errors import NoAnswer
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
@@ -21,10 +22,10 @@ from validate.peers.motion import Poses
 Array = NDArray[np.float64]
 
 
-def plain_car(car: SampleCar, **points: Any) -> dict[str, Any]:
-    """The flat description of a sample car, or of one with other points."""
-    part = {"points": {**car.points, **points}, "side": car.side, "closure": car.closure}
-    return plain(mechanism_file(car.type), part, ("arm_angle", "rack"))
+def plain_car(scene: str, **points: Any) -> dict[str, Any]:
+    """The flat description of a shipped car by arm angle and rack, or of one with other points."""
+    drawn = scene_file(scene)["mechanism"]["points"]
+    return plain_scene(scene, ("arm_angle", "rack"), points={**drawn, **points})
 
 
 def held(values: Array) -> Array:
@@ -56,7 +57,7 @@ def test_a_way_that_is_blocked_between_two_poses_is_refused_and_the_way_round_is
 
     def reached(*places: tuple[float, float]) -> Poses:
         angles, racks = np.array(places).T
-        return solved(plain_car(PAPER_STRUT), {"arm_angle": held(np.deg2rad(angles)), "rack": held(racks)})
+        return solved(plain_car("bounce"), {"arm_angle": held(np.deg2rad(angles)), "rack": held(racks)})
 
     assert len(reached((37.0, -0.1), (37.0, 0.1), (34.0, 0.1), (34.0, -0.1)).inputs) == 4
     with pytest.raises(NoAnswer, match="hold each other") as caught:
@@ -68,7 +69,7 @@ def test_a_way_that_is_blocked_between_two_poses_is_refused_and_the_way_round_is
 
 
 def test_inputs_that_are_too_many_or_too_few_are_refused() -> None:
-    mechanism = plain_car(PAPER_STRUT)
+    mechanism = plain_car("bounce")
     mechanism["inputs"]["again"] = dict(mechanism["inputs"]["arm_angle"])
     with pytest.raises(NoAnswer, match="does not move the mechanism beside the others"):
         InPinocchio(linkage_of(mechanism)).closed(1e-12)
@@ -79,13 +80,13 @@ def test_inputs_that_are_too_many_or_too_few_are_refused() -> None:
 
 @pytest.mark.parametrize("wrong", [np.nan, None])
 def test_an_input_that_is_no_number_or_missing_is_refused_with_its_instant(wrong: float | None) -> None:
-    laws = {name: held(np.full(9, value)) for name, value in PAPER_STRUT.drawn_inputs.items()}
+    laws = {name: held(np.full(9, value)) for name, value in drawn_inputs(Scene.load("bounce")).items()}
     if wrong is None:
         del laws["rack"]
     else:
         laws["rack"][7, 0] = wrong
     with pytest.raises(NoAnswer, match="rack") as caught:
-        linkage_of(plain_car(PAPER_STRUT)).inputs(laws)
+        linkage_of(plain_car("bounce")).inputs(laws)
     assert caught.value.instant == (None if wrong is None else 7)
 
 
@@ -131,16 +132,16 @@ def test_a_way_that_turns_back_before_a_fold_is_followed_back(program_of: Any) -
 
 
 def test_what_makes_no_mechanism_is_told_by_name() -> None:
-    strut = GENERAL_STRUT
+    strut = scene_file("off-axis-strut")["mechanism"]["points"]
     with pytest.raises(NoAnswer, match="lower_arm_front is where lower_arm_rear is"):
-        linkage_of(plain_car(strut, lower_arm_rear=strut.points["lower_arm_front"]))
+        linkage_of(plain_car("off-axis-strut", lower_arm_rear=strut["lower_arm_front"]))
     with pytest.raises(NoAnswer, match="strut_lower is where strut_top is"):
-        linkage_of(plain_car(strut, strut_lower=strut.points["strut_top"]))
+        linkage_of(plain_car("off-axis-strut", strut_lower=strut["strut_top"]))
 
 
 @pytest.mark.parametrize("program_of", [InMujoco, InExudyn, InPinocchio])
 def test_an_assembly_on_another_side_than_the_drawings_is_refused(program_of: Any) -> None:
-    linkage = linkage_of(plain_car(GENERAL_STRUT))
+    linkage = linkage_of(plain_car("off-axis-strut"))
     driven = linkage.drawn_inputs[None]
     engine = program_of(linkage)
     home = engine.closed(1e-12)
