@@ -2,7 +2,7 @@
 
     python tests/figures.py NAME [NAME ...]
 
-Names: agreement, hard, assemblies, random, bounds, cost, effects, speed, struts, tables.
+Names: agreement, hard, assemblies, random, bounds, cost, effects, sizes, speed, struts, tables.
 
 A figure stands in its page between two comments, `<!-- figure NAME -->` and `<!-- end -->`; what is between
 them is replaced, and nothing else is. Long ones (see `FIGURES`) take as long as their command.
@@ -127,6 +127,7 @@ FIGURES = {
     "tables": Figure("validate/published/README.md", "pointcoord validate --tables", _from(r"")),
     "struts": Figure("validate/formulations/README.md", "tests.support.badly_drawn_struts", _as_printed),
     "effects": Figure("pointcoord/effects/README.md", "tests.support.table_of_effects", _as_printed),
+    "sizes": Figure(".github/CONTRIBUTING.md", "tests.support.table_of_sizes", _as_printed),
 }
 
 
