@@ -1,6 +1,6 @@
 """How many lines of Python each room has, and what they are, as a table in Markdown.
 
-    python -m tests.support.table_of_sizes
+python -m tests.support.table_of_sizes
 """
 
 from __future__ import annotations
