@@ -61,7 +61,7 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
         },
         "scenes.py": {"knuckle"},
         "report.py": {"wheel_centre"},
-        "paper.py": {"wheel_centre"},
+        "printed.py": {"wheel_centre"},
         "sweep.py": {"wheel_centre"},
         "written_scene.py": {"wheel_centre"},
         "one_wheel.py": {"wheel_centre", "camber", "toe", "axle"},
