@@ -83,9 +83,8 @@ def _frames(one: Drawn, model: Solution, known: Mapping[str, Array], shown: Arra
     Points of the chassis are given to every model: they are where the chassis is moved to.
     """
     there, chassis = np.isin(one.motion.times, model.times), one.scene.mechanism.topology.chassis
-    places = {name: one.motion.numbers[PLACE][name][there] for name in chassis} | {
-        **model.numbers.get(PLACE, {})
-    }
+    places = {name: one.motion.numbers[PLACE][name][there] for name in chassis}
+    places |= model.numbers.get(PLACE, {})
     rows = np.full((len(shown), len(known), 3), np.nan)
     given = np.isin(shown, model.times)
     at = np.searchsorted(model.times, shown[given])
