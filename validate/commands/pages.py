@@ -33,7 +33,7 @@ def page(name: str, words: Mapping[str, object]) -> tuple[str, str]:
     names_and_parts = re.split(r"\s*^\[(\w+)\]\n", _read("shared").rstrip(), flags=re.M)[1:]
     parts = {**dict(zip(names_and_parts[::2], names_and_parts[1::2], strict=True)), **words}
     text = _read(name)
-    while "$" in text:
+    while re.search(r"\$\w", text):
         text = re.sub(r"\$(\w+)", lambda found: str(parts[found[1]]), text)
     head, _, options = text.partition("\noptions:\n")
     return head.partition("\n")[2].strip(), options.strip()
