@@ -270,8 +270,10 @@ class OneWheel:
         camber, toe, said = self.choices.camber, self.choices.toe, self.axle.spin_axis
         if camber is None and toe is None:
             return said
-        if said is not None:
-            raise self.refuse("says where its spin axis points", "neither --camber nor --toe")
+        inner = self.topology.wheel_axis[0]
+        if said is not None or inner in self.chosen.places:
+            by = f" by {inner}" if said is None else ""
+            raise self.refuse(f"says where its spin axis points{by}", "neither --camber nor --toe")
         if camber is None or toe is None or not max(abs(camber), abs(toe)) < 45.0:
             allowed = "both --camber and --toe, each of less than 45 deg, or neither"
             raise self.refuse(f"has --camber {camber} and --toe {toe} said of it", allowed)

@@ -222,6 +222,7 @@ NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle"
         (lotus_report(), {"part": "rear"}, "has no points of axle rear"),
         (NO_SPINDLE, {}, "lacks wheel_axis_inner.* --camber and --toe will do"),
         (NO_SPINDLE, {"toe": 1.0}, "has --camber None and --toe 1.0"),
+        (table(), {"camber": 1.0, "toe": 0.0}, "spin axis points by wheel_axis_inner; .*neither --camber"),
         (lotus_report().replace("257.00     69.00", "257.00", 1), {}, "line 9: has 2 numbers"),
         (
             lotus_report().replace("    69.00", "    6q.00", 1),
