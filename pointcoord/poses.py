@@ -22,7 +22,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.freedoms import locked
 from pointcoord.numerics.rounding import EPS
 from pointcoord.patches.domain import Domain, widened
-from pointcoord.patches.flood import Limits, flood_from_drawing
+from pointcoord.patches.flood import Limits, flood, start_at_drawing
 from pointcoord.patches.lookup import Marked
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.patches.way_map import HALVINGS, MOST
@@ -122,7 +122,7 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     readout = Readout(mechanism, plan, chassis, scene.mechanism.axes)
     count = int(np.prod(shape))
     rows, bounds = readout.room(count), np.full((2, count), np.inf)
-    places = readout.places(rows)
+    states = readout.states(rows)
     # The first rows of a table are those of the points that move.
     moving = rows[: 3 * len(moving_points(topology))]
     moving[...] = np.nan
@@ -137,13 +137,13 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     for low in range(0, len(rest), PATHS):
         failures |= _by_paths(mechanism, closed, driving, rest[low : low + PATHS], moving, bounds, y)
 
-    farthest = np.max([np.sqrt((place**2).sum(axis=-2)) for place in places.values()], axis=0)
+    farthest = np.max([np.sqrt((place**2).sum(axis=-1)) for place in states[0].values()], axis=0)
     laws = {name: [value] for name, value in flat.items() if name in chassis.directions}
-    readout.complete(laws, readout.by_derivative(places), rows, y)
+    readout.complete(laws, states, rows, y)
     rows[:, ~np.isfinite(bounds[0])] = np.nan
     rounded, spread = _rounded(chassis, laws, farthest, float(np.abs(mechanism.origin).max()))
     solved, carried = ((spread * bound + rounded).reshape(shape) for bound in bounds)
-    numbers = readout.named(np.zeros(count), rows).shaped(shape).numbers
+    numbers = readout.table.named(np.zeros(count), rows).shaped(shape).numbers
     return SolvedPoses(numbers, solved, carried, dict(sorted(failures.items())))
 
 
@@ -165,18 +165,18 @@ def _by_patches(
         return nobody
     domain = Domain(mechanism, ranges, HALVINGS[free])
     values = np.stack([inputs[name] for name in domain.free], axis=-1)
-    order, wanted = domain.order_for(tolerance), Marked.touched_by(domain, values, values)
+    limits = Limits(tolerance, most=MOST, effort=count // WORTH)
     try:
-        cover = flood_from_drawing(domain, order, Limits(tolerance), closed, MOST, wanted, count // WORTH)
+        start = start_at_drawing(domain, closed)
+        patches = flood(domain, limits, start, Marked.touched_by(domain, values, values)).patches
     except (AssemblyError, InputOutOfRange):
         # A path of its own says which pose it is.
         return nobody
-    patches = cover.patches
     number = patches.lookup.at(values)
     covered = np.flatnonzero(number >= 0)
     if covered.size:
         number, off = number[covered], patches.off.value
-        (rows[:, covered],) = patches.sums([patches.coefficients], [values[covered]], number)
+        (rows[:, covered],) = patches.sums(patches.coefficients, [values[covered]], number)
         solved = 3 * len(mechanism.topology.moving)
         origin = EPS * float(np.abs(mechanism.origin).max())
         bounds[0, covered] = off[:, :solved].max(axis=-1)[number] + origin

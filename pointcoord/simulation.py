@@ -27,7 +27,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.by_series import AtInstants, ByChain
 from pointcoord.results.closing import ALLOWED, Closing, closing
-from pointcoord.results.motion import Motion
+from pointcoord.results.motion import Motion, read
 from pointcoord.results.readout import Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
@@ -342,7 +342,7 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
     times = task.instants[task.instants <= solved.stop]
     if not len(times):
         return None
-    samples = solved.samples(times)
+    samples = read(solved, times)
     require_known(solved, samples, task.scene.tolerance)
     return Motion(
         times=samples.times,
@@ -511,8 +511,11 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
     doubts = {name: law.rounding(samples.times) for name, law in solved.functions.items()}
     if all((doubt <= tolerance).all() for doubt in doubts.values()):
         return
-    unproven = ~np.isfinite(solved.proof(samples).bound)
-    unproven &= np.isfinite(solved.proof(samples, certain=True).bound)
+    # Imported here: few laws are so uncertain.
+    from pointcoord.results.proof import prove
+
+    unproven = ~np.isfinite(prove(solved, samples).bound)
+    unproven &= np.isfinite(prove(solved, samples, certain=True).bound)
     if unproven.any():
         place = int(np.argmax(unproven))
         name = max(doubts, key=lambda name: float(doubts[name][place]))

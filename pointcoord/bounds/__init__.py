@@ -1,1 +1,1 @@
-"""Proven bounds on what was solved."""
+"""Poses certified, and where their points exactly are."""

@@ -53,6 +53,8 @@ from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 Array = NDArray[np.float64]
 Points = Mapping[str, Enclosed]
 Edges = tuple[Enclosed, Enclosed]
+Numbers = Mapping[str, Mapping[str, Array]]
+"""Arrays by quantity and by name: of a point or a body (N, 3), of a car (N,)."""
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,7 @@ from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.enclosed_points import EnclosedPoses
-    from pointcoord.bounds.proof import Numbers
+    from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]

@@ -29,8 +29,7 @@ from pointcoord.numerics.enclosure import Enclosed, both
 from pointcoord.numerics.rounding import EPS
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.enclosed_points import EnclosedPoses, Points
-    from pointcoord.bounds.proof import Numbers
+    from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers, Points
 
 Array = NDArray[np.float64]
 States = Mapping[str, Array]

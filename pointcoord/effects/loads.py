@@ -33,8 +33,7 @@ from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.enclosed_points import EnclosedPoses
-    from pointcoord.bounds.proof import Numbers
+    from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 
 Array = NDArray[np.float64]
 

@@ -13,8 +13,7 @@ from pointcoord.effects.effect import Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.enclosed_points import EnclosedPoses
-    from pointcoord.bounds.proof import Numbers
+    from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ it, the rounding of the sums included. So the states of a point, composed with t
     |e|,    sum_i |e_i| |x_i'|,    sum_i |e_i| |x_i''| + sum_ij |e_ij| |x_i'| |x_j'|,
 
 and with these as the radii of where the points are, each effect tells how far its own numbers may be off, as
-it does for a motion (see `bounds.proof`). The inputs and what moves the chassis count as they are
+it does for a motion (see `results.proof`). The inputs and what moves the chassis count as they are
 given.
 """
 
@@ -18,11 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.bounds.proof import Numbers, bounds_of_numbers
+from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.patches.patches import Patches
 from pointcoord.patches.reported_points import moving_points
+from pointcoord.results.proof import bounds_of_numbers, enclosed_poses
 from pointcoord.results.readout import Readout
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ class Evaluated:
 
     def _enclosed(self, here: slice) -> EnclosedPoses:
         """Where the points of some poses are."""
-        mechanism, chassis = self.readout.mechanism, self.readout.chassis
+        mechanism = self.readout.mechanism
         topology, vectors, unit = mechanism.topology, mechanism.drawing.vectors, float(mechanism.unit)
         count = len(self.patch[here])
         found: list[dict[str, Enclosed]] = []
@@ -86,10 +86,7 @@ class Evaluated:
                 points[name] = sums.take([3 * i, 3 * i + 1, 3 * i + 2])
             found.append(points)
         laws = {name: [Enclosed.of(rate[here]) for rate in law] for name, law in self.laws.items()}
-        turned = chassis.turned_exactly(laws, found, unit)
-        added = chassis.enclosed(laws, mechanism.origin, len(found) - 1)
-        ones = [np.ones(count)] * len(found)
-        return EnclosedPoses(mechanism, self.readout.axes, turned, found, added, ones)
+        return enclosed_poses(self.readout, found, laws, [np.ones(count)] * len(found))
 
     def _radii(self, here: slice) -> list[Array]:
         """How far the sums are off, by derivative, each (N, 3 points)."""

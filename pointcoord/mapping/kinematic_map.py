@@ -40,7 +40,7 @@ from pointcoord.mechanism.freedoms import locked
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.evaluation import sum_one, table_of_exponents
-from pointcoord.patches.flood import Limits, flood_from_drawing, place_of_drawing
+from pointcoord.patches.flood import Limits, flood, start_at_drawing
 from pointcoord.patches.lookup import Lookup, part_of
 from pointcoord.patches.patches import Patches, ProvenPatches
 from pointcoord.patches.reported_points import moving_points
@@ -58,8 +58,6 @@ T = TypeVar("T")
 
 HALVINGS = 6  # 64 of the smallest boxes along a range
 MOST_HALVINGS = 10  # a table of 2^20 boxes of two inputs
-# Patches of one map: a few hundred MB while it is made.
-MOST = 4096
 VARIABLES = 3  # of more, a series of the lowest order has too many powers
 
 
@@ -219,17 +217,17 @@ class KinematicMap(ReadOnly):
         given = _states(inputs, rates, accelerations)
         states, laws, shape = columns_of(self.domain, given)
         readout, patch = self._readouts[len(states) - 1], self._patches_of(states)
-        rows, tables = readout.room(len(patch)), [self.series.coefficients] * len(states)
-        places = readout.places(rows)
+        rows = readout.room(len(patch))
+        found = readout.states(rows)
         # Positions alone are the first rows of the table.
         out = [rows[: 3 * len(self.points)]] if len(states) == 1 else None
-        sums = self.series.sums(tables, states, patch, out)
+        sums = self.series.sums(self.series.coefficients, states, patch, out)
         for order, part in enumerate(sums if out is None else ()):
             for i, name in enumerate(self.points):
-                places[order, name][...] = part[3 * i : 3 * i + 3]
+                found[order][name][...] = part[3 * i : 3 * i + 3].T
         moving = [part.copy() for part in sums] if bounds else sums
-        readout.complete(laws, readout.by_derivative(places), rows)
-        samples = readout.named(np.zeros(len(patch)), rows)
+        readout.complete(laws, found, rows)
+        samples = readout.table.named(np.zeros(len(patch)), rows)
         numbers = samples.shaped(shape).numbers
         if not bounds:
             return MappedPoses(numbers)
@@ -410,15 +408,15 @@ def kinematic_map(
     number = isinstance(tolerance, int | float | np.integer | np.floating) and not isinstance(tolerance, bool)
     if not (number and np.isfinite(tolerance) and tolerance > 0.0):
         raise WrongArgument("tolerance", f"is {tolerance!r}", "a finite number of mm above 0")
-    domain.known_at(np.stack(domain.ends))
     for effect in plan_effects(scene.effects).computed:
         if others := mapped_instead_of(effect):
             raise WrongArgument("effects", f"has {effect.name!r}", others)
     closed = close_drawing(mechanism)
     require_the_drawn_car(scene, closing(mechanism, closed.y))
-    cover = flood_from_drawing(domain, domain.order_for(tolerance), Limits(tolerance), closed, MOST)
+    start = start_at_drawing(domain, closed)
+    cover = flood(domain, Limits(tolerance), start)
     if not len(cover.patches.low):
-        values = domain.inputs_at(place_of_drawing(domain, closed)).tolist()
+        values = domain.inputs_at(start[0]).tolist()
         raise NotCovered(dict(zip(domain.free, values, strict=True)), cover.reasons[0], 1, 1)
     if mechanism.topology.left_out:
         _hold_rows(cover.patches)
@@ -449,7 +447,7 @@ def _hold_rows(patches: ProvenPatches) -> None:
     places = np.stack(np.meshgrid(*[nodes] * len(domain.free), indexing="ij"), -1)
     for number, (centre, width) in enumerate(zip(*patches.boxes, strict=True)):
         values = (centre + width * places).reshape(-1, len(centre))
-        (unknown,) = patches.sums([patches.series], [values], np.full(len(values), number))
+        (unknown,) = patches.sums(patches.series, [values], np.full(len(values), number))
         y = np.concatenate([unknown.T, domain.known_at(values)], axis=-1)
         for error in locked(domain.mechanism, y, np.full(len(values), patches.error[number].max())).values():
             raise error

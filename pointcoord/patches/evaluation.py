@@ -30,7 +30,7 @@ BLOCK = 512
 
 
 def sum_series(
-    tables: Sequence[Array],
+    table: Array,
     boxes: tuple[Array, Array],
     order: int,
     patch: Whole,
@@ -40,7 +40,7 @@ def sum_series(
     """Sum each pose's series, and its time derivatives; poses lie side by side in memory.
 
     Args:
-        tables: by derivative the coefficients of what is wanted of it, each (P, powers, m).
+        table: coefficients of what is wanted, (P, powers, m).
         boxes: middles and half widths of the patches, each (P, p).
         patch: which one each pose lies on, shape (N,).
         states: inputs and their time derivatives, each (N, p).
@@ -48,10 +48,10 @@ def sum_series(
     Returns:
         By derivative, each (m, N), per s^d.
     """
-    found = [np.empty((table.shape[-1], len(patch))) for table in tables] if out is None else out
+    found = [np.empty((table.shape[-1], len(patch))) for _ in states] if out is None else out
     # Memory that the system has to map takes longer than filling it does.
-    room = np.empty((len(states) + 1, tables[0].shape[1], min(len(patch), BLOCK)))
-    for number, members in _by_patch(patch, len(tables[0])):
+    room = np.empty((len(states) + 1, table.shape[1], min(len(patch), BLOCK)))
+    for number, members in _by_patch(patch, len(table)):
         middle, scale = boxes[0][number], 1.0 / boxes[1][number]
         for low in range(0, len(members), BLOCK):
             here = members[low : low + BLOCK]
@@ -60,9 +60,9 @@ def sum_series(
             for state in local:
                 state *= scale[:, None]
             for d, block in enumerate(monomials(local, order, room)):
-                summed = tables[d][number, 1:].T @ block[1:]
+                summed = table[number, 1:].T @ block[1:]
                 if d == 0:
-                    summed += tables[0][number, 0, :, None]
+                    summed += table[number, 0, :, None]
                 found[d][:, here] = summed
     return found
 

@@ -38,6 +38,8 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 Corner = tuple[int, ...]
 Key = tuple[Corner, Corner]
+Start = tuple[Whole, Array]
+"""A place in halves of the smallest box, (p,), and the pose near there, (size,)."""
 
 # Boxes that are expanded and proven at once: their matrices stay below some 100 MB in two inputs.
 BATCH = 32
@@ -92,7 +94,7 @@ class Failure:
 
 @dataclass(frozen=True)
 class Limits:
-    """How near to the assembly a patch must be proven to be, to be kept.
+    """How near to the assembly a patch must be proven to be, to be kept, and what covering may take.
 
     With S_i = max |dY/ds_i| over all points in its middle, s the inputs from there in half widths, and L the
     mechanism's size, a rate is a sum of S_i s_i' and an acceleration one of S_i s_i'' and of S_i S_j / L s_i'
@@ -103,11 +105,15 @@ class Limits:
         tolerance: largest bound of a reported point, mm.
         derivative: highest time derivative that will be evaluated; 0 holds positions only.
         keep_rounded: whether a patch is kept that rounding alone keeps from being nearer.
+        most: patches; 4,096 take a few hundred MB while they are made.
+        effort: factorisations after which nothing more is tried.
     """
 
     tolerance: float
     derivative: int = 0
     keep_rounded: bool = False
+    most: int = 4096
+    effort: float = np.inf
 
     def used(self, coefficients: Array, off: Jet, size: float) -> Array:
         """What patches take of what is allowed, (P,); up to 1 they are kept.
@@ -158,7 +164,6 @@ class _Flood:
     domain: Domain
     order: int
     limits: Limits
-    most: int
     wanted: Marked | None = None
     work: Work = field(default_factory=Work)
     waiting: dict[Key, None] = field(default_factory=dict)
@@ -308,28 +313,17 @@ class _Flood:
             self.entered[keys[number]] = Entry(twice[place], y[place])
 
 
-def flood(
-    domain: Domain,
-    order: int,
-    limits: Limits,
-    start: tuple[Whole, Array],
-    most: int,
-    wanted: Marked | None = None,
-    factorisations: int | None = None,
-) -> Cover:
+def flood(domain: Domain, limits: Limits, start: Start, wanted: Marked | None = None) -> Cover:
     """Cover a domain from a pose on.
 
     Args:
-        start: where it is, in halves of the smallest box, (p,), and the pose near there, (size,).
-        most: patches.
         wanted: of the smallest boxes those that are to be covered; what has none of them is passed over.
-        factorisations: after which nothing more is tried; as many as it takes if not given.
     """
+    order = domain.order_for(limits.tolerance, limits.derivative)
     whole: Key = ((0,) * len(domain.free), (domain.parts,) * len(domain.free))
-    state = _Flood(domain, order, limits, most, wanted)
+    state = _Flood(domain, order, limits, wanted)
     state.entered[whole] = Entry(*start)
-    enough = np.inf if factorisations is None else factorisations
-    while state.entered and state.count < most and state.work.factorisations < enough:
+    while state.entered and state.count < limits.most and state.work.factorisations < limits.effort:
         batch = list(state.entered.items())[:BATCH]
         for key, _ in batch:
             del state.entered[key]
@@ -346,33 +340,19 @@ def flood(
     return Cover(patches.taken(np.flatnonzero(~dropped)), tuple(state.given_up.items()), state.work)
 
 
-def flood_from_drawing(
-    domain: Domain,
-    order: int,
-    limits: Limits,
-    closed: Path,
-    most: int,
-    wanted: Marked | None = None,
-    factorisations: int | None = None,
-) -> Cover:
-    """Cover a domain from its place that is nearest to the closed drawing.
+def start_at_drawing(domain: Domain, closed: Path) -> Start:
+    """The place of a domain that is nearest to the closed drawing, and the pose there.
 
     Raises:
         InputOutOfRange: an end of a range at which an input has no meaning.
         AssemblyError: that place cannot be reached from the drawing.
     """
     domain.known_at(np.stack(domain.ends))
-    twice = place_of_drawing(domain, closed)
+    drawn = domain.mechanism.input_values(closed.y[domain.mechanism.map.unknowns :])
+    twice = domain.nearest_place(np.array([float(drawn[name]) for name in domain.free]))
     held = {name: np.array(low) for name, (low, high) in domain.ranges.items() if low == high}
     inputs = held | dict(zip(domain.free, domain.inputs_at(twice), strict=True))
-    start = assemble(domain.mechanism, inputs, None, closed)
-    return flood(domain, order, limits, (twice, start.y), most, wanted, factorisations)
-
-
-def place_of_drawing(domain: Domain, closed: Path) -> Whole:
-    """The place that is nearest to the closed drawing, in halves of the smallest box, (p,)."""
-    drawn = domain.mechanism.input_values(closed.y[domain.mechanism.map.unknowns :])
-    return domain.nearest_place(np.array([float(drawn[name]) for name in domain.free]))
+    return twice, assemble(domain.mechanism, inputs, None, closed).y
 
 
 def last_terms(series: Array, inputs: int, order: int) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ A series f(s) = sum_k c_k s^k on |s_i| <= 1 has  |f| <= sum |c_k|,  |f_i| <= sum
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,10 +90,11 @@ class Jet:
         """Some of the functions, by their places along the last axis."""
         return self.each(lambda part: part[..., places])
 
-    def joined(self, other: Jet) -> Jet:
-        """These functions and others after them, along the last axis."""
-        pairs = zip(self.parts, other.parts, strict=True)
-        return Jet(*(np.concatenate(pair, axis=-1) for pair in pairs))
+    @classmethod
+    def joined(cls, jets: Sequence[Jet], axis: int) -> Jet:
+        """Those of some patches after those of others, along axis 0; or of some functions, along axis -1."""
+        parts = zip(*(jet.parts for jet in jets), strict=True)
+        return cls(*(np.concatenate(part, axis=axis) for part in parts))
 
     @property
     def parts(self) -> tuple[Array, Array, Array]:

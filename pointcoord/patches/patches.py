@@ -54,14 +54,13 @@ class Patches:
     def joined(self, others: Sequence[Self]) -> Self:
         """These and others of the same domain after them."""
 
-        def together(first: Any, *more: Any) -> Any:
-            if isinstance(first, Jet):
-                jets = (first.parts, *(jet.parts for jet in more))
-                return Jet(*(np.concatenate(parts) for parts in zip(*jets, strict=True)))
-            return np.concatenate([first, *more]) if isinstance(first, np.ndarray) else first
+        def together(parts: Sequence[Any]) -> Any:
+            if isinstance(parts[0], Jet):
+                return Jet.joined(parts, 0)
+            return np.concatenate(parts) if isinstance(parts[0], np.ndarray) else parts[0]
 
         every = (self, *others)
-        return type(self)(*(together(*(getattr(one, part.name) for one in every)) for part in fields(self)))
+        return type(self)(*(together([getattr(one, part.name) for one in every]) for part in fields(self)))
 
     @cached_property
     def boxes(self) -> tuple[Array, Array]:
@@ -75,7 +74,7 @@ class Patches:
 
     def sums(
         self,
-        tables: Sequence[Array],
+        table: Array,
         states: Sequence[Array],
         patch: Whole | None = None,
         out: Sequence[Array] | None = None,
@@ -83,14 +82,14 @@ class Patches:
         """Series of the patches that poses lie on, summed, and their time derivatives.
 
         Args:
-            tables: by derivative, coefficients of what is wanted of it, each (P, powers, m).
+            table: coefficients of what is wanted, (P, powers, m).
             states: inputs and their time derivatives, each (N, p). patch: of each pose, where it is known.
             out: where the sums go; new arrays if not given.
         Returns:
             By derivative, each (m, N), per s^d.
         """
         number = self.lookup.at(states[0]) if patch is None else patch
-        return sum_series(tables, self.boxes, self.order, number, states, out)
+        return sum_series(table, self.boxes, self.order, number, states, out)
 
 
 @dataclass(frozen=True)

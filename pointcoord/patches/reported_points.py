@@ -51,9 +51,7 @@ def reported_points(mechanism: Mechanism, series: Array, error: Jet, order: int)
         found[name] = _carried(mechanism, name, (found[base], found[first], found[second]), order)
     parts = [found[name] for name in moving_points(topology)]
     coefficients = np.concatenate([part for part, _ in parts], axis=-1)
-    off = parts[0][1]
-    for _, jet in parts[1:]:
-        off = off.joined(jet)
+    off = Jet.joined([jet for _, jet in parts], -1)
     unit = float(mechanism.unit)
     coefficients = coefficients * unit
     later = Jet.of(coefficients[:, 1:], every.exponents[1:])

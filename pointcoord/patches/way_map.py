@@ -15,7 +15,7 @@ So every pose until then is on the branch of the start, as a path in time would 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,16 +102,16 @@ def map_way(
         ranges[name] = widened(*ranges[name])
     moving = sum(low < high for low, high in ranges.values())
     domain = Domain(mechanism, ranges, HALVINGS.get(moving, 0))
-    order = domain.order_for(limits.tolerance, limits.derivative)
     if moving not in HALVINGS:
-        return WayMap(ProvenPatches.none(domain, order), limits, -np.inf, MANY, Work())
+        none = ProvenPatches.none(domain, domain.order_for(limits.tolerance, limits.derivative))
+        return WayMap(none, limits, -np.inf, MANY, Work())
     domain.known_at(np.stack(domain.ends))
     spans = spans.along([list(functions).index(name) for name in domain.free])
     wanted = Marked.touched_by(domain, spans.low, spans.high)
     laws = [functions[name] for name in domain.free]
     first = np.array([float(law.series(start, 0)[..., 0]) for law in laws])
-    enough = ENOUGH if effort is None else effort
-    cover = flood(domain, order, limits, (domain.nearest_place(first), pose.y), MOST, wanted, enough)
+    limits = replace(limits, most=MOST, effort=ENOUGH if effort is None else effort)
+    cover = flood(domain, limits, (domain.nearest_place(first), pose.y), wanted)
     begun = cover.patches.holds(first, pose.y)
     until = covered_until(laws, spans, cover.patches.lookup) if begun else -np.inf
     reason = "" if until == stop else "; ".join(cover.reasons) or NOWHERE

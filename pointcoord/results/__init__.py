@@ -1,1 +1,1 @@
-"""What a solved scene is, and how it is made of states."""
+"""What a solved scene is, how it is made of states, and what is proven of it."""

@@ -9,7 +9,7 @@ from math import factorial
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.bounds.summed import Summed
 from pointcoord.errors import InputOutOfRange
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.multi_index import powers
@@ -55,7 +55,7 @@ class ByMap(SolvedScene):
     def solved(self, instants: Array, derivatives: int) -> Sequence[Array]:
         """The series of the patches composed with the laws."""
         inputs = self._inputs(instants)[: derivatives + 1]
-        return self.patches.sums([self.patches.series] * len(inputs), inputs)
+        return self.patches.sums(self.patches.series, inputs)
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         unknown = self.solved(instants, derivatives)
@@ -80,7 +80,7 @@ class ByMap(SolvedScene):
         def sums(least: int, most: int) -> list[Array]:
             """Of the terms of some degrees."""
             kept = terms * ((degree >= least) & (degree <= most))[:, None]
-            found = sum_series([kept] * len(sizes), unit_boxes, order, patch, sizes)
+            found = sum_series(kept, unit_boxes, order, patch, sizes)
             return [np.pad(state.T, ((0, 0), (0, known))) for state in found]
 
         parts = (sums(order - 1, order), sums(order - 3, order - 2), sums(0, order))

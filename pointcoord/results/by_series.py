@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.bounds.summed import Summed
 from pointcoord.results.readout import ENOUGH, Readout
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.dense_output import SeriesRows, evaluate
@@ -92,7 +92,7 @@ class ByChain(SolvedScene):
         if one and len(times) >= ENOUGH and not self.readout.chassis.turning:
             left = self._close.fill(times, rows)
         for first, last in left:
-            super().fill(times[first:last], rows[..., first:last])
+            self.fill_plainly(times[first:last], rows[..., first:last])
 
     @cached_property
     def _close(self) -> CloseInstants:

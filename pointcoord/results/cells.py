@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from pointcoord.errors import InputOutOfRange, SingularConfiguration
 from pointcoord.numerics.chebyshev import interpolation
 from pointcoord.numerics.rounding import EPS
-from pointcoord.results.readout import BLOCK, ENOUGH
+from pointcoord.results.readout import ENOUGH
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.dense_output import narrow_product
 from pointcoord.solve.taylor import Chain
@@ -190,15 +190,10 @@ class CloseInstants:
 
     def _at_points(self, points: Array) -> Array:
         """The rows that are solved for or computed, by the plain formulas, without what reporting adds."""
-        readout = self.solved.readout
-        values = np.empty((readout.table.height, len(points)))
-        for low in range(0, len(points), BLOCK):
-            here, block = points[low : low + BLOCK], values[:, low : low + BLOCK]
-            states, laws = self.solved.states(here, block), readout.laws(here)
-            along_ways = readout.plan.along_ways
-            slopes = readout.slopes(laws, self.solved.coordinates(here, 0)[0]) if along_ways else {}
-            readout.compute(states, states, readout.added(laws), block, slopes)
-        return values[: readout.table.first_still]
+        table = self.solved.readout.table
+        values = np.empty((table.height, len(points)))
+        self.solved.fill_plainly(points, values, add=False)
+        return values[: table.first_still]
 
     @cached_property
     def _numbers(self) -> tuple[Whole, Array, Whole]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.errors import NotComputed
+from pointcoord.mechanism.freedoms import locked
 from pointcoord.numerics.counters import Work
 from pointcoord.results.closing import Closing
 from pointcoord.results.even_instants import even_instants
@@ -19,12 +20,14 @@ from pointcoord.solve.assembly import Pose
 from pointcoord.solve.status import Status
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.proof import Proof
+    from pointcoord.results.proof import Proof
 
 Array = NDArray[np.float64]
 
 # Rows of a table in a notebook.
 SHOWN = 11
+# Of instants in any order, how many are computed before they are put where they belong: 9 MB of them.
+ORDERED = 2**13
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,7 +95,10 @@ class Motion(Samples):
 
     def proof_of(self, samples: Samples, rates: bool = False) -> Proof:
         """The same of samples at other instants, as `at` gives them for instants of shape (N,)."""
-        return self.solved.proof(samples, rates=rates)
+        # What proves is imported where it is asked for, as most motions are read only.
+        from pointcoord.results.proof import prove
+
+        return prove(self.solved, samples, rates=rates)
 
     @property
     def height(self) -> int:
@@ -122,7 +128,7 @@ class Motion(Samples):
         asked = np.asarray(instants, dtype=float)
         if out is not None:
             self._require_room(out, asked.size)
-        samples = self.solved.samples(asked.ravel(), out)
+        samples = read(self.solved, asked.ravel(), out)
         return samples if asked.ndim == 1 else samples.shaped(asked.shape)
 
     def blocks(self, instants: ArrayLike | int | None = None, size: int = 16384) -> Iterator[Samples]:
@@ -194,3 +200,33 @@ class Motion(Samples):
                 f"out is {'writeable' if out.flags.writeable else 'read-only'}, of {out.dtype} and of shape "
                 f"{out.shape}; allowed: a writeable array of float64 and of shape {wanted}"
             )
+
+
+def read(solved: SolvedScene, times: Array, out: Array | None = None) -> Samples:
+    """What a solved scene asks for at instants of shape (N,), in any order.
+
+    Args:
+        out: where the numbers go, shape (rows, N); a new array if not given.
+    Raises:
+        WrongArgument: an instant that was not solved for, or not a number.
+        MechanismError: a row that was left out, as it followed from others at the drawing, is violated.
+    """
+    readout = solved.readout
+    rows = readout.room(len(times)) if out is None else out
+    if (times[1:] >= times[:-1]).all():
+        solved.fill(times, rows)
+    else:
+        order, room = np.argsort(times, kind="stable"), readout.room(min(ORDERED, len(times)))
+        for low in range(0, len(times), ORDERED):
+            places = order[low : low + ORDERED]
+            block = room[..., : len(places)]
+            solved.fill(times[places], block)
+            rows[..., places] = block
+    samples = readout.table.named(times, rows)
+    if readout.mechanism.topology.left_out:
+        from pointcoord.results.proof import prove
+
+        off = prove(solved, samples).pose_bound / readout.mechanism.unit
+        for error in locked(readout.mechanism, solved.coordinates(times, 0)[0], off).values():
+            raise error
+    return samples

@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.plan import Plan
-from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import ByInput, Way, moved_along
-from pointcoord.results.samples import Channel, Samples
-from pointcoord.results.table import State, Table, vectors
+from pointcoord.results.table import Table, vectors
 
 Array = NDArray[np.float64]
 Slopes = Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]]
@@ -48,14 +46,9 @@ class Readout:
     chassis: ChassisMotion
     axes: CarAxes
 
-    @property
-    def derivatives(self) -> dict[str, int]:
-        """Highest time derivative that is evaluated of each point that is reported or needed."""
-        return self.plan.derivatives(self.mechanism.topology)
-
     @cached_property
     def table(self) -> Table:
-        return Table.of(self.plan, self.mechanism.topology, self.derivatives)
+        return Table.of(self.plan, self.mechanism.topology)
 
     def room(self, count: int) -> Array:
         """Room for a table at so many instants, (..., height, N)."""
@@ -75,51 +68,34 @@ class Readout:
             for name in chassis.functions
         }
 
-    def places(self, rows: Array) -> dict[State, Array]:
-        """Where in a table each state belongs, (..., 3, N); those that are only needed are beside it.
+    def states(self, rows: Array) -> list[dict[str, Array]]:
+        """By time derivative, the states that are reported or needed, to be filled: views of a table.
 
-        Those of the chassis' points, which stand in its frame, are filled in.
+        Those that are only needed are beside it. Those of the chassis' points, which stand in its frame, are
+        filled in.
         """
         table, drawn = self.table, self.mechanism.drawn_places
-        found = {state: rows[..., first : first + 3, :] for state, first in table.states.items()}
         beside = np.empty((*rows.shape[:-2], 3 * len(table.spare), rows.shape[-1]))
-        found |= {state: beside[..., 3 * i : 3 * i + 3, :] for i, state in enumerate(table.spare)}
-        for (order, name), place in found.items():
-            if name in self.mechanism.topology.chassis:
-                place[...] = drawn[name][..., None] if order == 0 else 0.0
+        found: list[dict[str, Array]] = [{} for _ in range(self.plan.derivative + 1)]
+        for (order, name), first in table.states.items():
+            found[order][name] = vectors(rows, first)
+        for i, (order, name) in enumerate(table.spare):
+            found[order][name] = vectors(beside, 3 * i)
+        for order, states in enumerate(found):
+            for name in states.keys() & self.mechanism.topology.chassis:
+                states[name][...] = drawn[name][..., None, :] if order == 0 else 0.0
         return found
 
-    def by_derivative(self, places: Mapping[State, Array]) -> list[dict[str, Array]]:
-        """The same as states, which are views."""
-        states: list[dict[str, Array]] = [{} for _ in range(self.plan.derivative + 1)]
-        for (order, name), place in places.items():
-            states[order][name] = place.swapaxes(-1, -2)
-        return states
-
-    def samples(self, times: Array, states: States) -> Samples:
-        """What the plan asks for, of states from elsewhere."""
-        rows = self.room(len(times))
-        for (order, name), place in self.places(rows).items():
-            place[...] = states[order][name].swapaxes(-1, -2)
-        self.complete(self.laws(times), states, rows)
-        return self.named(times, rows)
-
-    def named(self, times: Array, rows: Array) -> Samples:
-        """The numbers of a whole table, by name."""
-        found, topology = self.table.numbers(rows), self.mechanism.topology
-        numbers = {
-            name: Channel(quantity, found.get(name, {}), self.plan, topology)
-            for name, quantity in QUANTITIES.items()
-        }
-        return Samples(times.copy(), numbers)
-
-    def complete(self, laws: Laws, states: States, rows: Array, y: Array | None = None) -> None:
+    def complete(
+        self, laws: Laws, states: States, rows: Array, y: Array | None = None, *, add: bool = True
+    ) -> None:
         """Compute the numbers that are made of states, and add to those what reporting adds.
 
         Args:
             states: those that are reported have their places in the table too, and may be views of it.
             rows: a table or some columns of one, shape (..., height, N).
             y: the coordinates, (..., N, size), where an effect takes derivatives by an input.
+            add: whether to add it.
         """
         in_chassis, slopes = states, {} if y is None else self.slopes(laws, y)
         if not self.chassis.centres.keys().isdisjoint(laws):
@@ -129,33 +105,16 @@ class Readout:
             for (derivative, point), first in self.table.states.items():
                 vectors(rows, first)[...] = states[derivative][point]
         added = self.added(laws)
-        self.compute(states, in_chassis, added, rows, slopes)
-        for derivative in self.table.reported:
-            more = added[derivative]
-            if more is not None:
-                self.table.add(rows, derivative, more)
-
-    def compute(
-        self,
-        states: States,
-        in_chassis: States,
-        added: Sequence[Array | None],
-        rows: Array,
-        slopes: Slopes,
-    ) -> None:
-        """Compute the numbers that are made of states.
-
-        Args:
-            in_chassis: the states before the turns of the chassis.
-            slopes: as `slopes` gives them. added: what reporting adds to these.
-            rows: as of `complete`.
-        """
         if self.table.computed:
             poses = Poses(self.mechanism, self.axes, states, in_chassis, added, slopes)
             for effect in self.table.computed:
                 for quantity, arrays in effect.evaluate(poses).items():
                     for name, array in arrays.items():
                         self.table.put(rows, quantity, name, array)
+        for derivative in self.table.reported if add else ():
+            more = added[derivative]
+            if more is not None:
+                self.table.add(rows, derivative, more)
 
     def slopes(self, laws: Laws, y: Array) -> Slopes:
         """By way, the derivatives of positions along it, after the turns of the chassis and before."""

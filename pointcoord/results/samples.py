@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,6 +86,15 @@ class Named(ReadOnly):
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self._quantities}>"
 
+    def each(self, change: Callable[[Array, int], Array]) -> dict[str, Channel]:
+        """The numbers with every array changed, and told how many dimensions follow its instants', 0 or 1."""
+        return {
+            quantity: channel.with_arrays(
+                {name: change(array, channel.quantity.of != "car") for name, array in channel.items()}
+            )
+            for quantity, channel in self.numbers.items()
+        }
+
     @property
     def _quantities(self) -> str:
         return ", ".join(c.quantity.words for c in self.numbers.values() if c.computed)
@@ -118,24 +127,15 @@ class Samples(Named):
 
     def shaped(self, shape: tuple[int, ...]) -> Samples:
         """The same samples with instants of another shape."""
-        numbers = {}
-        for name, channel in self.numbers.items():
-            vector = () if channel.quantity.of == "car" else (3,)
-            arrays = {}
-            for part, array in channel.items():
-                batch = array.shape[: array.ndim - 1 - len(vector)]
-                arrays[part] = array.reshape((*batch, *shape, *vector))
-            numbers[name] = channel.with_arrays(arrays)
-        return Samples(self.times.reshape(shape), numbers)
+
+        def reshaped(array: Array, after: int) -> Array:
+            place = array.ndim - 1 - after
+            return array.reshape((*array.shape[:place], *shape, *array.shape[place + 1 :]))
+
+        return Samples(self.times.reshape(shape), self.each(reshaped))
 
     def part(self, first: int, last: int) -> Samples:
         """Some of the instants of samples at instants of shape (N,), from number `first` to before `last`."""
-        numbers = {}
-        for name, channel in self.numbers.items():
-            along = -1 if channel.quantity.of == "car" else -2
-            arrays = {
-                part: np.moveaxis(np.moveaxis(array, along, 0)[first:last], 0, along)
-                for part, array in channel.items()
-            }
-            numbers[name] = channel.with_arrays(arrays)
-        return Samples(self.times[first:last], numbers)
+        some = slice(first, last)
+        numbers = self.each(lambda array, after: array[..., some, :] if after else array[..., some])
+        return Samples(self.times[some], numbers)

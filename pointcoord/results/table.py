@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.plan import Plan
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.topology import Topology
+from pointcoord.results.samples import Channel, Samples
 
 Array = NDArray[np.float64]
 State = tuple[int, str]
@@ -26,6 +28,7 @@ class Table:
     """The rows of a table.
 
     Attributes:
+        plan: the effects whose numbers it has. topology: of the mechanism that they are of.
         states: the first of the three rows of every state that is reported: from row 0 on those of points
             that move, in the last rows the chassis'; of each by derivative.
         spare: states that are only needed; they are in no table.
@@ -35,6 +38,8 @@ class Table:
         reported: the derivatives of points that are reported.
     """
 
+    plan: Plan
+    topology: Topology
     states: Mapping[State, int]
     spare: tuple[State, ...]
     places: Mapping[str, Mapping[str, slice]]
@@ -44,13 +49,9 @@ class Table:
     reported: tuple[int, ...]
 
     @classmethod
-    def of(cls, plan: Plan, topology: Topology, highest: Mapping[str, int]) -> Table:
-        """The table of the numbers that a plan computes.
-
-        Args:
-            highest: time derivative of each point that is needed.
-        """
-        points = plan.reported(topology)
+    def of(cls, plan: Plan, topology: Topology) -> Table:
+        """The table of the numbers that a plan computes."""
+        points, highest = plan.reported(topology), plan.derivatives(topology)
         named = {e.derivative: e.quantities[0].name for e in plan.computed if e.reports_states}
         reported = tuple(sorted(named))
         kinds = (*topology.moving, *topology.carried), topology.chassis
@@ -76,7 +77,7 @@ class Table:
             places[quantity_name] = {p: slice(states[d, p], states[d, p] + 3) for p in points}
         needed = ((d, point) for d in range(plan.derivative + 1) for kind in kinds for point in kind)
         spare = tuple((d, p) for d, p in needed if highest.get(p, -1) >= d and (d, p) not in states)
-        return cls(states, spare, places, computed, first_still, height, reported)
+        return cls(plan, topology, states, spare, places, computed, first_still, height, reported)
 
     def add(self, rows: Array, derivative: int, more: Array) -> None:
         """Add the same, (..., N, 3), to a reported derivative of all points in a table."""
@@ -88,16 +89,17 @@ class Table:
             points = part.reshape(*part.shape[:-2], step // 3, 3, part.shape[-1])
             points += more.swapaxes(-1, -2)[..., None, :, :]
 
-    def numbers(self, rows: Array) -> dict[str, dict[str, Array]]:
-        """A table's numbers by quantity and name, of points and bodies (..., N, 3), of the car (..., N).
+    def named(self, times: Array, rows: Array) -> Samples:
+        """A table's numbers by name.
 
         Args:
             rows: the table, shape (..., height, N); the numbers are views of it.
         """
-        return {
-            quantity: {name: _seen(rows, place) for name, place in places.items()}
-            for quantity, places in self.places.items()
-        }
+        numbers = {}
+        for name, quantity in QUANTITIES.items():
+            found = {part: _seen(rows, place) for part, place in self.places.get(name, {}).items()}
+            numbers[name] = Channel(quantity, found, self.plan, self.topology)
+        return Samples(times.copy(), numbers)
 
     def put(self, rows: Array, quantity: str, name: str, array: Array) -> None:
         """Write one number at all instants, as an effect gives it, into a table."""

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.drawing_stands import drawn_angles
-from pointcoord.effects.effect import Doubt
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.errors import (
     AssemblyError,
@@ -25,7 +24,6 @@ from pointcoord.errors import (
     PointcoordError,
     SceneError,
 )
-from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
@@ -75,7 +73,6 @@ class Course:
     designs: Designs
     scene: Scene
     plan: Plan
-    axes: CarAxes
 
     @classmethod
     def of(cls, designs: Designs) -> Course:
@@ -86,16 +83,16 @@ class Course:
         """
         scene = Scene.checked(designs.scene, designs.scene.title or "scene")
         plan = plan_effects(scene.effects, None, scene.unreported_points)
-        return cls(designs, scene, plan, scene.mechanism.axes)
+        return cls(designs, scene, plan)
 
     @cached_property
     def table(self) -> Table:
         topology = self.scene.mechanism.topology
-        return Table.of(self.plan, topology, self.plan.derivatives(topology))
+        return Table.of(self.plan, topology)
 
     def readout(self, mechanism: Mechanism) -> Readout:
         chassis = ChassisMotion.of(mechanism, self.scene.functions)
-        return Readout(mechanism=mechanism, plan=self.plan, chassis=chassis, axes=self.axes)
+        return Readout(mechanism=mechanism, plan=self.plan, chassis=chassis, axes=self.scene.mechanism.axes)
 
     @property
     def bytes_of_a_design(self) -> int:
@@ -133,7 +130,6 @@ class _Block:
     Attributes:
         rows: the table of each design, (D, height, N). filled: whether it is.
         failures, notes: as far as they are found.
-        readouts: the last one that was used, if any.
     """
 
     course: Course
@@ -144,7 +140,6 @@ class _Block:
     drawn: dict[str, Array]
     failures: dict[int, Failure] = field(default_factory=dict)
     notes: list[Noted] = field(default_factory=list)
-    readouts: list[Readout] = field(default_factory=list)
 
     @classmethod
     def empty(cls, course: Course, first: int, rows: Array) -> _Block:
@@ -163,9 +158,9 @@ class _Block:
         solved = self.alive(numbers)
         assert (self.filled | ~solved).all()  # no failure is lost; what was not filled holds anything
         self.rows[~solved] = np.nan
-        # Where no design has a mechanism, the scene's own must do to name what would have been computed.
-        readouts = self.readouts or [course.readout(scene_mechanism(scene))]
-        samples = readouts[0].named(scene.instants, self.rows)
+        if not self.filled.any():
+            scene_mechanism(scene)  # says if no design can have one
+        samples = course.table.named(scene.instants, self.rows)
         return Sweep(
             times=samples.times,
             numbers=samples.numbers,
@@ -207,8 +202,8 @@ class _Block:
         for some, mechanism in self._mechanisms(members, points):
             places = np.searchsorted(members, some)
             own = {name: place[places] for name, place in points.items()}
-            for i, doubt in enumerate(doubts_of_drawings(topology, own, self.course.axes)):
-                self._note(f"doubt {i}", some, doubt.where, _of_a_drawing(doubt))
+            for i, doubt in enumerate(doubts_of_drawings(topology, own, self.course.scene.mechanism.axes)):
+                self._note(f"doubt {i}", some, doubt.where, doubt.words)
             self._move(some, mechanism)
 
     def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
@@ -232,7 +227,7 @@ class _Block:
         kind: str,
         members: Numbers,
         where: NDArray[np.bool_],
-        words: Callable[[int], str],
+        words: str | Callable[[tuple[int, ...]], str],
         weights: Array | None = None,
         warns: bool = True,
     ) -> None:
@@ -241,7 +236,8 @@ class _Block:
         if count:
             place = int(np.argmax(where if weights is None else np.where(where, weights, -np.inf)))
             weight = 0.0 if weights is None else float(weights[place])
-            self.notes.append(Noted(kind, warns, count, int(members[place]), words(place), weight))
+            told = words if isinstance(words, str) else words((place,))
+            self.notes.append(Noted(kind, warns, count, int(members[place]), told, weight))
 
     def _move(self, members: Numbers, mechanism: Mechanism) -> None:
         course, scene = self.course, self.course.scene
@@ -259,7 +255,7 @@ class _Block:
         moved = members[solved.solved]
         if len(moved):
             for words in tolerance_notes(scene, mechanism.taken(int(solved.solved[0]))):
-                self._note("tolerance", moved, self.alive(moved), _always(words), warns=False)
+                self._note("tolerance", moved, self.alive(moved), words, warns=False)
             self._note_missing(moved[self.alive(moved)])
         for place, error in solved.failures.items():
             if members[place] in self.failures:
@@ -288,16 +284,15 @@ class _Block:
         with np.errstate(invalid="ignore"):
             noticed = (moved > np.minimum(NOTICED, NOTICED_SHARE * size)) & self.alive(members)
 
-        def words(place: int) -> str:
-            return closing(mechanism.taken(place), closed[place]).words
+        def words(place: tuple[int, ...]) -> str:
+            return closing(mechanism.taken(place[0]), closed[place]).words
 
         self._note("closing", members, noticed, words, moved)
 
     def _angles(self, mechanism: Mechanism, closed: Array) -> dict[str, Array]:
-        return drawn_angles(mechanism, self.course.axes, self.course.plan.effects, closed)
+        return drawn_angles(mechanism, self.course.scene.mechanism.axes, self.course.plan.effects, closed)
 
     def _fill(self, solved: ByChain, instants: Array, members: Numbers) -> None:
-        self.readouts[:] = [solved.readout]
         places = members - self.first
         self.filled[places] = True
         together = self.rows[places[0] : places[-1] + 1]
@@ -319,20 +314,20 @@ class _Block:
         except PointcoordError as error:
             self.fail([number], error)
             return
-        place, one = number - self.first, np.array([number])
+        place = number - self.first
         self.filled[place] = True
         for quantity, names in self.course.table.places.items():
             for name in names:
                 self.course.table.put(self.rows[place], quantity, name, motion.numbers[quantity][name])
         alone = f"solved by itself, by the method {motion.method!r}"
-        self._note("alone", one, np.array([True]), _always(alone), warns=False)
+        self.notes.append(Noted("alone", False, 1, number, alone))
         if whole:
             mechanism, closed = motion.solved.readout.mechanism, motion.closing
             self.closing[place] = closed.largest
             for name, angle in self._angles(mechanism, close_drawing(mechanism).y).items():
                 self.drawn[name][place] = angle
-            noticed, far = np.array([closed.noticeable]), np.array([closed.largest])
-            self._note("closing", one, noticed, _always(closed.words), far)
+            if closed.noticeable:
+                self.notes.append(Noted("closing", True, 1, number, closed.words, closed.largest))
 
     def _note_missing(self, members: Numbers) -> None:
         if not len(members):
@@ -356,15 +351,7 @@ class _Block:
                         words = f"{quantity.words} of {name} is not a number at some instants{why}"
                         where = np.asarray(missing[:, place].any(axis=-1))
                         kind = f"{quantity.name} {name}"
-                        self._note(kind, members, where, _always(words), warns=False)
-
-
-def _of_a_drawing(doubt: Doubt) -> Callable[[int], str]:
-    return lambda place: doubt.words((place,))
-
-
-def _always(words: str) -> Callable[[int], str]:
-    return lambda place: words
+                        self._note(kind, members, where, words, warns=False)
 
 
 def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:

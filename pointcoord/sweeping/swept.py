@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.proof import Proof
 from pointcoord.errors import PointcoordError, WrongArgument
 from pointcoord.results.motion import Motion
+from pointcoord.results.proof import Proof
 from pointcoord.results.samples import Samples
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import simulate
@@ -130,11 +130,7 @@ class Sweep(Samples):
         place = self._place(number)
         if number in self.failures:
             raise self.failures[number].error
-        numbers = {
-            name: channel.with_arrays({part: array[place] for part, array in channel.items()})
-            for name, channel in self.numbers.items()
-        }
-        return Samples(self.times, numbers)
+        return Samples(self.times, self.each(lambda array, _: array[place]))
 
     def scene(self, number: int) -> Scene:
         """The scene of one design.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Samples
-from pointcoord.bounds.proof import Proof
+from pointcoord.results.proof import Proof
 
 Array = NDArray[np.float64]
 Numbers = Mapping[str, Mapping[str, Array]]

@@ -21,9 +21,9 @@ from pointcoord import (
     SingularConfiguration,
     simulate,
 )
-from pointcoord.bounds.proof import Proof
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import Method
+from pointcoord.results.proof import Proof
 from pointcoord.simulation import finest_tolerance
 from validate.formulations.protocol import Accuracy, FormulationError, Solution
 

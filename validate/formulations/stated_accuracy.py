@@ -56,7 +56,7 @@ condition for Newton's method): from LIMIT on the accuracy says nothing of that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 from itertools import combinations
 from math import comb, sqrt
@@ -65,12 +65,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, simulate
-from pointcoord.bounds.proof import ROUNDINGS, Reported, prove
-from pointcoord.bounds.solved_coordinates import SolvedCoordinates, Summed
 from pointcoord.effects.registry import EFFECTS as OURS
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from pointcoord.results.proof import ROUNDINGS, prove
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
 from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
@@ -185,18 +184,12 @@ def _of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str
     count, solved = len(off), motion.solved
     if len(motion.times) < count:
         return {}
-    times, readout = motion.times[:count], solved.readout
+    readout = solved.readout
+
+    samples = motion.part(0, count)
 
     def expected(left: Array) -> Numbers:
-        reported = Reported(
-            numbers=motion.part(0, count).numbers,
-            effects=readout.plan.computed,
-            axes=readout.axes,
-            chassis=readout.chassis,
-            laws=solved.functions,
-            solved=_LeftUnsolved(solved, times, left),
-        )
-        return prove(readout.mechanism, times, reported, rates=True).expected
+        return prove(solved, samples, rates=True, left=left).expected
 
     # Each coordinate of a point may be off, and each half of a joint by itself.
     with_it, without = expected(2.0 * off / motion.unit), expected(np.zeros(count))
@@ -219,31 +212,6 @@ def _of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str
 def _more(one: Array, other: Array) -> Array:
     """One less the other; of what is not bounded nothing is known."""
     return np.subtract(one, other, out=np.full_like(one, NOTHING), where=np.isfinite(one))
-
-
-@dataclass(frozen=True)
-class _LeftUnsolved:
-    """A solution whose poses are left off by so much on purpose, in units."""
-
-    solved: SolvedCoordinates
-    times: Array
-    left: Array
-
-    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """Its own."""
-        return self.solved.coordinates(instants, derivatives)
-
-    def summed(self, instants: Array) -> Sequence[Summed]:
-        """Its own."""
-        return self.solved.summed(instants)
-
-    def pieces(self, instants: Array) -> NDArray[np.intp]:
-        """Its own."""
-        return self.solved.pieces(instants)
-
-    def unsolved(self, instants: Array) -> Array:
-        """At these instants."""
-        return np.asarray(self.left[np.searchsorted(self.times, instants)])
 
 
 class _Held:

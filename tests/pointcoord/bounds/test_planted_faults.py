@@ -16,7 +16,7 @@ from every_number import every_effect
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.bounds import certified_poses, enclosed_points, proof
+from pointcoord.bounds import certified_poses, enclosed_points
 from pointcoord.bounds.certified_poses import CertifiedPoses, grouped, with_known
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates
 from pointcoord.effects import corner, knuckle_rates
@@ -26,6 +26,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosed_rows, enclosure, kantorovich
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.quadratic import Product, quadratic_map
+from pointcoord.results import proof
 from validate.formulations.reference_solution import DUST, inputs_at, reference_instant
 from validate.reference.exact import as_fraction
 

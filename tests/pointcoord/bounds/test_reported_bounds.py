@@ -16,10 +16,10 @@ from within_bounds import beyond_claims, differing
 from pointcoord import Motion, Scene, simulate
 from pointcoord.bounds import certified_poses
 from pointcoord.bounds.certified_poses import SHARED
-from pointcoord.bounds.proof import Numbers, Proof
-from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.bounds.summed import Summed
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.by_series import ByChain
+from pointcoord.results.proof import Numbers, Proof
 
 Array = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ def test_a_proof_in_blocks_is_the_proof_in_one(
     # Newton's states are looked up, so that a block changes no bit of them: every array must be the same.
     motion = simulate(make_scene(SINE, [0.0, 5.0], car="double-wishbone", heave=HEAVE, samples=30), "newton")
     whole = motion.proof(rates=True)
-    monkeypatch.setattr("pointcoord.bounds.proof.BLOCK", 7)
+    monkeypatch.setattr("pointcoord.results.proof.BLOCK", 7)
     parts = motion.proof(rates=True)
     for field in fields(Proof):
         one, many = getattr(whole, field.name), getattr(parts, field.name)

@@ -105,7 +105,7 @@ def test_neighbours_are_the_same_assembly_if_either_is_alone_around_the_other_an
 ) -> None:
     domain = paper_domain()
     begun = entry(domain)
-    sound = flood(domain, 8, Limits(1e-9), begun, 4096)
+    sound = flood(domain, Limits(1e-9), begun)
     kept = sound.patches
     assert sound.given_up == ()
     assert kept.holds(np.array([1.0, 0.0]), begun[1])
@@ -120,7 +120,7 @@ def test_neighbours_are_the_same_assembly_if_either_is_alone_around_the_other_an
         series[-1, 0, coordinate] += 2.0 * kept.unique_within.max()
         spoilt = replace(kept, series=series)
         monkeypatch.setattr(flooding.ProvenPatches, "joined", lambda none, others, spoilt=spoilt: spoilt)
-        seamed = flood(domain, 8, Limits(1e-9), begun, 4096)
+        seamed = flood(domain, Limits(1e-9), begun)
         monkeypatch.undo()
         assert seamed.patches.low.tolist() == kept.low[:-1].tolist()
         assert [reason for _, reason in seamed.given_up] == [SEAM]

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from within_bounds import beyond_claims
 
 from pointcoord import AssemblyError, Motion, Scene, simulate
-from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.bounds.summed import Summed
 from pointcoord.results.by_series import ByChain
 from pointcoord.solve.step_rule import last_magnitudes
 

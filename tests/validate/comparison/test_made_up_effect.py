@@ -18,8 +18,7 @@ import absolute
 from absolute.effects import Effect as AbsoluteEffect
 from absolute.results import Motion
 from pointcoord import Scene
-from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.bounds.proof import Numbers
+from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 from pointcoord.effects import registry
 from pointcoord.effects.effect import Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from pointcoord import Motion, NotFollowed, Scene, SingularConfiguration, simulate
-from pointcoord.bounds.proof import Proof
 from pointcoord.method import Method
+from pointcoord.results.proof import Proof
 from validate.cars.car import Car
 from validate.cars.input_ends import end
 from validate.cars.paper_car import PAPER

@@ -62,7 +62,7 @@ def beside(pose: NearPose, distance: float) -> NearPose:
 
 
 def test_a_bound_below_the_error_is_found_and_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:
-    from pointcoord.bounds import proof
+    from pointcoord.results import proof
 
     honest = proof._of_poses
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.method import CHORD, MAP, NEWTON, NEWTON_COLD, SERIES, Method
+from pointcoord.results.motion import read
 from pointcoord.results.samples import Samples
 from pointcoord.simulation import Task, checked_task, solve_by_map, solve_task
 from validate.cost.way import Answer, Solve, Way
@@ -51,7 +52,7 @@ def by_map(scene: Scene, tolerance: float) -> Solve:
     error = solved.status.error(None)
     if error is not None:
         raise error
-    return lambda instants: Answer(numbers_of(solved.samples(instants), len(instants)))
+    return lambda instants: Answer(numbers_of(read(solved, instants), len(instants)))
 
 
 def numbers_of(samples: Samples, last: int) -> Mapping[str, Mapping[str, Array]]:

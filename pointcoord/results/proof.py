@@ -5,29 +5,31 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.certified_poses import CertifiedPoses, Groups, grouped, with_known
-from pointcoord.bounds.enclosed_points import EnclosedPoses, Points, enclosed_coordinates, enclosed_points
-from pointcoord.bounds.solved_coordinates import SolvedCoordinates
-from pointcoord.linkage.car_axes import CarAxes
-from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.bounds.enclosed_points import (
+    EnclosedPoses,
+    Numbers,
+    Points,
+    enclosed_coordinates,
+    enclosed_points,
+)
+from pointcoord.effects.effect import Effect
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import GAP, ByGap, ByInput, Way, shifted, way_slopes
-from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.vectors import LAST, NEXT
-from pointcoord.time_functions import TimeFunction
+from pointcoord.results.readout import Readout
+from pointcoord.results.samples import Samples
+from pointcoord.results.solved_scene import SolvedScene
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
-Numbers = Mapping[str, Mapping[str, Array]]
-"""Arrays by quantity and by name: of a point or a body (N, 3), of a car (N,)."""
 Laws = Mapping[str, Sequence[Enclosed]]
 
 POSITION = "position"
@@ -38,57 +40,6 @@ BLOCK = 4096
 ROUNDINGS = 3.0
 # Powers of two by which a unit of time is chosen: its square still is a number.
 LONGEST = 400
-
-
-class Bounded(Protocol):
-    """Something that reports numbers and knows how far they are off."""
-
-    @property
-    def derivative(self) -> int:
-        """Highest time derivative of positions that it is made of."""
-        ...
-
-    def ways(self, topology: Topology) -> tuple[Way, ...]:
-        """Along which ways it takes derivatives of places."""
-        ...
-
-    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> Numbers:
-        """Proven and expected error of each of its numbers, each with a leading dimension of 2.
-
-        Args:
-            numbers: everything that is reported, its own among it.
-        """
-        ...
-
-
-@dataclass(frozen=True)
-class Reported:
-    """What a motion reports, and what went into it beside the coordinates.
-
-    Attributes:
-        numbers: what is to be bounded.
-        effects: what gave them.
-        axes: the car's, along which angles are measured.
-        chassis: what it does, which was added to every point.
-        laws: the driving inputs.
-        solved: the coordinates, and how they were found.
-    """
-
-    numbers: Numbers
-    effects: Sequence[Bounded]
-    axes: CarAxes
-    chassis: ChassisMotion
-    laws: Mapping[str, TimeFunction]
-    solved: SolvedCoordinates
-
-    def part(self, here: slice | Indices) -> Reported:
-        """The same at some of the instants."""
-        part = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in self.numbers.items()}
-        return replace(self, numbers=part)
-
-    def together(self, groups: Groups) -> Numbers:
-        """The numbers by group."""
-        return {q: {n: groups.together(a) for n, a in arrays.items()} for q, arrays in self.numbers.items()}
 
 
 @dataclass(frozen=True)
@@ -131,12 +82,12 @@ class Proof:
 
 
 def prove(
-    mechanism: Mechanism,
-    times: Array,
-    reported: Reported,
+    solved: SolvedScene,
+    samples: Samples,
     *,
     rates: bool = False,
     certain: bool = False,
+    left: Array | None = None,
 ) -> Proof:
     """Prove poses, in blocks of instants.
 
@@ -144,58 +95,59 @@ def prove(
     the coordinates y that are proven. So it is compared with where the points exactly are.
 
     Args:
-        times: instants, shape (N,), s.
-        reported: the numbers, and what went into them.
+        samples: what is reported, at instants of shape (N,).
         rates: bound each number by itself.
         certain: take the values of the laws as they are computed for exact; of positions alone.
+        left: how far each pose was left because no more was asked, (N,), in units; what `solved` says of it
+            unless given.
     """
+    times, effects = samples.times, solved.readout.plan.computed
     order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
     columns = np.empty((6, len(times)))
     bounds = _Bounds(len(times))
     for low in range(0, len(times), BLOCK):
         here = slice(low, low + BLOCK) if order is None else order[low : low + BLOCK]
-        part = reported.part(here)
+        numbers = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in samples.numbers.items()}
         with np.errstate(all="ignore"):  # what overflows comes out infinite, which proves nothing
             if rates:
-                poses, exact = _with_rates(mechanism, times[here], part)
-                found = bounds_of_numbers(exact, part.effects, part.together(poses.groups))
-                bounds.put(here, poses.groups, *found)
+                unsolved = solved.unsolved(times[here]) if left is None else left[here]
+                poses, exact = _with_rates(solved, times[here], unsolved)
+                together = poses.groups.together
+                by_group = {q: {n: together(a) for n, a in arrays.items()} for q, arrays in numbers.items()}
+                bounds.put(here, poses.groups, *bounds_of_numbers(exact, effects, by_group))
             else:
-                poses, exact = _positions(mechanism, times[here], part, certain)
-            columns[:, here] = _of_poses(times[here], poses, exact, part)
+                poses, exact = _positions(solved, times[here], certain)
+            columns[:, here] = _of_poses(times[here], poses, exact, numbers[POSITION])
     own, bound, carried, gain, condition, residual = columns
     return Proof(times, own, bound, carried, gain, condition, residual, bounds.proven, bounds.expected)
 
 
-def _positions(
-    mechanism: Mechanism, times: Array, reported: Reported, certain: bool
-) -> tuple[CertifiedPoses, EnclosedPoses]:
+def _positions(solved: SolvedScene, times: Array, certain: bool) -> tuple[CertifiedPoses, EnclosedPoses]:
     """Poses at some instants that are certified, and where their points exactly are."""
-    (y,) = reported.solved.coordinates(times, 0)
+    mechanism, (y,) = solved.readout.mechanism, solved.coordinates(times, 0)
     drives = _drives(mechanism)
     groups, factors = grouped(mechanism.map, y, drives)
     together, driven = groups.together, {}
     for place, drive in drives.items():
-        law = reported.laws[drive.input]
+        law = solved.functions[drive.input]
         doubt = np.zeros_like(times) if certain else law.rounding(times)
         lacking, uncertainty = drive.rounding(y[:, place], mechanism.drawing, doubt)
         driven[place] = Enclosed.of(y[:, place], lacking, uncertainty, uncertainty).together(together)
     poses = CertifiedPoses.of(mechanism, groups, factors, together(y), driven)
-    functions = reported.chassis.functions
+    functions = solved.readout.chassis.functions
     laws = {name: [law.enclosed(times)[0].together(together)] for name, law in functions.items()}
     number = len(poses.factors.condition)
     coordinates = enclosed_coordinates(mechanism, poses, (), np.zeros(number), ())
-    return poses, _enclosed(mechanism, reported, coordinates, laws, [np.ones((number, 1))])
+    points = enclosed_points(mechanism, coordinates)
+    return poses, enclosed_poses(solved.readout, points, laws, [np.ones((number, 1))])
 
 
-def _with_rates(
-    mechanism: Mechanism, times: Array, reported: Reported
-) -> tuple[CertifiedPoses, EnclosedPoses]:
+def _with_rates(solved: SolvedScene, times: Array, unsolved: Array) -> tuple[CertifiedPoses, EnclosedPoses]:
     """The same with the rates of the points, as many as were solved for."""
-    highest = max((effect.derivative for effect in reported.effects), default=0)
-    y, *rates = reported.solved.coordinates(times, max(highest, 2))
+    readout, mechanism = solved.readout, solved.readout.mechanism
+    y, *rates = solved.coordinates(times, max(readout.plan.derivative, 2))
     groups, factors = grouped(mechanism.map, y, _drives(mechanism))
-    together, functions = groups.together, {**reported.laws, **reported.chassis.functions}
+    together, functions = groups.together, {**solved.functions, **readout.chassis.functions}
     laws = {
         name: [part.together(together) for part in law.enclosed(times, max(len(rates), 2))]
         for name, law in functions.items()
@@ -210,33 +162,29 @@ def _with_rates(
     time = unit_of_time([poses.pose.size, *(rate.size for rate in computed)])
     powers = [time**d for d in range(len(rates) + 1)]
     computed = [rate.scaled(power[:, None, None]) for rate, power in zip(computed, powers[1:], strict=True)]
-    cut = _left_out(poses, times, reported.solved, (y, *rates), powers)
-    unsolved = together(reported.solved.unsolved(times)).max(axis=1)
-    coordinates = enclosed_coordinates(mechanism, poses, computed, unsolved, cut)
-    exact = _enclosed(mechanism, reported, coordinates, laws, [p[:, None] for p in powers])
-    every = (way for effect in reported.effects for way in effect.ways(mechanism.topology))
-    ways = tuple(dict.fromkeys(every))
+    cut = _left_out(poses, times, solved, (y, *rates), powers)
+    most = together(unsolved).max(axis=1)
+    coordinates = enclosed_coordinates(mechanism, poses, computed, most, cut)
+    own = {name: laws[name] for name in readout.chassis.functions}
+    points = enclosed_points(mechanism, coordinates)
+    exact = enclosed_poses(readout, points, own, [power[:, None] for power in powers])
+    ways = readout.plan.ways(mechanism.topology)
     slopes = {
-        way: _slopes(mechanism, poses, slope, laws, reported.chassis, unsolved, way)
+        way: _slopes(readout, poses, slope, laws, most, way)
         for way, slope in zip(ways, way_slopes(mechanism, y, ways), strict=True)
     }
     return poses, replace(exact, slopes=slopes)
 
 
 def _slopes(
-    mechanism: Mechanism,
-    poses: CertifiedPoses,
-    slopes: Array,
-    laws: Laws,
-    chassis: ChassisMotion,
-    unsolved: Array,
-    way: Way,
+    readout: Readout, poses: CertifiedPoses, slopes: Array, laws: Laws, unsolved: Array, way: Way
 ) -> tuple[Points, Points]:
     """The derivatives of places along a way: as rates where it alone moves, by 1 a unit of time.
 
     Args:
         slopes: the computed ones of y, (N, size).
     """
+    mechanism, chassis = readout.mechanism, readout.chassis
     known, driven = {}, way.input if isinstance(way, ByInput) else ""
     for place, drive in _drives(mechanism).items() if driven else ():
         value = laws[drive.input][0]
@@ -251,17 +199,17 @@ def _slopes(
     if isinstance(way, ByGap):
         for points, gap in zip(places, (np.zeros(3), np.eye(3)[way.axis]), strict=True):
             points[GAP] = Enclosed.of(np.broadcast_to(gap, (len(slopes), 3))).together(poses.groups.together)
-    values = {n: laws[n][0] for n in chassis.turning}
-    held = {
-        n: [value, value.like(np.full(value.middle.shape, float(n == driven)))] for n, value in values.items()
-    }
+    held = {}
+    for name in chassis.turning:
+        value = laws[name][0]
+        held[name] = [value, value.like(np.full(value.middle.shape, float(name == driven)))]
     return chassis.turned_exactly(held, places, float(mechanism.unit))[1], places[1]
 
 
 def _left_out(
     poses: CertifiedPoses,
     times: Array,
-    solved: SolvedCoordinates,
+    solved: SolvedScene,
     states: Sequence[Array],
     powers: Sequence[Array],
 ) -> list[Array]:
@@ -290,38 +238,33 @@ def _left_out(
     return found
 
 
-def _enclosed(
-    mechanism: Mechanism,
-    reported: Reported,
-    coordinates: Sequence[Enclosed],
-    laws: Laws,
-    powers: Sequence[Array],
+def enclosed_poses(
+    readout: Readout, points: Sequence[Points], laws: Laws, powers: Sequence[Array]
 ) -> EnclosedPoses:
-    """Where the points of poses are, from where their coordinates are.
+    """Where the points of poses are after what the chassis does.
 
     Args:
+        points: by time derivative, before that, in units per unit of time^d.
+        laws: of what moves the chassis, mm or rad and s.
         powers: of the unit of time of each group, s^d, (G, 1).
     """
-    chassis = reported.chassis
-    laws = {name: laws[name] for name in chassis.functions}
+    mechanism, chassis = readout.mechanism, readout.chassis
+    scaled = {
+        name: [part.scaled(power) for part, power in zip(parts, powers, strict=False)]
+        for name, parts in laws.items()
+        if name in chassis.centres
+    }
+    turned = chassis.turned_exactly(scaled, points, float(mechanism.unit))
     added = chassis.enclosed(laws, mechanism.origin, len(powers) - 1)
-    points: Sequence[Mapping[str, Enclosed]] = enclosed_points(mechanism, coordinates)
-    in_chassis = points
-    if chassis.turning:
-        scaled = {
-            name: [part.scaled(power) for part, power in zip(parts, powers, strict=False)]
-            for name, parts in laws.items()
-        }
-        points = chassis.turned_exactly(scaled, points, float(mechanism.unit))
-    return EnclosedPoses(mechanism, reported.axes, points, in_chassis, added, powers)
+    return EnclosedPoses(mechanism, readout.axes, turned, points, added, powers)
 
 
 def _of_poses(
-    times: Array, poses: CertifiedPoses, exact: EnclosedPoses, reported: Reported
+    times: Array, poses: CertifiedPoses, exact: EnclosedPoses, positions: Mapping[str, Array]
 ) -> tuple[Array, ...]:
-    """The arrays of a `Proof` at some instants."""
+    """The arrays of a `Proof` at some instants, of positions that are reported there."""
     mechanism, groups, certificate = exact.mechanism, poses.groups, poses.certificate
-    topology, positions = mechanism.topology, reported.numbers[POSITION]
+    topology = mechanism.topology
     own = certificate.coordinates[..., : 3 * len(topology.moving)].max(axis=-1)
     # Of carried points alone there is nothing here; a pose that is not proven is not proven for them either.
     bound, carried = np.where(np.isfinite(own), 0.0, np.inf), np.zeros_like(own)
@@ -361,7 +304,7 @@ def _gain(exact: EnclosedPoses, name: str) -> Array:
 
 
 def bounds_of_numbers(
-    poses: EnclosedPoses, effects: Sequence[Bounded], numbers: Numbers
+    poses: EnclosedPoses, effects: Sequence[Effect], numbers: Numbers
 ) -> tuple[Numbers, Numbers]:
     """Proven error of every number, and the error that the method makes at most where nothing is wrong."""
     found: dict[str, dict[str, Array]] = {quantity: {} for quantity in numbers}

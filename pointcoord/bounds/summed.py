@@ -1,10 +1,8 @@
-"""What a proof needs of a solution, whichever way it was found."""
+"""What summing a series leaves out and rounds."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,33 +10,6 @@ from numpy.typing import NDArray
 from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
-
-
-class SolvedCoordinates(Protocol):
-    """The coordinates of a linkage and their time derivatives, as they were solved for."""
-
-    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """y and its derivatives up to one, or as many as were solved for, each (N, size), units per s^d.
-
-        Args:
-            instants: shape (N,), s; they do not decrease.
-        """
-        ...
-
-    def summed(self, instants: Array) -> Sequence[Summed]:
-        """How each of these was summed from a series; empty if they were solved for at the instants."""
-        ...
-
-    def pieces(self, instants: Array) -> NDArray[np.intp]:
-        """Number of the series that each instant is summed from, (N,); of those that were solved for any."""
-        ...
-
-    def unsolved(self, instants: Array) -> Array:
-        """How far from its assembly each pose was left because no more was asked, proven, in units, (N,).
-
-        Rounding, and what a series leaves out, are apart.
-        """
-        ...
 
 
 @dataclass(frozen=True)
