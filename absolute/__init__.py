@@ -1,4 +1,4 @@
-"""Mechanisms in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
+"""Mechanisms in absolute coordinates: bodies with poses, joints as rows, Newton's method on their poses."""
 
 from absolute.compiler import compile
 from absolute.effects import AXLE_EFFECTS, EFFECTS, Effect, effects_in

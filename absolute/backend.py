@@ -1,4 +1,4 @@
-"""Pinocchio, or one line that says how to get it; all modules get it here."""
+"""Pinocchio for all modules of the package, or one line that says how to install it."""
 
 try:
     import pinocchio as pin
@@ -7,10 +7,10 @@ except ModuleNotFoundError as error:
         f"the absolute model needs Pinocchio ({error}): pip install 'pointcoord[validate]'", name=error.name
     ) from None
 except ImportError as error:
-    # As in a slim container, where libgomp.so.1 is not.
+    # For example in a minimal container without libgomp.so.1.
     raise ImportError(
-        f"the absolute model needs Pinocchio, which is there and does not load ({error}): "
-        "install the system's package with the library that is named, such as libgomp1",
+        f"the absolute model needs Pinocchio, which is installed and does not load ({error}): "
+        "install the system package of the missing library, such as libgomp1",
         name="pinocchio",
     ) from error
 

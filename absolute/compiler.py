@@ -1,15 +1,16 @@
-"""A mechanism as plain data becomes the rows of a linkage.
+"""Compiles a mechanism given as plain data to the rows of a linkage.
 
     one point of two bodies    a ball joint          rod     a distance
     two points of two bodies   a hinge               slide   a point on a line of a body
 
-Joints are made of two kinds of rows: two points meet along some directions, and directions of two bodies stay
-at right angles. A free point, of no body, is a body of its own that does not turn. A wheel's contact point is
-the lowest of a disc that turns about the wheel's axis and has a level radius: its height is that of a
+Joints consist of two kinds of rows: two points meet along some directions, and directions of two bodies stay
+at right angles. A free point, of no body, becomes a body that does not turn. A wheel's contact point is the
+lowest point of a disc that turns about the wheel's axis and has a level radius; its height is then that of a
 body's point.
 
-The chassis stands, unless inputs turn it: then it is a body on a driven hinge, that of the first of several
-on a body that the next one turns. The frame of all this goes with the car as that is displaced.
+The chassis stands still, unless inputs turn it: then it is a body on a driven hinge. With several such
+inputs, each hinge carries a body on which the next one turns. The frame of all this moves with the car's
+displacement.
 """
 
 import math
@@ -23,56 +24,56 @@ from absolute.errors import DescriptionError
 from absolute.model import CAR, CHASSIS, Corner, Drawing, Input, Load, Model, Row
 from absolute.vectors import EPS, Array, cross
 
-# The product of three vectors between such points, mm^3, and the squares of lengths are normal numbers.
+# Within these limits, products of three vectors between points, mm^3, and squares of lengths are normal.
 LARGEST_COORDINATE, SMALLEST_SIZE = 1e100, 1e-100
-# Two points nearer than this to each other, in units of size, share half of their digits: rounding of the
-# coordinates given turns the line between them by as much as half of its digits.
+# In units of size: coordinates of two points nearer than this agree in half of their digits, so that rounding
+# in the given coordinates turns the line between them by half of its digits.
 SHORTEST_AXIS = math.sqrt(EPS)
-# Products of directions that are turned in doubles are off by a few roundings.
+# Products of directions that were rotated in doubles have an error of a few roundings.
 ROUNDED = 16.0 * EPS
-# `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
+# Largest error of the right angle between `up` and `right`: 1e-6 rad lets rounded directions pass.
 LARGEST_SKEW = 1e-6
 SIDES = ("left", "right")
-# Which way the axle is from the middle of the car, rearward.
+# Direction from the middle of the car to the axle, rearward.
 CAR_AXLES = {"front": -1.0, "rear": 1.0}
 ROLES = ("wheel_axis", "steering_axis", "damper")
 INPUTS = ("angle", "travel", "steers", "height", "contact", "distance", "turns", "moves")
-# What a car that turns does so on; no name of a body is empty.
+# The body on which a turning car turns; no other body has an empty name.
 GROUND = ""
 NOTHING, AXES = np.zeros(3), np.eye(3)
-# Two bodies, and a point in each: first, start, second, end.
+# Two bodies, and a point in each: first body, its point, second body, its point.
 Ends = tuple[str, str, str, str]
 
 
 def compile(mechanism: Mapping[str, Any]) -> Model:
-    """The linkage of a mechanism.
+    """Compile the linkage of a mechanism.
 
     Args:
         mechanism: plain data, mm and rad:
             bodies: name -> names of its points; `chassis` is one of them. rods: name -> two points.
             slides: name -> points, body, through, along, turns.
-            inputs: those that are driven, name -> one of angle, travel, steers, height, contact, distance, or
-                of turns and moves, which turn and displace the whole car.
-            roles: knuckle, a body; wheel_axis, steering_axis and damper, two points each, if there are any.
-            points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
-            sides: of a mechanism with parts, part -> side; names of its roles and inputs begin with the part
+            inputs: the driven ones, name -> one of angle, travel, steers, height, contact, distance, or of
+                turns and moves, which turn and displace the whole car.
+            roles: knuckle, a body; wheel_axis, steering_axis and damper, two points each, if they exist.
+            points: name -> (x, y, z). up, right: directions, of any length. side: "left" or "right".
+            sides: for a mechanism with parts, part -> side; names of its roles and inputs begin with the part
                 and a dot.
-            wheel_radius: of the wheel, mm, or None where nothing needs it; likewise rack_per_turn, the mm
-                that the rack travels for a turn of the steering wheel.
+            wheel_radius: radius of the wheel, mm, or None where nothing needs it. rack_per_turn: travel of
+                the rack per turn of the steering wheel, mm, or None where nothing needs it.
             car: numbers of the car, as far as given: axle, "front" or "rear"; wheelbase, mm;
                 centre_of_gravity_height above the ground as drawn, mm; brake_share and drive_share, the parts
                 of the braking and of the driving force that act at this axle, 0 to 1; spring_rate, N/mm, and
                 spring_free_length, mm, of a spring between the ends of the damper.
             loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
     Raises:
-        DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
+        DescriptionError: an unknown name, points that do not define a line, directions not at right angles,
             too few rows.
     """
     return _Compiler(mechanism).model()
 
 
 class _Compiler:
-    """A mechanism whose rows are being made."""
+    """Holds a mechanism while its rows are made."""
 
     def __init__(self, mechanism: Mapping[str, Any]) -> None:
         self.of = mechanism
@@ -95,13 +96,13 @@ class _Compiler:
         self.directions = self._directions()
         self.middle, self.size = self._extent()
         self.corners = self._corners()
-        # With free points and other aids, which are added as rows need them.
+        # Includes free points and auxiliary bodies, which are added as rows need them.
         self.bodies: dict[str, tuple[str, ...]] = {}
         self.anchors: dict[str, Array] = {}
         self.unturned: set[str] = set()
 
     def model(self) -> Model:
-        """All bodies and joints, then all inputs."""
+        """Make all bodies and joints, then all inputs."""
         turning = [name for name, given in self.driven.items() if "turns" in given]
         if turning:
             self._add(GROUND, ())
@@ -155,7 +156,7 @@ class _Compiler:
                 rows,
             )
 
-    # What is given
+    # Reading the description
 
     def _directions(self) -> dict[str, Array]:
         up, right = (_unit_of(name, _vector_of(name, name, self.of[name])) for name in ("up", "right"))
@@ -175,7 +176,7 @@ class _Compiler:
         return self.directions[along]
 
     def _corners(self) -> dict[str, Corner]:
-        """The wheel of each part, whose names have its own in front; or the only one."""
+        """Part -> its wheel, whose names begin with the part; "" -> the only wheel."""
         radius = self.of.get("wheel_radius")
         if radius is not None and not (_is_number(radius) and radius > 0.0):
             raise DescriptionError(
@@ -208,7 +209,7 @@ class _Compiler:
         return loads
 
     def _dampers(self) -> dict[str, Row]:
-        """Rows of the dampers' lengths, where there are loads for them to carry."""
+        """Rows of the dampers' lengths, where loads exist for the dampers to carry."""
         rows = {}
         for part, corner in self.corners.items() if self.of.get("loads") else ():
             if "damper" in corner.roles:
@@ -219,13 +220,13 @@ class _Compiler:
         return rows
 
     def _felt_by(self, *bodies: str) -> str:
-        """Of two bodies the knuckle, or the first that moves: the one on which a joint's force is given."""
+        """The body on which a joint's force is reported: the knuckle, or the first moving body of the two."""
         knuckles = {corner.knuckle for corner in self.corners.values()}
         moving: list[str] = [body for body in self.named if body in bodies and body != CHASSIS]
         return next((body for body in moving if body in knuckles), moving[0])
 
     def _are_shared(self, points: Iterable[str]) -> bool:
-        """Whether two bodies share points that are no one else's, so that the force there is determined."""
+        """Whether two bodies share these points and no other body has them, so their force is determined."""
         return all(point not in self.guided and len(self._holders(point)) == 2 for point in points)
 
     def _extent(self) -> tuple[Array, float]:
@@ -237,7 +238,8 @@ class _Compiler:
         if not size > least:
             raise DescriptionError(
                 f"the points lie within {size:.3g} mm at coordinates up to {largest:.3g} mm: too few digits "
-                f"tell them apart; more than {least:.3g} mm are needed: draw them larger or nearer to it",
+                f"are left to tell them apart; more than {least:.3g} mm are needed: draw them farther apart, "
+                "or nearer to the origin",
                 "points",
                 size,
             )
@@ -246,13 +248,12 @@ class _Compiler:
     # Bodies and lines
 
     def _add(self, body: str, points: tuple[str, ...]) -> str:
-        """A body, whose origin is an end of its shortest lines, since rounding would turn these.
-
-        That of the chassis and of what it turns on is the middle.
+        """Add a body. Its origin is the point with the shortest lines to its others, since rounding would
+        turn these lines; the middle of the drawing for the chassis and for what the chassis turns on.
         """
         places = np.array([self.points[point] for point in points]).reshape(-1, 3)
         apart = np.linalg.norm(places[:, None] - places, axis=-1)
-        # A line of no length has no rounding either.
+        # Rounding does not turn a line of length zero.
         nearness = np.log(np.where(apart > 0.0, apart, 1.0)).sum(axis=1)
         self.bodies[body] = points
         self.anchors[body] = places[nearness.argmin()] if points and body != CHASSIS else self.middle
@@ -262,7 +263,7 @@ class _Compiler:
         return [body for body, names in self.bodies.items() if point in names]
 
     def _held(self, point: str) -> list[str]:
-        """The same, of a point of no body a body of its own, which does not turn."""
+        """Bodies with a point; a free point gets a body that does not turn."""
         if not self._holders(point):
             self.unturned.add(self._add(f"free point {point}", (point,)))
         return self._holders(point)
@@ -301,8 +302,8 @@ class _Compiler:
     def _between(
         self, owner: str, kind: str, ends: Ends, along: Array = NOTHING, beside: Array = NOTHING
     ) -> Row:
-        """A row of places in two bodies; `beside` leads from the points to those meant, mm: a sum would be
-        rounded as they are."""
+        """A row of places in two bodies; `beside` leads from the points to the places, mm. It is added to the
+        arms, since a sum of coordinates would be rounded to their digits."""
         first, start, second, end = ends
         one, other = (
             (self.points[point] - self.anchors[body]) / self.size + beside / self.size
@@ -311,23 +312,23 @@ class _Compiler:
         return self._row(owner, kind, first, second, along, one, other)
 
     def _meet(self, owner: str, ends: Ends, along: Iterable[Array] = AXES) -> None:
-        """Points of two bodies are in one place, along some directions of the first."""
+        """Points of two bodies meet along some directions of the first body."""
         self.joints += [self._between(owner, "offset", ends, way) for way in along]
 
     def _across(self, owner: str, first: str, second: str, one: Array, other: Array) -> None:
-        """Directions of two bodies stay at right angles. That also allows the reversed joint, but no way of
-        small steps leads there."""
+        """Directions of two bodies stay at right angles. The reversed joint satisfies the row too, but no
+        path in small steps leads to it."""
         self.joints.append(self._row(owner, "angle", first, second, one, NOTHING, other))
 
     def _hinge(self, owner: str, first: str, second: str, point: str, axis: Array) -> None:
         x, y, z = frame = frame_about(axis)
-        # Along its own axes, so that one row at a time follows from others where hinges are parallel.
+        # Along the hinge's own axes, so that a single row is redundant where hinges are parallel.
         self._meet(owner, (first, point, second, point), frame)
         self._across(owner, first, second, y, z)
         self._across(owner, first, second, x, z)
 
     def _distance_row(self, owner: str, start: str, end: str) -> tuple[Row, float]:
-        """The distance of points of two bodies, and how far apart they are drawn, mm."""
+        """The row of the distance of points of two bodies, and their drawn distance, mm."""
         firsts, seconds = self._holders(start), self._holders(end)
         both = set(firsts) & set(seconds)
         if both or not firsts or not seconds:
@@ -343,15 +344,15 @@ class _Compiler:
     # Joints
 
     def _shared_points(self) -> None:
-        """Hinges, and ball joints of what these do not hold together; n - 1 for n bodies."""
+        """Hinges, and ball joints between bodies that no hinge connects yet; n - 1 joints for n bodies."""
         hinges: dict[frozenset[str], list[str]] = {}
         driven = {given.get("angle") for given in self.driven.values()}
         for first, second in combinations(self.named, 2):
             shared = [point for point in self.named[second] if point in self.named[first]]
             if len(shared) > 2:
                 raise DescriptionError(
-                    f"bodies {first!r} and {second!r} share the points {shared}: two make a hinge, "
-                    "and more make the two one body; make them one, or give each points of its own",
+                    f"bodies {first!r} and {second!r} share the points {shared}: two shared points make a "
+                    "hinge, more make the two one body; join them, or give each body separate points",
                     second,
                     shared,
                 )
@@ -376,7 +377,7 @@ class _Compiler:
                     self.reported[point,] = name, self._felt_by(apart[0][0], group[0])
 
     def _line_of(self, slide: str) -> tuple[str, Array]:
-        """A point of the line of a slide, and its direction."""
+        """A point on the line of a slide, and the line's direction."""
         through, along = self.slides[slide]["through"], self.slides[slide]["along"]
         _one_of(f"the point `through` of slide {slide!r}", self.points, through)
         _one_of(f"`along` of slide {slide!r}", (*self.directions, *self.points), along)
@@ -385,7 +386,7 @@ class _Compiler:
         return through, self._line(f"slide {slide!r}", through, along)[0]
 
     def _slide(self, name: str) -> None:
-        """Points stay on the line, and a body of two of them does not turn where `turns` is false."""
+        """Put points on the line; with `turns` false, a body with two of them does not turn about it."""
         slide, what = self.slides[name], f"slide {name!r}"
         body, points = slide["body"], tuple(slide["points"])
         _one_of(f"the body of {what}", self.named, body)
@@ -397,7 +398,7 @@ class _Compiler:
             owners = self._holders(point)
             held = self._other_than(body, point, what) if owners else self._held(point)[0]
             self._meet(label, (body, through, held, point), frame[:2])
-            # A point of no body has the force itself, if a rod pulls it that is not along the slide.
+            # A point of no body carries force itself if a rod at an angle to the slide pulls it.
             rods = [ends for ends in self.rods.values() if point in ends]
             felt = len(owners) == 1 or (not owners and any(not {*ends} <= {*points} for ends in rods))
             if felt and slide["turns"] and self.guided.count(point) == 1:
@@ -429,13 +430,13 @@ class _Compiler:
     # Inputs
 
     def _over(self, name: str, ends: Ends, way: Array, beside: Array = NOTHING, **more: Any) -> None:
-        """How far a place in a body is from one in another, along a direction of that (see `_between`)."""
+        """An input that is the offset of a place in a body from one in another, along a direction."""
         drawn, per_unit = float(way @ (self.points[ends[3]] - self.points[ends[1]])), more.get("steers", 1.0)
         row = self._between(name, "offset", ends, way, beside)
         self.inputs.append(Input(row, name, per_unit / self.size, drawn / per_unit + 0.0, **more))
 
     def _turn(self, name: str, first: str, second: str, axis: Array, **more: Any) -> None:
-        """How far a body is turned against another, from the drawing."""
+        """An input that is the rotation of a body against another, from the drawing."""
         x, y, _ = frame_about(axis)
         row = self._row(name, "turn", first, second, x, NOTHING, -y)
         self.inputs.append(Input(row, name, 1.0, 0.0, **more))
@@ -480,7 +481,7 @@ class _Compiler:
         self._slides(name, given["steers"], per_turn / math.tau)
 
     def _slides(self, name: str, slides: Iterable[str], per_unit: float) -> None:
-        """A value drives slides, so many mm for a unit of it."""
+        """An input that drives slides, by `per_unit` mm per unit of its value."""
         _one_of(f"a slide of input {name!r}", self.slides, *slides)
         for slide in slides:
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
@@ -544,13 +545,13 @@ def frame_about(z: Array) -> Array:
 
 
 def turned_least(what: str, frame: Array, z: Array) -> Array:
-    """Axes x, y, z as rows, turned by the smallest rotation that brings their z into another direction."""
+    """Axes x, y, z as rows, turned by the smallest rotation that brings their z to the given direction."""
     cosine = float(frame[2] @ z)
     if cosine <= 0:
         raise DescriptionError(
             f"{what}: its two lines are drawn {np.degrees(np.arccos(max(cosine, -1.0))):.1f} degrees apart; "
-            "they shall become one line of the same sense, so less than 90 degrees is needed: swap the "
-            "points of one line or correct the drawing",
+            "they become one line of the same sense, so less than 90 degrees is needed: swap the points of "
+            "one line or correct the drawing",
             what,
             cosine,
         )
@@ -559,7 +560,7 @@ def turned_least(what: str, frame: Array, z: Array) -> Array:
 
 
 def _car_of(given: Any) -> dict[str, float]:
-    """The numbers of a car, or a DescriptionError about an unknown name, a wrong type or range."""
+    """The numbers of a car; DescriptionError for an unknown name, a wrong type or a value out of range."""
     if not isinstance(given, Mapping | None):
         raise DescriptionError(f"car is {given!r}; a table of {list(CAR)} is needed", "car", given)
     car = {}
@@ -586,7 +587,7 @@ def _one_of(what: str, allowed: Iterable[str], *values: object) -> None:
 
 
 def _vector_of(what: str, name: str, value: object) -> Array:
-    """Three finite floats, or a DescriptionError that says what is wrong with `what`."""
+    """Three finite floats; DescriptionError that names `what` and the value if they are not."""
     try:
         array = np.array(value, dtype=float)
     except (TypeError, ValueError):
@@ -597,7 +598,7 @@ def _vector_of(what: str, name: str, value: object) -> Array:
 
 
 def _point_of(name: str, value: object) -> Array:
-    """Coordinates of a point, mm, or a DescriptionError that says what is wrong with them."""
+    """Coordinates of a point, mm; DescriptionError that names the point and the value if they are wrong."""
     point = _vector_of(f"point {name!r}", name, value)
     if np.abs(point).max() > LARGEST_COORDINATE:
         raise DescriptionError(
@@ -610,7 +611,7 @@ def _point_of(name: str, value: object) -> Array:
 
 
 def _unit_of(name: str, vector: Array) -> Array:
-    """The direction of a vector; one of length 1 but for rounding is it: to divide it would round it again.
+    """The direction of a vector. A vector of length 1 to rounding is returned as it is, without rounding.
 
     Raises:
         DescriptionError: it is zero.
@@ -622,6 +623,6 @@ def _unit_of(name: str, vector: Array) -> Array:
         raise DescriptionError(
             f"{name} is {vector.tolist()}; a direction must not be zero", name, vector.tolist()
         )
-    # Scaled before the norm: squares of the smallest and largest numbers are lost.
+    # Scaled before the norm: squares of the smallest and largest numbers under- or overflow.
     scaled = vector / largest
     return np.asarray(scaled / np.linalg.norm(scaled))

@@ -1,4 +1,4 @@
-"""Numbers with their derivatives: a formula of them is differentiated exactly as it is evaluated."""
+"""Dual numbers: values with their derivatives, so that formulas are differentiated as they are evaluated."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,10 +10,10 @@ from absolute.vectors import Array
 
 @dataclass(frozen=True)
 class Dual:
-    """A number, or a vector by its components, at N instants, and its derivatives by K inputs.
+    """A number or a vector (components first) at N instants, and its derivatives by K inputs.
 
     Attributes:
-        value: (..., N). slopes: (..., N, K); N or K may be 1 of what is the same for all.
+        value: (..., N). slopes: (..., N, K). N or K may be 1 where values are equal for all.
     """
 
     value: Array
@@ -42,18 +42,18 @@ class Dual:
         return _chain(ratio, (1.0 / other.value, self), (-ratio / other.value, other))
 
     def along(self, directions: Array) -> "Dual":
-        """Components of a vector (3, N) along directions (3, 3), one in each row."""
+        """Components of a vector (3, N) along directions (3, 3), one direction per row."""
         return Dual(directions @ self.value, np.tensordot(directions, self.slopes, 1))
 
 
 def constant(value: Array | float) -> Dual:
-    """What no input changes, (...) or (..., N)."""
+    """A constant of shape (...) or (..., N), with zero derivatives."""
     value = np.asarray(value, dtype=float)
     return Dual(value, np.zeros((*value.shape, 1)))
 
 
 def hypot(*parts: Dual) -> Dual:
-    """The square root of the sum of squares, which has no derivative where it is zero."""
+    """The square root of the sum of squares; its derivative does not exist where it is zero."""
     length = np.sqrt(np.sum([part.value * part.value for part in parts], axis=0))
     return _chain(length, *((part.value / length, part) for part in parts))
 
@@ -67,6 +67,6 @@ def arctan2(rise: Dual, run: Dual) -> Dual:
 
 
 def _chain(value: Array, *parts: tuple[Array | float, Dual]) -> Dual:
-    """A function of numbers by its value and its derivative by each of them."""
+    """A function value with its derivatives, from the partial derivatives by each argument."""
     first, *others = (np.asarray(partial)[..., None] * of.slopes for partial, of in parts)
     return Dual(value, np.asarray(sum(others, first)))

@@ -1,13 +1,13 @@
-"""Effects: numbers of the car that a solved motion has at each instant, by name.
+"""Effects: numbers of the car at each instant of a solved motion, by name.
 
-A number is written once, as a function of points; its derivatives by inputs come of the same function (see
-`Dual`). With n the direction from the inner point of the spin axis to the wheel centre W, and k the line from
-the lower to the upper point of the steering axis, the contact point of a wheel of radius r is the lowest of a
+Each number is one function of points; its derivatives by inputs follow from the same function (see `Dual`).
+With n the direction from the inner point of the spin axis to the wheel centre W, and k the line from the
+lower to the upper point of the steering axis, the contact point of a wheel of radius r is the lowest of a
 thin disc,
 
     c = W - r unit(up - (up . n) n),
 
-and is measured against the point of the line along k that is as high. Vectors are taken along outboard,
+and is measured from the point at the same height on the line along k. Vectors are taken along outboard,
 rearward and up, which do not turn with the car.
 
 As the wheel travels, c as a point of the knuckle has a velocity v, and the knuckle an angular velocity w. In
@@ -30,19 +30,19 @@ from absolute.results import Motion
 from absolute.vectors import EPS, Array
 
 Number = Callable[[Motion], Dual]
-# A number of an axis, by its direction, upward, and the way from a place of it to the wheel centre.
+# (motion, direction of an axis, upward, vector from a point of the axis to the wheel centre) -> number.
 OfAxis = Callable[[Motion, Dual, Dual], Dual]
 Values = Callable[[Motion], Array]
 
 OUTBOARD, REARWARD, UP = 0, 1, 2
 TIME = "time"
 GRADIENTS = {"travel": "mm", "rack": "mm", "roll": "rad", TIME: "s"}
-# As much of a velocity may be rounding at the largest condition number that is not refused.
+# Share of a velocity that may be rounding at the largest condition number that is accepted.
 ROUNDING = EPS / SMALLEST_RCOND
-# What rounding does not tell from none: of a velocity a part of it, and of the knuckle a turn, rad, for a
-# travel of the rack by the wheel's radius.
+# Limit below which rounding cannot be told from zero: as a share of a velocity; for the knuckle's rotation,
+# in rad for a rack travel of one wheel radius.
 LEAST = 1e-9
-# Radii of the wheel: an instant centre that is farther away is at infinity, by definition.
+# In wheel radii: an instant centre that is farther away counts as infinitely far.
 FARTHEST = 1e9
 
 
@@ -51,10 +51,10 @@ class Effect:
     """A number at each instant.
 
     Attributes:
-        unit: of the value.
-        value: (N,) of a motion looked at from a wheel; or, of an axle, from the left and the right one.
-        by: the input of each wheel that it takes derivatives by: "rack", the one that is the travel of a
-            slide, "travel", the one that is not, "roll", the one that rolls the chassis; "time" for all of
+        unit: unit of the value.
+        value: motion at a wheel -> (N,); or, for an axle, motions at the left and the right wheel -> (N,).
+        by: kind of input by which it takes derivatives, for each wheel: "rack", the input that is the travel
+            of a slide; "travel", the one that is not; "roll", the one that rolls the chassis; "time", all of
             them as they move; or "" for none.
     """
 
@@ -64,7 +64,7 @@ class Effect:
 
 
 def _along(motion: Motion, role: str) -> Dual:
-    """The line of a role by its components, (3, N)."""
+    """The components of a role's line, (3, N)."""
     return motion.components(motion.line(*motion.corner.ends(role)))
 
 
@@ -88,18 +88,18 @@ def contact(motion: Motion, drawn: bool = False) -> Dual:
 
 
 def _contact_moved(motion: Motion) -> Dual:
-    """From the drawn contact point to the contact point, by its components, (3, N)."""
+    """Components of the vector from the drawn contact point to the contact point, (3, N)."""
     return motion.components(motion.moved(_centre(motion)) + (contact(motion) - contact(motion, drawn=True)))
 
 
 def _contact_place(motion: Motion) -> Array:
-    """The contact point from the origin, by its components, (3, N)."""
+    """Components of the contact point's place, from the origin, (3, N)."""
     centre = _centre(motion)
     return motion.components(motion.drawn(centre) + motion.moved(centre) + contact(motion)).value
 
 
 def _of_line(role: str, number: Callable[..., Dual]) -> Number:
-    """A number of the line of a role by its components."""
+    """A number from the components of a role's line."""
     return lambda motion: number(*_along(motion, role))
 
 
@@ -112,17 +112,17 @@ def _kingpin(outboard: Dual, rearward: Dual, up: Dual) -> Dual:
 
 
 def _toe_by_arcsine(outboard: Dual, rearward: Dual, up: Dual) -> Dual:
-    """Asin of the forward part of the unit spin axis, by the part of it in the plane across the car."""
+    """Arcsine of the forward component of the unit spin axis, as the arctangent of its two parts."""
     return arctan2(-rearward, hypot(outboard, up))
 
 
 def toe_change_by_arcsine(motion: Motion) -> Dual:
-    """Less what it is in the drawing: the static setting."""
+    """Toe by arcsine minus its drawn value, the static setting."""
     return ANGLES["toe_by_arcsine"](motion) - _toe_by_arcsine(*motion.components(_drawn_axis(motion)))
 
 
 def steer_angle(motion: Motion) -> Dual:
-    """Of the wheel plane in plan, positive to the left."""
+    """Steer angle of the wheel plane in plan view, positive to the left."""
     toe = ANGLES["toe"](motion)
     return toe if motion.corner.side == "right" else -toe
 
@@ -140,7 +140,7 @@ ANGLES: Mapping[str, Number] = {
 
 
 def _level_with(axis: Dual, point: Dual) -> Dual:
-    """To a point from the place of an axis that is as high; `point` from any place of it."""
+    """Vector to a point from the axis at the same height; `point` is given from any point of the axis."""
     return point - axis * (point[UP] / axis[UP])
 
 
@@ -149,7 +149,7 @@ def _at_ground(motion: Motion, axis: Dual, centre: Dual) -> Dual:
 
 
 def mechanical_trail(motion: Motion, axis: Dual, centre: Dual) -> Dual:
-    """An axis at the ground from the contact point, along the tyre's own forward."""
+    """From the contact point to the axis at the ground, along the tyre's own forward direction."""
     outboard, rearward, _ = _at_ground(motion, axis, centre)
     spin_outboard, spin_rearward, _ = _along(motion, "wheel_axis")
     return (rearward * spin_outboard - outboard * spin_rearward) / hypot(spin_outboard, spin_rearward)
@@ -178,7 +178,7 @@ def _of_steering(number: OfAxis) -> Number:
 
 
 def travel(motion: Motion) -> Dual:
-    """How far the wheel centre has gone up in the chassis' frame."""
+    """Displacement of the wheel centre along up in the chassis' frame."""
     return motion.components(motion.in_the_car.moved(_centre(motion)))[UP]
 
 
@@ -197,52 +197,52 @@ def _slope(motion: Motion, number: Dual, by: str) -> Array:
 
 
 def _ratio(rise: Array | float, run: Array) -> Array:
-    """Not a number where run is zero."""
+    """The quotient; NaN where run is zero."""
     return np.where(run == 0.0, np.nan, rise / run)
 
 
 def _rising(velocity: Array) -> Array:
-    """The upward part of a velocity by its components, (3, N); zero where rounding may have made it."""
+    """The upward component of a velocity, from components (3, N); zero where it may be rounding."""
     up = velocity[UP]
     return np.where(np.abs(up) <= LEAST * np.linalg.norm(velocity, axis=0), 0.0, up)
 
 
 def _travelled(motion: Motion) -> Array:
-    """How fast the wheel centre goes up in the chassis' frame with the input that moves the wheel, (N,)."""
+    """Upward velocity of the wheel centre in the chassis' frame, per unit of the wheel's input, (N,)."""
     moved = motion.components(motion.in_the_car.moved(_centre(motion)))
     return _rising(_slope(motion, moved, "travel"))
 
 
 def _spin(motion: Motion, by: str) -> Array:
-    """w of the knuckle, (3, N)."""
+    """Angular velocity w of the knuckle, (3, N)."""
     return motion.spin(motion.corner.carrier)[..., motion.by.index((motion.part, by))]
 
 
 def _contact_velocity(motion: Motion) -> Array:
-    """v by its components, (3, N)."""
+    """Components of the contact point's velocity v, (3, N)."""
     velocity = motion.moved(_centre(motion)) + motion.riding(motion.corner.carrier, contact(motion))
     return _slope(motion, motion.components(velocity), "travel")
 
 
 def _over_the_contact(motion: Motion, velocity: Array) -> Array:
-    """Height above the contact point at which its normal meets the car's middle plane, front view.
+    """Height above the contact point where the normal to its velocity meets the middle plane, front view.
 
-    The normal is at a right angle to the velocity of the contact point as one of the knuckle; the plane goes
-    through the origin. Not a number where that velocity is level.
+    The velocity is that of the contact point as a point of the knuckle; the middle plane goes through the
+    origin. NaN where the velocity is level.
     """
     return np.asarray(_contact_place(motion)[OUTBOARD] * _ratio(velocity[OUTBOARD], _rising(velocity)))
 
 
 def arm_roll_centre_height(motion: Motion) -> Array:
-    """As `roll_centre_height`, of the arms alone: the knuckle turns about its steering axis as well, by as
-    much as leaves a pure rotation.
+    """Roll centre height by the arms: the knuckle also turns about its steering axis, by as much as leaves a
+    pure rotation.
 
-    With u the velocity of the axis' lower point and w the spin of the knuckle, (w + f k) . u = 0. Not a
-    number where u is square to the axis k, or none.
+    With u the velocity of the axis' lower point and w the angular velocity of the knuckle, (w + f k) . u = 0.
+    NaN where u is normal to the axis k, or zero.
     """
     (lower, upper), centre = motion.corner.ends("steering_axis"), _centre(motion)
     k, to_centre = motion.line(lower, upper).value, motion.line(lower, centre)
-    # The lower point moves as the wheel centre does, and the arm from there turns.
+    # The lower point moves with the wheel centre, minus the rotation of the arm from there.
     moving = motion.moved(centre) - motion.riding(motion.corner.carrier, to_centre)
     u, w = _slope(motion, moving, "travel"), _spin(motion, "travel")
     arm = to_centre.value + contact(motion).value
@@ -253,7 +253,7 @@ def arm_roll_centre_height(motion: Motion) -> Array:
 
 
 def instant_centre(h: int, component: int, sense: float = 1.0) -> Values:
-    """How far the instant centre in the plane of h and up is from c, along h or up; no number at infinity."""
+    """Distance of the instant centre in the plane of h and up from c, along h or up; NaN at infinity."""
 
     def of(motion: Motion) -> Array:
         velocity, axes = _contact_velocity(motion), motion.corner.axes
@@ -277,30 +277,30 @@ def _anti(motion: Motion, velocity: Array, share: str) -> Array:
 
 
 def anti_brake(motion: Motion) -> Array:
-    """How much of the load transfer of braking the linkage carries, %: anti-dive, at the rear anti-lift.
+    """Share of the load transfer in braking that the linkage carries, %: anti-dive, at the rear anti-lift.
 
-    The brake holds the contact point in the knuckle. Not a number where that does not rise with travel.
+    The brake fixes the contact point in the knuckle. NaN where the contact point does not rise with travel.
     """
     return _anti(motion, _contact_velocity(motion), "brake_share")
 
 
 def anti_drive(motion: Motion) -> Array:
-    """How much of the load transfer of driving the linkage carries, %: anti-squat, at the front anti-lift.
+    """Share of the load transfer in driving that the linkage carries, %: anti-squat, at the front anti-lift.
 
-    A shaft from the chassis turns the wheel in the knuckle, so that the knuckle takes the force at the wheel
-    centre. Not a number where that does not rise with travel.
+    A shaft from the chassis drives the wheel, so the force acts on the knuckle at the wheel centre. NaN where
+    the wheel centre does not rise with travel.
     """
     velocity = motion.components(motion.moved(_centre(motion)))
     return _anti(motion, _slope(motion, velocity, "travel"), "drive_share")
 
 
 def damper_per_wheel(motion: Motion) -> Array:
-    """What the damper is shortened by for each mm of travel; not a number where the wheel does not travel."""
+    """Shortening of the damper per mm of travel; NaN where the wheel does not travel."""
     return -_ratio(_slope(motion, LENGTHS["damper_length"](motion), "travel"), _travelled(motion))
 
 
 def wheel_per_damper(motion: Motion) -> Array:
-    """Travel for each mm that the damper is shortened by; not a number where its length does not change."""
+    """Travel per mm that the damper is shortened; NaN where its length does not change."""
     line = _slope(motion, motion.line(*motion.corner.ends("damper")), "travel")
     grown = _slope(motion, LENGTHS["damper_length"](motion), "travel")
     grown = np.where(np.abs(grown) <= LEAST * np.linalg.norm(line, axis=0), 0.0, grown)
@@ -308,27 +308,27 @@ def wheel_per_damper(motion: Motion) -> Array:
 
 
 def spring_force(motion: Motion) -> Array:
-    """Rate times what the spring is shorter than free, N: it pushes its ends apart."""
+    """Rate times the shortening from the free length, N; positive where the spring pushes its ends apart."""
     rate, free = motion.corner.numbers("spring_rate", "spring_free_length")
     return np.asarray(rate * (free - LENGTHS["damper_length"](motion).value))
 
 
 def wheel_rate(motion: Motion) -> Array:
-    """What a constant motion ratio makes of the spring's rate at the wheel, N/mm."""
+    """The wheel rate for a constant motion ratio, N/mm."""
     rate, _ = motion.corner.numbers("spring_rate", "spring_free_length")
     return np.asarray(rate * damper_per_wheel(motion) ** 2)
 
 
 def _screw(motion: Motion) -> tuple[Array, Array]:
-    """Spin of the knuckle and velocity of the wheel centre with the rack, (3, N); not numbers where it does
-    not turn as the rack moves, or about no line that leads up."""
+    """Angular velocity of the knuckle and velocity of the wheel centre with the rack, (3, N); NaN where the
+    knuckle does not turn as the rack moves, or about a level line only."""
     w, v = _spin(motion, "rack"), _slope(motion, motion.moved(_centre(motion)), "rack")
     turns = np.abs(motion.corner.axes[UP] @ w) * motion.corner.radius > LEAST
     return np.where(turns, w, np.nan), v
 
 
 def screw_pitch(motion: Motion) -> Array:
-    """How far the knuckle goes along its screw axis for a radian about it, mm, as the rack moves."""
+    """Advance of the knuckle along its screw axis per radian as the rack moves, mm."""
     w, v = _screw(motion)
     return np.asarray((w * v).sum(axis=0) / (w * w).sum(axis=0))
 
@@ -336,8 +336,8 @@ def screw_pitch(motion: Motion) -> Array:
 def _of_screw(number: OfAxis) -> Values:
     """A number of the screw axis.
 
-    Of a turn w and a velocity v of the wheel centre the way to it is v x w / w^2, but for its part along the
-    axis.
+    For an angular velocity w and a velocity v of the wheel centre, the vector from the axis to the wheel
+    centre is v x w / w^2, up to a part along the axis.
     """
 
     def of(motion: Motion) -> Array:
@@ -373,8 +373,8 @@ OF_VELOCITIES: Mapping[str, tuple[str, Values]] = {
 
 
 def _values(number: Number, by: str) -> Values:
-    """A number, or its change: for each mm of travel, all other inputs and the chassis held; for each mm of
-    the slide, or rad of roll, all else held; for each second, as everything moves."""
+    """A number, or its derivative: per mm of travel, all other inputs and the chassis held; per mm of the
+    slide or rad of roll, all else held; per second, with everything moving."""
 
     def of(motion: Motion) -> Array:
         found = number(motion)
@@ -396,14 +396,14 @@ def _with_gradients(unit: str, numbers: Mapping[str, Number]) -> dict[str, Effec
 
 
 def _drawn_apart(left: Motion, right: Motion) -> Array:
-    """From the left wheel centre to the right one as drawn, by the components of the right one, (3, 1)."""
+    """Components at the right wheel of the vector from the left to the right drawn wheel centre, (3, 1)."""
     return right.components(right.drawn(_centre(right)) - left.drawn(_centre(left))).value
 
 
 def _apart(left: Motion, right: Motion) -> Array:
-    """From the left contact point to the right one along right and up, (2, N).
+    """Components along right and up of the vector from the left to the right contact point, (2, N).
 
-    The drawn places are subtracted first: far out, each of the others would be rounded as they are.
+    The drawn places are subtracted first: far from the origin, each place would lose digits.
     """
     drawn = _drawn_apart(left, right)
     one, other = (of.components(of.moved(_centre(of)) + contact(of)).value for of in (left, right))
@@ -411,8 +411,8 @@ def _apart(left: Motion, right: Motion) -> Array:
 
 
 def _front_view(motion: Motion) -> tuple[Array, Array]:
-    """The contact point and its velocity with travel along right and up, (2, N) each; the velocity zero where
-    rounding may have made it."""
+    """The contact point and its velocity with travel, along right and up, (2, N) each; the velocity is zero
+    where it may be rounding."""
     velocity, size = _contact_velocity(motion), motion.mechanism.drawing.size
     out = np.array([[1.0 if motion.corner.side == "right" else -1.0], [1.0]])
     place, seen = (out * of[[OUTBOARD, UP]] for of in (_contact_place(motion), velocity))
@@ -421,10 +421,10 @@ def _front_view(motion: Motion) -> tuple[Array, Array]:
 
 
 def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
-    """Where the normals of both contact points meet in the front view, (N,) each: offset and height.
+    """Intersection of the normals of both contact points in the front view, offset and height, (N,) each.
 
-    With c, d the contact points and v, w their velocities there, it is c + x with v . x = 0 and
-    w . x = w . (d - c). Not a number where the normals are parallel or a velocity is zero.
+    With c, d the contact points and v, w their velocities, it is c + x with v . x = 0 and
+    w . x = w . (d - c). NaN where the normals are parallel or a velocity is zero.
     """
     (c, v), (_, w) = _front_view(left), _front_view(right)
     turn, apart = v[0] * w[1] - v[1] * w[0], _apart(left, right)
@@ -435,8 +435,8 @@ def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
 
 
 def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
-    """Steer angles of the inner and of the outer wheel, not numbers where the wheels are not steered to one
-    side; the wheelbase, and the track as drawn."""
+    """Steer angles of the inner and of the outer wheel, NaN where the wheels are not steered to one side; the
+    wheelbase, and the track as drawn."""
     (wheelbase,) = left.corner.numbers("wheelbase")
     one, other = (steer_angle(of).value for of in (left, right))
     sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
@@ -448,7 +448,7 @@ def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
 
 
 def turning_radius(left: Motion, right: Motion) -> Array:
-    """L |cot d_l + cot d_r| / 2: of the axle's middle, of the wheels' mean turn, on a car of wheelbase L."""
+    """L |cot d_l + cot d_r| / 2: turning radius of the axle's middle for a car of wheelbase L."""
     inner, outer, wheelbase, _ = _steered(left, right)
     return np.asarray(np.abs(_cot(inner) + _cot(outer)) * wheelbase / 2.0)
 
@@ -462,7 +462,7 @@ def ackermann(left: Motion, right: Motion) -> Array:
 
 
 def ackermann_error(left: Motion, right: Motion) -> Array:
-    """d_o - arccot(cot d_i + t / L): what the outer wheel is steered more than it would have to be."""
+    """d_o - arccot(cot d_i + t / L): steer angle of the outer wheel minus the ideal one."""
     inner, outer, wheelbase, width = _steered(left, right)
     return outer - np.arctan2(1.0, _cot(inner) + width / wheelbase)
 
@@ -477,8 +477,9 @@ EFFECTS: Mapping[str, Effect] = {
     **{name: Effect(unit, value, "travel") for name, (unit, value) in OF_VELOCITIES.items()},
     **{name: Effect(unit, value, "rack") for name, (unit, value) in OF_RACK.items()},
 }
-# The roll centre's height is above the line through both contact points, along up; its offset from the middle
-# plane, through the origin, along right. The track is the distance of both contact points along right.
+# The axle's roll centre height is measured along up from the line through both contact points, its offset
+# along right from the middle plane, which goes through the origin. The track is the distance of both contact
+# points along right.
 AXLE_EFFECTS: Mapping[str, Effect] = {
     "track": Effect("mm", lambda *wheels: _apart(*wheels)[0]),
     "axle_roll_centre_height": Effect("mm", lambda *wheels: _axle_roll_centre(*wheels)[1], "travel"),
@@ -490,15 +491,15 @@ AXLE_EFFECTS: Mapping[str, Effect] = {
 
 
 class Asked(NamedTuple):
-    """An effect and the parts of the mechanism whose wheels it looks at."""
+    """An effect, and the parts of the mechanism whose wheels it needs."""
 
     effect: Effect
     parts: tuple[str, ...]
 
 
 def effects_in(model: Model) -> dict[str, Asked]:
-    """All effects of a model by name: `NAME` of EFFECTS, in a mechanism with parts `PART.NAME`, and those of
-    AXLE_EFFECTS where it has two parts on opposite sides. Some may lack a role or a number of the car."""
+    """All effects of a model by name: `NAME` of EFFECTS, or `PART.NAME` in a mechanism with parts; and those
+    of AXLE_EFFECTS if it has two parts on opposite sides. The model may lack roles or car data for some."""
     found = {
         f"{part}.{name}" if part else name: Asked(effect, (part,))
         for part in model.corners
@@ -512,10 +513,10 @@ def effects_in(model: Model) -> dict[str, Asked]:
 
 
 def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
-    """The effects of some names.
+    """The effects with these names.
 
     Raises:
-        InputError: there is no such effect; it names those there are.
+        InputError: an effect does not exist; the message names those that do.
     """
     known = effects_in(model) if names else {}
     for name in names:
@@ -525,7 +526,7 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
 
 
 def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str], str]:
-    """Part and "travel", "rack" or "roll" -> the value of the input that effects take their derivatives by.
+    """(part, "travel", "rack" or "roll") -> the value of the input by which effects take derivatives.
 
     Raises:
         DescriptionError: there is not exactly one such input.
@@ -539,10 +540,10 @@ def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str
 
 
 def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]:
-    """name -> (N,) of a motion.
+    """name -> (N,) for a motion.
 
     Raises:
-        DescriptionError: the mechanism lacks a role or a wheel's radius that one needs.
+        DescriptionError: the mechanism lacks a role or a wheel radius that an effect needs.
     """
     numbers: dict[str, Array] = {}
     for name, asked in effects.items():

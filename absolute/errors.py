@@ -1,4 +1,4 @@
-"""The refusals of this package: each says what, where, which value, what is allowed, what to try."""
+"""The errors of this package: each names what, where, which value, what is allowed, and what to try."""
 
 from collections.abc import Mapping
 
@@ -9,10 +9,10 @@ class AbsoluteError(Exception):
     """Base of every error raised here.
 
     Attributes:
-        name: the point, body, joint, input or effect at fault; empty if there is none by itself.
-        value: what was found there.
-        instant: index of the first bad instant, or None when the fault is not at one instant.
-        partial: the motion solved before the failing instant, or None if there is none.
+        name: the point, body, joint, input or effect at fault; empty if no single one is.
+        value: the value found there.
+        instant: index of the first bad instant, or None if the fault is not at an instant.
+        partial: the motion solved before the failing instant, or None if no instant was solved.
     """
 
     partial: Solution | None = None
@@ -25,23 +25,23 @@ class AbsoluteError(Exception):
 
 
 class DescriptionError(AbsoluteError):
-    """The description of the linkage is not usable: a name, a point, an axis, the row count."""
+    """The description of the linkage is unusable: a name, a point, an axis or the row count is wrong."""
 
 
 class InputError(AbsoluteError):
-    """Inputs of a wrong name, shape or value; an effect that there is not."""
+    """Inputs of a wrong name, shape or value; an unknown effect."""
 
 
 class PoseError(AbsoluteError):
-    """The bodies as drawn do not fit together, or the mechanism does not come to a pose, or to no single one.
+    """The drawn bodies do not fit together, or the mechanism reaches no pose or no unique pose.
 
     Attributes:
         instant: index of the instant, or None while the drawing itself is being assembled.
         inputs: the inputs asked for, by name (rad or mm).
         reached: the inputs of the last pose that could be solved on the way there.
         condition: estimate of the condition number (1-norm) at that last pose.
-        limits: the joints that hold each other there, the strongest first; empty where none do.
-        limit: the input that meets the end of its range there, or "" where none does; `name` is the same.
+        limits: the joints that block each other there, the strongest first; empty where none do.
+        limit: the input that meets the end of its range there, or "" where none does; equal to `name`.
     """
 
     def __init__(
@@ -59,6 +59,6 @@ class PoseError(AbsoluteError):
         self.limits, self.limit = limits, limit
 
 
-# Names that errors had before they became one; of Pinocchio that is not there Python's own says all.
+# Earlier names of errors that are now one class; a missing Pinocchio raises Python's own ImportError.
 AssemblyError = UnreachableError = SingularError = PoseError
 MissingPinocchioError = ImportError

@@ -1,8 +1,8 @@
-"""From pose to pose through the instants of a motion, without leaving the branch.
+"""Follows the poses of a motion from instant to instant without leaving the branch.
 
-From a known pose many instants are predicted at once, to the second order, and corrected by Newton together;
-the last of those before the first that is too far is the next known pose. Where already the first is too far,
-a part of the way leads nearer to it.
+From a known pose, many instants are predicted at once, to second order, and corrected together by Newton's
+method. The last one before the first that is too far becomes the next known pose. If already the first is too
+far, a fraction of the way to it is taken as the next pose.
 """
 
 import math
@@ -30,29 +30,30 @@ from absolute.vectors import EPS, Array, cross
 # Inputs (..., inputs) and rates of them -> (1 + rates, ..., rows): targets of the rows, and their rates.
 Targets = Callable[..., Array]
 
-# All bodies together turn and move by half (2-norm, rad and units of size) in one step at most:
-# over that distance the second-order prediction holds for any linkage that is not near a fold.
+# Largest change of all bodies together in one step (2-norm, rad and units of size): over this distance the
+# second-order prediction holds for any linkage that is not near a fold.
 LONGEST_STEP = 0.5
-# The curved part of a step must be small against its straight part, and Newton's first correction against
-# the step. Where x is the distance from a fold, so that the other branch is 2 x away, a step s has a curved
-# part of s / 2 x: it ends within half the way to the fold and a quarter of that to the other branch.
+# Limits of the curved part of a step relative to its straight part, and of Newton's first correction relative
+# to the step. At a distance x from a fold the other branch is 2 x away, and a step s has a curved part of s /
+# 2 x: so a step ends within half the way to the fold, and within a quarter of the way to the other branch.
 LARGEST_CURVE = 0.25
 LARGEST_CORRECTION = 0.1
-# A step below sqrt(eps) that still bends this much means a fold within eps of the target.
+# A step below sqrt(eps) that still curves this much means a fold within eps of the target.
 SHORTEST_STEP = math.sqrt(EPS)
-# Thousands of the longest steps to one instant would be many turns around. A guard against endless work.
+# A guard against endless work: thousands of the longest steps to one instant would be many turns.
 MOST_STEPS = 2000
-# Instants of one step: enough to share the cost of a call, few enough to stay in fast memory.
+# Instants per step: enough to share the cost of a call, few enough to stay in fast memory.
 MOST_INSTANTS = 64
-# A motion is followed until a fold is about sqrt(eps) away, and the smallest singular value there is of that
-# order, times ratios of lengths: this is ten thousand times as much.
+# Ratio of the smallest to the largest singular value below which a fold is near. A motion is followed until a
+# fold is about sqrt(eps) away, where the ratio is of that order times ratios of lengths; this is ten thousand
+# times as much.
 LARGEST_SHARE = 1e-4
-# Joints with less of the largest force than this carry what the others hold each other with.
+# Joints with less than this share of the largest force do not take part in the blocking.
 SMALLEST_FORCE = 0.1
 
 
 class BlockedError(Exception):
-    """The way cannot be followed to its end; carries the inputs where it ends and the last good pose."""
+    """The way is blocked; carries the inputs where it ends and the last good pose."""
 
     def __init__(self, reached: Array, pose: Configurations) -> None:
         super().__init__(f"blocked at {reached.tolist()}")
@@ -62,22 +63,23 @@ class BlockedError(Exception):
 def follow(
     mechanism: Mechanism, start: Configurations, at: Array, goals: Array, targets: Targets
 ) -> Iterator[Configurations]:
-    """The poses at goals, one run of them after the other, each on the straight way from a pose before it.
+    """The poses at goals, in consecutive runs, each reached on the straight way from a pose before it.
 
-    A pose is taken that is near, to which the way bends little, that needs a small first correction, closes,
-    keeps rows that were left out, and has the signs of the start's determinants: assemblies meet where one is
-    zero. Where other rows should be left out, these are chosen anew.
+    A pose is accepted if it is near, the way to it curves little, its first correction is small, it closes,
+    rows left out hold, and its determinants have the signs of the start: assemblies meet where one is zero.
+    Where other rows should be left out, the rows are chosen anew.
 
     Args:
-        start: one pose, at inputs `at`, (inputs,). goals: (N, inputs). targets: of the rows by the inputs.
+        start: one pose, at inputs `at`, (inputs,). goals: (N, inputs). targets: targets of the rows from the
+            inputs.
     Raises:
-        BlockedError: steps have become too short to go on: the mechanism locks there.
+        BlockedError: steps have become too short to continue: the mechanism locks there.
     """
     pose, longest, done, steps = start, LONGEST_STEP, 0, 0
     while done < len(goals):
         ends = goals[done : done + MOST_INSTANTS]
         ways = ends - at
-        # Of ways of length one, since squares of long ones overflow.
+        # Unit vectors, since squares of long ways overflow.
         whole = np.abs(ways).max(axis=1, initial=0.0)
         units = ways / np.where(whole > 0.0, whole, 1.0)[:, None]
         straight, curve, furthest = _predicted(mechanism, pose, partial(targets, at), units, longest)
@@ -89,7 +91,7 @@ def follow(
         length = share * whole[:count, None, None, None]
         straight, curve = length * straight[:count], length**2 * curve[:count]
         size, floor = lengths(straight), float(rounding_of(pose.condition[0]))
-        # A way of no length may end where it begins; another one must lead on.
+        # A way of zero length may end at its start; any other must make progress.
         short = share < 1.0 and (size[0] <= SHORTEST_STEP or (ends[0] == at).all())
         there = newton(
             mechanism,
@@ -118,10 +120,10 @@ def follow(
 def _predicted(
     mechanism: Mechanism, pose: Configurations, targets: Targets, units: Array, longest: float
 ) -> tuple[Array, Array, Array]:
-    """Along units (N, inputs) the straight part s and the curve c, (N, bodies, 2, 3), of the step
-    l s + l^2 c, and the largest l that is no longer and bends no more than a step may.
+    """Along units (N, inputs): the straight part s and the curve c, (N, bodies, 2, 3), of a step l s + l^2 c,
+    and the largest l within the limits of a step's length and curve.
 
-    s is linear in the unit and c a quadratic form, which follow from each input alone and each two together.
+    s is linear in the unit and c a quadratic form, so both follow from single inputs and pairs of inputs.
     """
     scale = np.abs(units).max(axis=0)
     moving = np.flatnonzero(scale)
@@ -139,7 +141,7 @@ def _predicted(
         for parts, of in ((shares, straight[:many]), (products, curve))
     )
     size, bent = lengths(straight), lengths(curve)
-    # l^2 bent = LARGEST_CURVE l size + what rounding explains
+    # Solves l^2 bent = LARGEST_CURVE l size + rounding.
     half = 0.5 * LARGEST_CURVE * size
     with np.errstate(divide="ignore", invalid="ignore"):
         bending = (half + np.sqrt(half**2 + bent * rounding_of(pose.condition))) / bent
@@ -148,13 +150,13 @@ def _predicted(
 
 
 def through(mechanism: Mechanism, drawn: Configurations, goals: Array) -> Iterator[Configurations]:
-    """The poses at inputs (N, inputs) over N instants: straight, else one input after the other.
+    """The poses at inputs (N, inputs) at N instants: on straight ways, else one input after another.
 
     Raises:
-        PoseError: at the first instant without a pose, after those before it.
+        PoseError: at the first instant without a pose, after yielding those before it.
     """
     pose, at, done = drawn, mechanism.drawn_inputs.copy(), 0
-    # After whole turns the car stands as it is drawn.
+    # After whole turns the car stands as drawn.
     turns = [drive.turns for drive in mechanism.model.inputs]
     turned = np.round((goals[:1] - at).sum(axis=0) / WHOLE_TURN)[: len(turns)]
     at[: len(turns)] += WHOLE_TURN * np.where(turns, turned, 0.0)
@@ -173,7 +175,7 @@ def through(mechanism: Mechanism, drawn: Configurations, goals: Array) -> Iterat
 
 
 def _around(mechanism: Mechanism, pose: Configurations, at: Array, goal: Array) -> Configurations | None:
-    """The pose at a goal to which the straight way is blocked, by one input after the other, if any."""
+    """The pose at a goal, one input after another where the straight way is blocked; None if that is too."""
     changed = np.flatnonzero(at != goal)
     for order in (changed, changed[::-1]) if len(changed) > 1 else ():
         corners = np.tile(at, (len(order), 1))
@@ -197,9 +199,9 @@ def _refusal(
     where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
     limits = limits_at(mechanism, blocked.pose)
     if not limits:
-        # Far from singular: the way leads on, but only without the rows that were left out.
+        # Far from singular: the way continues, but only without the rows that were left out.
         limits = mechanism.stack.owners_of(blocked.pose.choice.left_out)
-    # What the targets change along the straight way, at its end.
+    # Change of the targets along the straight way, at its end.
     change = mechanism.targets(blocked.reached, goal - start)[1]
     limit = limiting_input(mechanism, blocked.pose, change[mechanism.joint_rows :])
     facts = instant, wanted, reached, condition, limits, limit
@@ -207,7 +209,7 @@ def _refusal(
         return PoseError(
             f"instant {instant}: {asked} is a singular pose ({limited_by(limits)}condition number about "
             f"{condition:.3g}, "
-            f"at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and branch are undetermined there; "
+            f"at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and branch are not determined there; "
             "stay away from the limit of the motion",
             *facts,
         )
@@ -221,10 +223,10 @@ def _refusal(
 
 
 def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:
-    """Joints that hold each other near a singular pose, the strongest first; empty where none is near.
+    """Joints that block each other near a singular pose, the strongest first; empty where none is near.
 
-    There some forces y in the rows are in equilibrium, y J = 0 nearly, without any load: in the group of
-    bodies whose block is nearest to singular.
+    Near such a pose some forces y in the rows are in equilibrium without any load, y J = 0 nearly. They are
+    taken in the group of bodies whose block is nearest to singular.
     """
     numbers, jacobian = np.arange(mechanism.stack.count)[pose.choice.kept], pose.kept[0]
     groups = pose.choice.groups
@@ -246,8 +248,8 @@ def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:
 def limiting_input(mechanism: Mechanism, pose: Configurations, change: Array) -> str:
     """The input whose change, (inputs,) in units of its row, the bodies cannot follow near a singular pose.
 
-    There some y has y J = 0 nearly, so that rows may only change at right angles to y: the input with
-    the largest product of its change and its part in y is named.
+    There some y has y J = 0 nearly, so rows can only change normal to y. The input with the largest product
+    of its change and its component of y is named.
     """
     left = np.linalg.svd(pose.kept[0])[0]
     # The rows of the inputs come last and are all kept.
@@ -256,5 +258,5 @@ def limiting_input(mechanism: Mechanism, pose: Configurations, change: Array) ->
 
 
 def limited_by(limits: tuple[str, ...]) -> str:
-    """The links of a refusal as part of its message."""
+    """The limits of an error as part of its message."""
     return f"limited by {', '.join(limits)}; " if limits else ""

@@ -1,4 +1,4 @@
-"""Putting the drawn bodies together on the branch of the drawing, or saying why not."""
+"""Assembles the drawn bodies on the branch of the drawing, or reports why they cannot be assembled."""
 
 import numpy as np
 
@@ -8,21 +8,22 @@ from absolute.mechanism import Mechanism, too_many_rows
 from absolute.newton import SMALLEST_RCOND, Configurations, configurations_at, signs_of
 from absolute.vectors import Array
 
-# Two assemblies are about as far from each other as a mechanism is large. Of 300 struts with every point up
-# to 200 mm off, two closed to another one than their rods are drawn on, and moved by 0.82 and 1.11 of it.
+# In sizes of the mechanism, which is about the distance between two assemblies. Among 300 struts with every
+# point up to 200 mm off, two closed to another assembly than the drawn one, with movements of 0.82 and 1.11
+# sizes.
 FURTHEST = 0.8
 
 
 def assemble(mechanism: Mechanism) -> Configurations:
     """The assembled pose on the branch of the drawing, at the inputs of the drawing.
 
-    The rows keep a shrinking share of the violation they have in the drawing: rows(q) =
-    (1 - share) rows(drawn) + share * target, without meeting a singular pose.
+    The rows keep a shrinking share of their violation in the drawing: rows(q) = (1 - share) rows(drawn) +
+    share * target, without meeting a singular pose.
 
     Raises:
-        PoseError: the drawing itself is singular or stands for two assemblies, or closing it locks the
+        PoseError: the drawing itself is singular or could mean two assemblies, or closing it locks the
             mechanism.
-        DescriptionError: there are more rows than unknowns, and they do not follow from each other.
+        DescriptionError: there are more rows than unknowns, and the rows are not redundant.
     """
     target = mechanism.targets(mechanism.drawn_inputs[None])[0]
     pose = drawn = configurations_at(mechanism, mechanism.choice, mechanism.drawn[None], target)
@@ -60,7 +61,7 @@ def _singular(mechanism: Mechanism, drawn: Configurations) -> PoseError:
 
 
 def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
-    """Refuse a closed drawing so far from the drawing that another assembly may be the one that is meant."""
+    """Refuse a closed drawing so far from the drawing that another assembly may be meant."""
     drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
     there = pose.placed.origin[0, body] + np.matvec(pose.placed.rotation[0, body], arms)
     distances = np.linalg.norm(there - drawing.origins[body] - arms, axis=1)
@@ -75,12 +76,12 @@ def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
 
 
 def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> None:
-    """Refuse a drawing that two readings of the same joints put on different sides of a singular pose.
+    """Refuse a drawing whose open joints can be read in two ways on different sides of a singular pose.
 
-    A determinant's sign tells on which of two assemblies a group of bodies is, and the way to the closed pose
-    keeps it. Of a joint that is drawn open the Jacobian can be read in two ways that are the same when it is
-    closed (see `RowStack.read_at_foot`). Where they differ in a sign, ways of closing that keep the one or
-    the other end in different assemblies.
+    The sign of a determinant tells in which of two assemblies a group of bodies is, and the way to the closed
+    pose keeps it. The Jacobian of an open joint can be taken at either of its two halves, which are the same
+    when the joint is closed (see `RowStack.read_at_foot`). Where the two differ in a sign, ways of closing
+    that keep one or the other end in different assemblies.
     """
     stack, of = mechanism.stack, np.array(mechanism.stack.owners)
 
@@ -94,9 +95,9 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
     open_joints = tuple(alone) or (stack.owners[int(np.abs(gap).argmax())],)
     largest = float(np.abs(gap[np.isin(of, open_joints)]).max()) * mechanism.drawing.size
     raise PoseError(
-        f"the drawing stands for two assemblies: {', '.join(map(repr, open_joints))} is drawn {largest:.3g} "
-        "mm from closed, and which assembly is meant depends on which of its parts is put right, "
-        "since a pose where both meet lies between; draw the points closer to an assembled pose",
+        f"the drawing could mean two assemblies: {', '.join(map(repr, open_joints))} is drawn {largest:.3g} "
+        "mm from closed, and a singular pose between the two assemblies lies in the way, so the assembly "
+        "depends on which of the joint's two halves is moved; draw the points closer to an assembled pose",
         inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
         condition=float(drawn.condition[0]),
         limits=open_joints,
@@ -118,7 +119,7 @@ def _locked_while_closing(mechanism: Mechanism, blocked: BlockedError, gap: Arra
 
 
 def _require_redundant(mechanism: Mechanism, pose: Configurations) -> None:
-    """Refuse rows that are too many and say something else than the others."""
+    """Refuse surplus rows that are not redundant."""
     left_out = pose.choice.left_out
     if not len(left_out):
         return
@@ -130,13 +131,13 @@ def _require_redundant(mechanism: Mechanism, pose: Configurations) -> None:
 
 
 def locked(mechanism: Mechanism, instant: int | None, pose: Configurations, inputs: list[float]) -> PoseError:
-    """The refusal of a pose that rows which were left out do not hold."""
+    """The error for a pose that violates rows that were left out."""
     stack, left_out = mechanism.stack, pose.choice.left_out
     off = np.abs(stack.gap(pose.placed, stack.drawn))[0, left_out]
     names = stack.owners_of(left_out[np.argsort(-off)])
     where = "the closed drawing" if instant is None else f"instant {instant}"
     return PoseError(
-        f"{where}: {', '.join(names)} cannot hold together with the other joints, by "
+        f"{where}: {', '.join(names)} cannot be kept together with the other joints, by "
         f"{float(off.max()) * mechanism.drawing.size:.3g} mm: their rows follow from the others in the "
         "drawing, but not here, so the mechanism is locked: draw axes that should be parallel or meet "
         "exactly so, or free a joint",

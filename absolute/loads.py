@@ -1,20 +1,21 @@
-"""Statics: tensions of rods and forces of joints under loads at the wheels, without mass and friction.
+"""Statics: tensions of rods and forces in joints under loads at the wheels, without mass and friction.
 
-Bodies are in equilibrium where the loads do no work in any motion that the rows allow. With J the rows'
-Jacobian, and w the loads by the velocities on which they work,
+Bodies are in equilibrium if the loads do no work in any motion that the rows allow. With J the rows'
+Jacobian, and w the loads as forces and moments on the velocities of the bodies,
 
     J^T f = w,
 
-and f of a row is the work of the loads for each mm that the row grows while all others are held. So f of a
-rod is its tension, and the rows of a ball joint, which say where its point of the second body is from that of
-the first, push the second body by -f. Those of a hinge are of one of its points and of two right angles, of
-which each turns the second body by -f as its rate goes with that body's angular velocity. With d from the
-first of its points P, Q to the second, a force F and a moment M about P are F_Q = M x d / (d . d) at Q, the
-rest of F at P, and a moment about d, which a hinge has none of. Along d only both forces together are known.
-Those of a point on a slide are across its line, and along it one of an input where its travel is driven.
+and f of a row is the work of the loads per mm that the row grows while all others are held. So f of a rod is
+its tension. The rows of a ball joint, the position of its point in the second body relative to the first,
+push the second body by -f. A hinge has the rows of one of its points and of two right angles; each of the
+latter applies a moment to the second body, -f times its rate's dependence on that body's angular velocity.
+With d from the first hinge point P to the second, Q, a force F and a moment M about P become
+F_Q = M x d / (d . d) at Q and the rest of F at P; a hinge has no moment about d. Along d only the sum of both
+forces is determined. A point on a slide has forces across the line, and along the line if an input drives its
+travel.
 
-Chassis and inputs hold the mechanism; but in a corner with a damper its length is held, and the input that
-moves the wheel is free.
+Chassis and inputs hold the mechanism. In a corner with a damper, however, the damper's length is held, and
+the input that moves the wheel is free.
 """
 
 from dataclasses import replace
@@ -31,18 +32,18 @@ from absolute.vectors import Array, cross
 
 
 def forces(motion: Motion) -> dict[str, dict[str, Array]]:
-    """What links carry.
+    """Forces in the links.
 
     Returns:
-        rod_force: name of a rod, or `damper` with its part in front where one holds -> (N,) tension, N.
-        joint_force: point of a ball joint or slide -> (N, 3) force, N, on the body that
-            `Model.reported_joints` names, as the ground sees it; of a hinge both points, and there what is
-            across its line; of a slide along the line what an input pushes that drives it.
-        hinge_thrust: first point of a hinge -> (N,) force at both along the line to the second, N.
-        Not numbers where the pose is singular while dampers are held.
+        rod_force: name of a rod, or `damper` with its part in front if it holds a corner -> (N,) tension, N.
+        joint_force: point of a ball joint, hinge or slide -> (N, 3) force, N, on the body that
+            `Model.reported_joints` names, along the axes of the points; at both points of a hinge, only
+            across its line; on a slide, along the line only if an input drives it.
+        hinge_thrust: first point of a hinge -> (N,) sum of both forces along the line to the second, N.
+        NaN where the pose is singular while dampers are held.
     Raises:
-        DescriptionError: there is no load, or a role that one needs; rows follow from each other, so that
-            forces are not determined.
+        DescriptionError: there is no load, or a role is missing; or rows are redundant, so that forces are
+            not determined.
     """
     mechanism, model = motion.mechanism, motion.mechanism.model
     _require_determined(mechanism)
@@ -100,7 +101,7 @@ def _require_determined(mechanism: Mechanism) -> None:
         )
     if names := mechanism.stack.owners_of(mechanism.choice.left_out):
         raise DescriptionError(
-            f"loads need joints that hold each body once; {', '.join(names)} follow from the others, so "
+            f"loads need a mechanism without redundant joints; {', '.join(names)} follow from the others, so "
             "that forces are not determined: free a joint, or do not ask for loads",
             names[0],
             names,
@@ -108,7 +109,7 @@ def _require_determined(mechanism: Mechanism) -> None:
 
 
 def _on_knuckle(motion: Motion) -> Array:
-    """(N, 2, 3) force, N, and moment about the knuckle's origin, N times size, of the load of a part."""
+    """(N, 2, 3) force, N, and moment about the knuckle's origin, N times size, of a part's load."""
     mechanism, corner = motion.mechanism, motion.corner
     load, size = mechanism.model.loads[motion.part], mechanism.drawing.size
     origin = motion.instants.origin[:, mechanism.drawing.bodies[corner.carrier]]

@@ -1,4 +1,4 @@
-"""The mechanism in Pinocchio: one free-flying body each, and the rows that join them."""
+"""The mechanism in Pinocchio: one free-flying body each, and the rows that join the bodies."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,10 +11,10 @@ from absolute.model import Model
 from absolute.rows import Placed, RowStack
 from absolute.vectors import Array, Places, product_rule
 
-# Rows that depend on each other do so only nearly where the drawing does not close yet.
+# Redundant rows depend on each other only approximately while the drawing is not closed.
 LARGEST_DEPENDENT = 0.1
-# Rows are chosen anew where those kept span less than this share of the volume that the best choice spans.
-# They span none where a row that was left out says what they do not.
+# Rows are chosen anew if the kept ones span less than this share of the volume that the best choice spans.
+# They span zero where a row that was left out becomes independent.
 LEAST_SPANNED = 0.5
 
 
@@ -22,7 +22,7 @@ AXES = np.eye(3)
 
 
 def _turned() -> Array:
-    """(16, 9) of the products of x, y, z, w of a unit quaternion, what its rotation has beside the identity:
+    """(16, 9) matrix from the products of x, y, z, w of a unit quaternion to its rotation minus the identity:
     2 w [v] + 2 [v] [v] with [v] [v] = v v^T - v . v."""
     shares = np.zeros((4, 4, 3, 3))
     for i, axis in enumerate(AXES):
@@ -36,18 +36,18 @@ TURNED = _turned()
 
 
 class Group(NamedTuple):
-    """Places of its rows and columns, as many, in the Jacobian."""
+    """Indices of a group's rows and columns, equally many, in the Jacobian."""
 
     rows: Places
     columns: Places
 
 
 class Choice(NamedTuple):
-    """Rows that say as much as all, as many as there are unknowns.
+    """A choice of independent rows, as many as there are unknowns.
 
     Attributes:
-        kept: their numbers. left_out: those of the others, which are only held to.
-        groups: bodies that the rows kept fix one after the other.
+        kept: numbers of the rows kept. left_out: numbers of the other rows, which are only checked.
+        groups: bodies that the rows kept fix one group after the other.
     """
 
     kept: slice | Places
@@ -58,18 +58,18 @@ class Choice(NamedTuple):
 class Mechanism:
     """Bodies of a model as free flyers on the universe, in units of size, with all their rows.
 
-    What stands is the universe: the chassis, or what it turns on. Displacements of the car are added to the
-    solution afterwards.
+    The body that stands still is the universe: the chassis, or the body on which it turns. Displacements of
+    the car are added to the solution afterwards.
 
     Attributes:
-        model, drawing, stack: what was described, its lengths, its rows.
-        columns: of [o', w] of all bodies, which are unknown: the first one stands, and points do not turn.
+        model, drawing, stack: the described model, its drawing, its rows.
+        columns: the unknown ones among [o', w] of all bodies; the first one stands, points do not turn.
         joint_rows: number of rows before the rows of the inputs.
-        choice: of the rows, in the drawing.
-        bodies: how many there are. pin_model: the Pinocchio model of those that move.
+        choice: choice of rows in the drawing.
+        bodies: number of bodies. pin_model: the Pinocchio model of the moving ones.
         drawn: configuration of the drawing, (7 * moving bodies,).
-        values: names of the inputs' values, one for each row, and behind these of displacements of the car,
-            where heights over the ground hang on them.
+        values: names of the inputs' values, one per row; then those of displacements of the car, if heights
+            over the ground depend on them.
         drawn_inputs: (values,) the values in the drawing, rad or mm.
     """
 
@@ -93,15 +93,15 @@ class Mechanism:
         self.values = (*(drive.value for drive in model.inputs), *moves)
         self.drawn_inputs = np.array([*(drive.drawn for drive in model.inputs), *(0.0 for _ in moves)])
         ups = np.array([drive.row.along for drive in model.inputs]).reshape(-1, 3) * over[:, None]
-        # Of a height over the ground the displacements of the car are taken off.
+        # Displacements of the car are subtracted from heights over the ground.
         self._shares = np.hstack([np.eye(len(ups)), *(-(ups @ way)[:, None] for way in moves.values())])
         self.choice = self._chosen()
 
     def _chosen(self) -> Choice:
-        """The rows to keep in the drawing; it is seen when that is closed whether the others follow.
+        """The rows to keep in the drawing; whether the others are redundant is checked once it is closed.
 
         Raises:
-            DescriptionError: they do not follow there, not even nearly.
+            DescriptionError: the others are not redundant in the drawing, even approximately.
         """
         many = self.stack.count - self.stack.unknowns
         if many <= 0:
@@ -113,29 +113,29 @@ class Mechanism:
         return self._leaving_out(left_out)
 
     def choice_at(self, placed: Placed, before: Choice) -> Choice:
-        """That of a pose, (1,), or the one before, where the rows that it keeps span nearly as much."""
+        """The choice for a pose, (1,); the previous choice if its rows span nearly as much."""
         if not len(before.left_out):
             return before
         vanishing = self._vanishing(Placed(*(of[0] for of in placed)))[0]
         left_out = _largest(vanishing)
-        # Rows kept span as much as those left out have part in the combinations that vanish.
+        # The volume of the kept rows is that of the rows left out in the vanishing combinations.
         spanned, most = (abs(np.linalg.det(vanishing[rows])) for rows in (before.left_out, left_out))
         return before if spanned >= LEAST_SPANNED * most else self._leaving_out(left_out)
 
     def _vanishing(self, placed: Placed) -> tuple[Array, Array]:
-        """(joint rows, too many) linear combinations of rows of joints that vanish, and singular values."""
+        """(joint rows, surplus) vanishing linear combinations of joint rows; and singular values."""
         combined, strengths, _ = np.linalg.svd(self.stack.jacobian(placed)[: self.joint_rows])
         return combined[:, self.stack.unknowns - self.stack.count :], strengths
 
     def _leaving_out(self, rows: Places) -> Choice:
         kept = np.setdiff1d(np.arange(self.stack.count), rows)
         groups = groups_of(self.stack.first[kept], self.stack.second[kept], self._sizes)
-        # All rows are read where they are.
+        # A slice if all rows are kept: it is read without a copy.
         return Choice(kept if len(rows) else slice(None), rows, groups)
 
     def poses(self, q: Array) -> tuple[Array, Array]:
-        """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), what stands first, at configurations
-        (..., 7 * moving bodies)."""
+        """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), the standing body first, for
+        configurations (..., 7 * moving bodies)."""
         each = q.reshape(*q.shape[:-1], -1, 7)
         turned = each[..., 3:]
         products = (turned[..., :, None] * turned[..., None, :]).reshape(*turned.shape[:-1], 16)
@@ -149,14 +149,14 @@ class Mechanism:
         return rotation.reshape(*origin.shape, 3), origin
 
     def spread(self, step: Array) -> Array:
-        """(..., bodies, 2, 3) [o', w] of unknowns: what is known is zero."""
+        """(..., bodies, 2, 3) [o', w] from the unknowns, with zeros for what is known."""
         every = np.zeros((*step.shape[:-1], 6 * self.bodies))
         every[..., self.columns] = step
         return every.reshape(*step.shape[:-1], self.bodies, 2, 3)
 
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
         """Configurations (..., 7 * moving bodies) after steps [o', w], (..., bodies, 2, 3), in world axes, of
-        bodies with rotations (..., bodies, 3, 3); Pinocchio takes body axes."""
+        bodies with rotations (..., bodies, 3, 3); Pinocchio uses body axes."""
         local = step[..., 1:, :, :] @ rotation[..., 1:, :, :]
         moved, model = np.empty_like(q), self.pin_model
         each = (q.reshape(-1, model.nq), local.reshape(-1, model.nv), moved.reshape(-1, model.nq))
@@ -165,24 +165,24 @@ class Mechanism:
         return moved
 
     def named(self, values: Sequence[float]) -> dict[str, float]:
-        """Values by name; of inputs that take the same one, that of the first."""
+        """Values by name; where inputs share a name, the value of the first."""
         named: dict[str, float] = {}
         for name, value in zip(self.values, values, strict=True):
             named.setdefault(name, value)
         return named
 
     def targets(self, values: Array, *rates: Array) -> Array:
-        """(1 + rates, ..., rows): what the rows shall equal and its rates, for values (..., values).
+        """(1 + rates, ..., rows): targets of the rows and their rates, for values (..., values).
 
         Args:
             rates: (..., values) derivatives of the values, the first, the second and so on.
         """
         series = [of @ self._shares.T for of in (values, *rates)]
-        # Of an angle x it is the real part of z = exp(i x), with z' = i x' z, and so on by the product rule.
+        # cos x is the real part of z = exp(i x), with z' = i x' z, and so on by the product rule.
         turned = [np.exp(1j * series[0])]
         for n in range(1, len(series)):
             turned.append(1j * product_rule(n - 1, (series[n - i] * turned[i] for i in range(n))))
-        # Rows know turns up to whole ones, which would cost digits.
+        # Rows measure angles without whole turns, which would cost digits.
         series[0] = np.where(self._turns, np.angle(turned[0]), series[0])
         targets = np.zeros((len(series), *turned[-1].shape[:-1], self.stack.count))
         targets[0] = self.stack.drawn
@@ -192,17 +192,18 @@ class Mechanism:
 
 
 def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
-    """Groups of the moving bodies that their rows fix one after the other, each as small as can be.
+    """Groups of the moving bodies that their rows fix one after the other, each as small as possible.
 
-    The bodies of a group have as many rows among themselves, what stands and the groups before as they have
-    freedoms: a driven link alone, then what hangs between such (Assur). A group's determinant changes its
-    sign where the assemblies of it meet, and so tells more than that of the Jacobian, which is the product of
-    all. With each body as many rows are matched as it has freedoms. A body then waits for all others in its
-    own rows, and bodies that wait for each other are a group (Dulmage and Mendelsohn, 1958). Where rows
-    cannot be matched, all are one group: some body can still move.
+    A group has as many rows among its own bodies, the standing body and earlier groups as it has freedoms:
+    first a driven link, then what is attached to such links (Assur groups). A group's determinant changes
+    sign where its assemblies meet. So it tells more than the determinant of the Jacobian, which is the
+    product of all. Each body is matched with as many rows as it has freedoms. A body depends on all other
+    bodies in its own rows, and bodies that depend on each other are a group (Dulmage and Mendelsohn, 1958).
+    If rows cannot be
+    matched, all bodies are one group: some body can still move.
 
     Args:
-        first, second: the two bodies of each row. sizes: freedoms of each body, none of the first.
+        first, second: the two bodies of each row. sizes: freedoms of each body, zero for the first.
     """
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
@@ -223,19 +224,19 @@ def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
 
 
 def _largest(vanishing: Array) -> Places:
-    """Numbers of as many rows as there are combinations, (rows, combinations), with the largest parts."""
+    """Numbers of as many rows as there are combinations, (rows, combinations), with the largest shares."""
     from scipy.linalg import qr
 
     return np.sort(qr(vanishing.T, mode="r", pivoting=True)[1][: vanishing.shape[1]]).astype(np.intp)
 
 
 def too_many_rows(stack: RowStack, left_out: Places) -> DescriptionError:
-    """The refusal of rows that say something else than the others, by those too many."""
+    """The error for surplus rows that are not redundant, named by their owners."""
     owners = stack.owners_of(left_out)
     return DescriptionError(
         f"joints and inputs give {stack.count} rows for {stack.unknowns} unknown velocities, and "
         f"{len(left_out)} of them ({', '.join(owners)}) do not follow from the others in the "
-        "drawing: the mechanism is held more than once: remove an input, or free a joint",
+        "drawing, so the mechanism is overconstrained: remove an input, or free a joint",
         owners[0],
         stack.count,
     )

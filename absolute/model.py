@@ -1,4 +1,4 @@
-"""A linkage as `compile` makes it: bodies and their places in the drawing, rows, wheels."""
+"""A linkage made by `compile`: bodies and their places in the drawing, rows, wheels."""
 
 import json
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from absolute.errors import DescriptionError
 from absolute.vectors import Array, Places
 
 CHASSIS = "chassis"
-# Numbers of the whole car that some effects need and the linkage does not have, and examples of them.
+# Numbers of the whole car that some effects need, with examples for messages.
 CAR: Mapping[str, str | float] = {
     "axle": "front",
     "wheelbase": 2700.0,
@@ -29,13 +29,16 @@ KINDS = {
 
 
 class Row(NamedTuple):
-    """A row of bodies `first` and `second` (indices), by vectors in their axes, units of size (see `rows`).
+    """A row of bodies `first` and `second` (indices), by vectors in their axes, in units of size.
+
+    See `rows` for a, r1 and r2.
 
     Attributes:
         kind: "angle", "offset", "distance" or "turn".
-        along: a; of a turn x; nothing of a distance.
-        first_arm, second_arm: r1 and r2; nothing and the partner direction, of a turn -y.
-        drawn: what joints hold it to: 0, or the drawn distance.
+        along: a; for a turn, x; zero for a distance.
+        first_arm, second_arm: r1 and r2; for a right angle, zero and the partner direction; for a turn, zero
+            and -y.
+        drawn: the value that a joint keeps: 0, or the drawn distance.
     """
 
     owner: str
@@ -49,14 +52,14 @@ class Row(NamedTuple):
 
 
 class Input(NamedTuple):
-    """A driven row: it is factor * value, or factor * cos(value).
+    """A driven row, equal to factor * value or factor * cos(value).
 
     Attributes:
-        value: name of the value, which several rows may take; mm or rad.
+        value: name of the value, which several rows may share; mm or rad.
         drawn: the value in the drawing.
-        steers: how many mm a slide travels for a unit of the value; 0 where it drives none.
-        turns: whether it turns the whole car; and rolls: about a line that leads forward or rearward.
-        over_ground: whether it is a height over the ground, which displacements of the car add to.
+        steers: travel of the slide per unit of the value, mm; 0 if the input drives no slide.
+        turns: whether it turns the whole car. rolls: whether it does so about a line along the car.
+        over_ground: whether it is a height over the ground, which displacements of the car change.
     """
 
     row: Row
@@ -72,17 +75,17 @@ class Input(NamedTuple):
 
 @dataclass(frozen=True)
 class Drawing:
-    """Bodies as drawn, in units of the mechanism's size; their frames are parallel to that of the points.
+    """Bodies as drawn, in units of the mechanism's size; body frames are parallel to the points' frame.
 
-    Coordinates as given subtract with one rounding of the difference, however close the points are; from the
-    middle they have been rounded before. So the origin of a body that moves in the car is one of its points.
+    Given coordinates subtract with one rounding of the difference, however close the points are; coordinates
+    from the middle are already rounded. So the origin of a body that moves in the car is one of its points.
 
     Attributes:
         points: name -> (3,), mm.
-        middle: mean of the points, mm. Positions are measured from here, so that numbers do not depend on the
+        middle: mean of the points, mm. Positions are measured from here, so that results do not depend on the
             distance of the car from its origin.
         size: largest distance of a point from the middle, mm: the unit of length.
-        bodies: name -> index; what stands is 0.
+        bodies: name -> index; 0 is the body that stands still.
         anchors: (bodies, 3) origin of each body, mm: the middle for the chassis.
         holders: name of a point -> the first body that has it.
     """
@@ -96,25 +99,25 @@ class Drawing:
 
     @property
     def origins(self) -> Array:
-        """(bodies, 3) of the body frames, from the middle."""
+        """(bodies, 3) origins of the body frames, from the middle."""
         return np.asarray((self.anchors - self.middle) / self.size)
 
     def line(self, start: str, end: str) -> Array:
-        """From one drawn point to another."""
+        """Vector from one drawn point to another."""
         return np.asarray((self.points[end] - self.points[start]) / self.size)
 
     def arm(self, body: int, point: str) -> Array:
-        """From the origin of a body to a point."""
+        """Vector from the origin of a body to a point."""
         return np.asarray((self.points[point] - self.anchors[body]) / self.size)
 
     def held(self) -> tuple[Places, Array]:
-        """Bodies of all points, (P,), and the arms from their origins, (P, 3)."""
+        """Body of each point, (P,), and the vectors from the bodies' origins, (P, 3)."""
         body = np.array([self.bodies[self.holders[point]] for point in self.points], dtype=np.intp)
         return body, (np.array(list(self.points.values())) - self.anchors[body]) / self.size
 
 
 class Load(NamedTuple):
-    """What the ground does to a wheel at its contact point: N and N mm, in the frame of the points."""
+    """Load of the ground on a wheel at its contact point: N and N mm, in the frame of the points."""
 
     force: Array
     moment: Array
@@ -122,16 +125,16 @@ class Load(NamedTuple):
 
 @dataclass(frozen=True)
 class Corner:
-    """A wheel: what of a linkage carries it, and which way the car points.
+    """A wheel: its points and body in the linkage, and the car's axes.
 
     Attributes:
-        side: of the car, "left" or "right".
+        side: side of the car, "left" or "right".
         axes: (3, 3) outboard, rearward and up in the frame of the points, unit vectors as rows; outboard
             leads from the car's middle to the wheel: right or minus right.
         roles: the two points each of `wheel_axis` (inner point, wheel centre), `steering_axis` (lower, upper)
             and `damper`, as far as the linkage has them.
         knuckle: the body that carries the wheel, "" if there is none.
-        wheel_radius: of the wheel, mm, if it is given.
+        wheel_radius: mm, or None if not given.
         car: numbers of the car, as far as they are given; its axle is -1 for the front and 1 for the rear.
     """
 
@@ -143,32 +146,32 @@ class Corner:
     car: Mapping[str, float]
 
     def ends(self, role: str) -> tuple[str, str]:
-        """The two points of a role; DescriptionError where the mechanism has none."""
+        """The two points of a role; DescriptionError if the mechanism lacks the role."""
         if role not in self.roles:
             raise _lacking(f"the role {role!r}", f"the two points of {role} in [roles]", role)
         return self.roles[role]
 
     @property
     def carrier(self) -> str:
-        """The knuckle; DescriptionError where there is none."""
+        """The knuckle; DescriptionError if there is none."""
         if not self.knuckle:
             raise _lacking("the role 'knuckle'", "the body that carries the wheel in [roles]", "knuckle")
         return self.knuckle
 
     @property
     def radius(self) -> float:
-        """The wheel's radius, mm; DescriptionError where it is not given."""
+        """The wheel's radius, mm; DescriptionError if not given."""
         if self.wheel_radius is None:
             raise _lacking("wheel_radius", "it in [mechanism], in mm", "wheel_radius")
         return self.wheel_radius
 
     def numbers(self, *names: str) -> list[float]:
-        """Some of the car's numbers; DescriptionError that names all it lacks."""
+        """Some of the car's numbers; DescriptionError that names all missing ones."""
         lacking = [name for name in names if name not in self.car]
         if lacking:
             lines = ", ".join(f"{name} = {json.dumps(CAR[name])}" for name in lacking)
             raise DescriptionError(
-                f"needs {' and '.join(lacking)}, and none is given: write in [car], for example, {lines}, or "
+                f"needs {' and '.join(lacking)}, not given: write in [car], for example, {lines}, or "
                 "ask for other effects",
                 lacking[0],
             )
@@ -181,20 +184,20 @@ def _lacking(what: str, where: str, name: str) -> DescriptionError:
 
 @dataclass(frozen=True)
 class Model:
-    """A linkage, as `compile` makes it of names that it has checked.
+    """A linkage, made by `compile` from checked names.
 
     Attributes:
-        bodies: name -> names of its points. The first one stands: the chassis, or what the chassis turns on.
-        drawing: their places.
-        joints, inputs: rows.
+        bodies: name -> names of its points. The first one stands still: the chassis, or what it turns on.
+        drawing: places of the bodies and points.
+        joints, inputs: their rows.
         moves: name of an input that displaces the whole car, after all turns -> the direction.
         corners: part -> its wheel; "" for a mechanism without parts.
-        loads: part -> what acts on its wheel.
-        dampers: part -> row of the length of its damper, where there are loads.
-        reported_joints: point of a ball joint that two bodies share, and no other, or both of such a hinge ->
-            whose rows it has, and the body of the two whose force is reported.
+        loads: part -> load on its wheel.
+        dampers: part -> row of its damper's length, if there are loads.
+        reported_joints: point of a ball joint, or both points of a hinge, that exactly two bodies share; or
+            point on a slide -> name of the joint, and the body on which the force is reported.
         reported: bodies whose rates are reported.
-        unturned: bodies that are a point, of no body, and do not turn.
+        unturned: bodies that consist of one free point and do not turn.
     """
 
     bodies: Mapping[str, tuple[str, ...]]
@@ -211,15 +214,15 @@ class Model:
 
     @property
     def values(self) -> tuple[str, ...]:
-        """Names of the values that rows take, each once."""
+        """Names of the inputs' values, each once."""
         return tuple(dict.fromkeys(drive.value for drive in self.inputs))
 
     def input_of(self, part: str, by: str, what: str) -> str:
-        """The one driven input of a part, or of all, that is the travel of a slide ("rack"), that is not
-        ("travel"), or that rolls the chassis ("roll").
+        """The one driven input of a part, or of all, that is the travel of a slide ("rack"), is not the
+        travel of a slide ("travel"), or rolls the chassis ("roll").
 
         Raises:
-            DescriptionError: there is none, or another; `what` needs it.
+            DescriptionError: there is no such input, or more than one; `what` needs it.
         """
         others = tuple(f"{other}." for other in self.corners if other != part)
         held = [drive for drive in self.inputs if not drive.turns and not drive.value.startswith(others)]

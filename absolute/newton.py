@@ -1,4 +1,4 @@
-"""Newton on the manifold of body poses, to rounding, and the rates there: many configurations at once."""
+"""Newton's method on the bodies' poses, to rounding, and the rates there; for many configurations at once."""
 
 import math
 from typing import NamedTuple
@@ -10,29 +10,29 @@ from absolute.mechanism import Choice, Mechanism
 from absolute.rows import ROUNDINGS, Placed
 from absolute.vectors import EPS, Array, Counts
 
-# Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two
-# branches that meet there can no longer be told apart, nor half of the digits trusted.
+# Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two branches that
+# meet there can no longer be told apart, and half of the digits are lost.
 SMALLEST_RCOND = float(np.sqrt(EPS))
 
-# Quadratic convergence from a correction of 0.1 needs about 6 corrections; 25 is a stall.
+# Quadratic convergence from a correction of 0.1 needs about 6 corrections; 25 means a stall.
 MOST_CORRECTIONS = 25
 
 
 class Configurations(NamedTuple):
-    """N configurations of the bodies, and what their rows are there.
+    """N configurations of the bodies, with their rows.
 
     Attributes:
-        choice: of the rows that are solved for.
-        placed: all rows there.
-        q: (N, configuration of Pinocchio).
-        jacobian: (N, rows, unknowns). inverse: (N, unknowns, unknowns) of the rows kept; not a number where
-            there is none.
-        condition: (N,) condition numbers of the rows kept (1-norm).
-        signs: (N, groups) of the determinants of groups; they change only through a singular pose.
+        choice: choice of the rows that are solved.
+        placed: all rows, evaluated.
+        q: (N, size of Pinocchio's configuration).
+        jacobian: (N, rows, unknowns). inverse: (N, unknowns, unknowns) of the kept rows; NaN where there is
+            none.
+        condition: (N,) condition numbers of the kept rows (1-norm).
+        signs: (N, groups) signs of the groups' determinants; they change only through a singular pose.
         residual: (N,) largest violation of a row.
-        closed: (N,) whether the next correction and the rows kept are as small as rounding explains.
-        held: (N,) whether rows that were left out hold.
-        corrections: (N,) Newton corrections that led there.
+        closed: (N,) whether the next correction and the kept rows' violations are as small as rounding.
+        held: (N,) whether the rows left out are satisfied.
+        corrections: (N,) Newton corrections used.
     """
 
     choice: Choice
@@ -48,7 +48,7 @@ class Configurations(NamedTuple):
     corrections: Counts
 
     def part(self, of: slice) -> "Configurations":
-        """Some of them."""
+        """A slice of the configurations."""
         placed = Placed(*(array[of] for array in self.placed))
         return Configurations._make((self.choice, placed, *(array[of] for array in self[2:])))
 
@@ -59,10 +59,10 @@ class Configurations(NamedTuple):
 
 
 def rounding_of(condition: Array) -> Array:
-    """The largest correction that rounding explains.
+    """The largest correction that rounding can cause.
 
-    Each row is rounded like a few products of order 1, and the inverse of the Jacobian magnifies
-    that; columns have a norm of order 1, so the condition number bounds the norm of the inverse.
+    Each row has the rounding of a few products of order 1, and the inverse of the Jacobian magnifies this.
+    Columns have norms of order 1, so the condition number bounds the norm of the inverse.
     """
     return 64 * EPS * condition
 
@@ -70,13 +70,13 @@ def rounding_of(condition: Array) -> Array:
 def configurations_at(
     mechanism: Mechanism, choice: Choice, q: Array, target: Array, corrections: Counts | None = None
 ) -> Configurations:
-    """Configurations (N, nq) with their rows, against targets (N, rows)."""
+    """Evaluate configurations (N, nq) with their rows, against targets (N, rows)."""
     stack, kept, left_out = mechanism.stack, choice.kept, choice.left_out
     placed = stack.place(*mechanism.poses(q))
     jacobian = stack.jacobian(placed)
     square = jacobian[:, kept]
     inverse = solved(square, np.broadcast_to(np.eye(stack.unknowns), square.shape))
-    # Sums over columns as products, which are quicker.
+    # Sums over columns as matrix products, which are quicker.
     condition, other = ((np.ones(stack.unknowns) @ np.abs(of)).max(axis=1) for of in (square, inverse))
     condition *= other
     condition[np.isnan(condition)] = np.inf
@@ -100,7 +100,7 @@ def configurations_at(
 
 
 def signs_of(choice: Choice, jacobian: Array) -> Array:
-    """(..., groups) signs of the determinants of Jacobians (..., rows, unknowns), group by group."""
+    """(..., groups) signs of the determinants of the groups, from Jacobians (..., rows, unknowns)."""
     square = jacobian[..., choice.kept, :]
     blocks = (square[..., rows[:, None], columns] for rows, columns in choice.groups)
     return np.stack([np.sign(np.linalg.det(block)) for block in blocks], axis=-1)
@@ -109,18 +109,18 @@ def signs_of(choice: Choice, jacobian: Array) -> Array:
 def newton(
     mechanism: Mechanism, near: Configurations, q: Array, target: Array, largest: Array
 ) -> Configurations:
-    """Solve  rows(q) = target  near N configurations, up to the first whose first correction is too large.
+    """Solve  rows(q) = target  near N configurations, up to the first with too large a first correction.
 
-    After a correction s about k s^2 is left: with the one before, k = s / before^2, and at first at most the
-    condition number, as the rows are quadratic with second derivatives of order 1. Newton stops when that is
-    no more than a row is rounded by, or when corrections no longer shrink, and then the next correction must
-    be as small as rounding explains and the rows closed to rounding. The correction alone proves nothing near
-    a fold: there it falls as the root of the residual, and just beyond the fold, where there is no pose, it
-    is as small.
+    After a correction s about k s^2 is left: k = s / before^2 with the correction before, and for the first
+    one at most the condition number, as rows are quadratic with second derivatives of order 1. Newton's
+    method stops when this is no more than the rounding of a row, or when corrections no longer shrink. Then
+    the next correction must be as small as rounding, and the rows closed to rounding. A small correction
+    alone proves nothing near a fold: there it falls as the root of the residual, and just beyond the fold,
+    where there is no pose, it is as small.
 
     Args:
-        near: one configuration nearby, for its condition number and its choice of rows.
-        q: (N, nq). target: (N, rows). largest: (N,) the largest first correction that is allowed.
+        near: a configuration nearby, for its condition number and its choice of rows.
+        q: (N, nq). target: (N, rows). largest: (N,) largest allowed first correction.
     """
     stack, kept, condition = mechanism.stack, near.choice.kept, near.condition[0]
     q, corrections = q.copy(), np.zeros(len(q), dtype=np.int64)
@@ -139,7 +139,7 @@ def newton(
             more, rotation, step, size = more[:few], rotation[:few], step[:few], size[:few]
         q[more] = mechanism.moved(q[more], rotation, mechanism.spread(step))
         corrections[more] += 1
-        # What is not a number is not corrected any more.
+        # NaN is not corrected any more.
         left = np.minimum(condition, size / previous**2 if count else np.inf) * size**2
         again = (left > ROUNDINGS) & (size <= 0.5 * previous)
         more, previous = more[again], size[again]
@@ -149,18 +149,18 @@ def newton(
 
 
 def leading(right: NDArray[np.bool_]) -> int:
-    """How many there are before the first that is not right."""
+    """Number of leading entries that are true."""
     return len(right) if right.all() else int(right.argmin())
 
 
 def lengths(steps: Array) -> Array:
-    """(N,) of N steps, all their numbers together."""
+    """(N,) norms of N steps, over all their numbers together."""
     flat = steps.reshape(len(steps), math.prod(steps.shape[1:]))
     return np.asarray(np.sqrt(np.vecdot(flat, flat)))
 
 
 def solved(matrices: Array, right_hand: Array) -> Array:
-    """Solutions (N, n, k) of N systems with k right-hand sides each; not numbers where one is singular."""
+    """Solutions (N, n, k) of N systems with k right-hand sides each; NaN where a system is singular."""
     try:
         return np.asarray(np.linalg.solve(matrices, right_hand))
     except np.linalg.LinAlgError:  # one of them is singular to the last digit
@@ -171,7 +171,7 @@ def solved(matrices: Array, right_hand: Array) -> Array:
 
 
 def rates(mechanism: Mechanism, at: Configurations, *sides: Array) -> list[Array]:
-    """Velocities [o', w], accelerations [o'', w'] and so on of the bodies, (N, bodies, 2, 3) each.
+    """Velocities [o', w], accelerations [o'', w'] and higher rates of the bodies, (N, bodies, 2, 3) each.
 
     J v = first,  J a = second - drift(v),  and so on:  one matrix serves all.
 
@@ -185,17 +185,17 @@ def rates(mechanism: Mechanism, at: Configurations, *sides: Array) -> list[Array
 
 
 def velocities(at: Configurations, rates: Array) -> Array:
-    """v with  J v = rates,  (N, rows), corrected once by what is left of it: as good as by factors
-    (Higham, ch. 12)."""
+    """v with  J v = rates,  (N, rows), corrected once by its residual: as accurate as by factors (Higham,
+    ch. 12)."""
     rates = rates[:, at.choice.kept]
     found: Array = np.matvec(at.inverse, rates)
     return np.asarray(found + np.matvec(at.inverse, rates - np.matvec(at.kept, found)))
 
 
 def more_than_rounding(inverse: Array) -> Array:
-    """(N,) how many times its own rounding a row that was left out may be off where the others are closed.
+    """(N,) factor by which a left-out row may exceed its own rounding where the other rows are closed.
 
-    Such a configuration is off by the norm of the inverse times the rounding of its rows, and a row changes
-    by no more than a few times that.
+    Such a configuration has an error of the norm of the inverse times the rounding of its rows, and a row
+    changes by no more than a few times that.
     """
     return np.asarray(1.0 + np.sqrt(inverse.shape[-1]) * lengths(inverse))

@@ -1,4 +1,4 @@
-"""The points, bodies and lines of a solved motion, from the poses and rates of its bodies."""
+"""Points, bodies and lines of a solved motion, from the poses and rates of its bodies."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,14 +16,15 @@ from absolute.vectors import EPS, Array, Counts, carried, cross
 
 
 class Instants(NamedTuple):
-    """What was solved at N instants, in units of size.
+    """Results at N instants, in units of size.
 
     Attributes:
-        rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), what stands first.
-        rates: (N, R, bodies, 2, 3) velocities [o', w], accelerations [o'', w'] and so on of the bodies; what
-            stands, and all where they are not asked for, stay at zero.
+        rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), the standing body first.
+        rates: (N, R, bodies, 2, 3) velocities [o', w], accelerations [o'', w'] and higher rates of the
+            bodies; zero for the standing body, and for all if rates are not requested.
         slopes: (N, K, bodies, 2, 3) velocities of the bodies for a unit rate of one input each.
-        residual: (N,) largest violation of a row. condition: (N,) numbers. corrections: (N,) of Newton.
+        residual: (N,) largest violation of a row. condition: (N,) condition numbers. corrections: (N,) Newton
+            corrections.
     """
 
     rotation: Array
@@ -37,15 +38,15 @@ class Instants(NamedTuple):
 
 @dataclass(frozen=True)
 class Motion:
-    """Instants of a mechanism, as effects and loads look at them: in mm, before the car is displaced.
+    """Instants of a mechanism for effects and loads, in mm, before the car is displaced.
 
     Lengths are measured from the middle of the drawing until the last sum, so that the distance of the car
     from its origin costs no more than one rounding.
 
     Attributes:
-        by: part, and "travel", "rack" or "roll", of the K inputs that effects take derivatives by; behind
-            these are those by time.
-        part: whose wheel is looked at.
+        by: part, and "travel", "rack" or "roll", of the K inputs by which effects take derivatives; the
+            derivatives by time come after these.
+        part: the part whose wheel is used.
     """
 
     mechanism: Mechanism
@@ -55,12 +56,12 @@ class Motion:
 
     @property
     def corner(self) -> Corner:
-        """What of the linkage is the wheel, and which way the car points."""
+        """The wheel of the part."""
         return self.mechanism.model.corners[self.part]
 
     @property
     def in_the_car(self) -> "Motion":
-        """The same in the frame of the chassis."""
+        """The motion in the frame of the chassis."""
         of, car = self.instants, self.mechanism.drawing.bodies[CHASSIS]
         if not car:
             return self
@@ -75,15 +76,15 @@ class Motion:
 
     @cached_property
     def _slopes(self) -> Array:
-        """(N, K + 1, bodies, 2, 3) velocities for unit rates of inputs, and over time."""
+        """(N, K + 1, bodies, 2, 3) velocities for unit rates of the inputs, then by time."""
         return np.concatenate((self.instants.slopes, self.instants.rates[:, :1]), 1)
 
     def components(self, vector: Dual) -> Dual:
-        """A vector (3, N) along outboard, rearward and up, which do not turn."""
+        """Components of a vector (3, N) along outboard, rearward and up, which do not turn."""
         return vector.along(self.corner.axes)
 
     def line(self, start: str, end: str) -> Dual:
-        """(3, N) from one point to another; between two points of one body it is nothing but turned."""
+        """(3, N) from one point to another; between points of one body, the rotated drawn vector."""
         drawing, bodies = self.mechanism.drawing, self.mechanism.model.bodies
         body = next((body for body, points in bodies.items() if {start, end} <= set(points)), None)
         if body is None:
@@ -91,26 +92,26 @@ class Motion:
         return self._turned(drawing.bodies[body], drawing.line(start, end))
 
     def moved(self, point: str) -> Dual:
-        """(3, N) from the place where a point is drawn to where it is."""
+        """(3, N) displacement of a point from its drawn place."""
         drawing = self.mechanism.drawing
         body = drawing.bodies[drawing.holders[point]]
         drawn = (drawing.origins[body] + drawing.arm(body, point)) * drawing.size
         return self.place(point) - constant(drawn[:, None])
 
     def drawn(self, point: str) -> Dual:
-        """(3, 1) where a point is drawn."""
+        """(3, 1) drawn place of a point."""
         return constant(self.mechanism.drawing.points[point][:, None])
 
     def riding(self, on: str, arm: Dual) -> Dual:
-        """An arm (3, N) that from now on turns with a body."""
+        """A vector (3, N) with the derivatives that it has if it turns with a body."""
         return Dual(arm.value, cross(self.spin(on).T, arm.value.T).T)
 
     def spin(self, on: str) -> Array:
-        """(3, N, K + 1) angular velocity of a body for unit rates of inputs, and over time."""
+        """(3, N, K + 1) angular velocity of a body for unit rates of the inputs, then by time."""
         return self._slopes[:, :, self.mechanism.drawing.bodies[on], 1].transpose(2, 0, 1)
 
     def place(self, point: str) -> Dual:
-        """(3, N) a point from the middle."""
+        """(3, N) place of a point, from the middle."""
         drawing = self.mechanism.drawing
         body = drawing.bodies[drawing.holders[point]]
         arm = self._turned(body, drawing.arm(body, point))
@@ -118,7 +119,7 @@ class Motion:
         return Dual(origin * drawing.size, slopes * drawing.size) + arm
 
     def _turned(self, body: int, line: Array) -> Dual:
-        """(3, N) a line of a body, (3,) in units of size."""
+        """(3, N) a vector of a body, rotated; given in the body, (3,), in units of size."""
         turned = self.instants.rotation[:, body] @ (line * self.mechanism.drawing.size)
         return Dual(turned.T, cross(self._slopes[:, :, body, 1], turned[:, None]).transpose(2, 0, 1))
 
@@ -130,7 +131,7 @@ def solution_of(
     rates: bool,
     **asked: Mapping[str, Array],
 ) -> Solution:
-    """Instants in mm, with what is asked for, effects and forces by name.
+    """The solution in mm, with the requested effects and forces by name.
 
     Args:
         displaced: (N, 1 + R, 3) displacement of the car and its rates, mm and s.
@@ -138,7 +139,7 @@ def solution_of(
     size, turns = mechanism.drawing.size, sum(drive.turns for drive in mechanism.model.inputs)
     states = _points(mechanism, found, displaced, 1 + found.rates.shape[1] if rates else 1)
     points = [dict(zip(mechanism.drawing.points, map(_locked, state), strict=True)) for state in states]
-    # Without rates there are none of anything.
+    # Without rates, all rates are empty.
     position, velocity, acceleration, *higher = points if rates else (*points, {}, {})
     bodies = {name: mechanism.drawing.bodies[name] for name in mechanism.model.reported if rates}
     spins = [{n: _locked(found.rates[:, order, k, 1]) for n, k in bodies.items()} for order in range(2)]
@@ -152,16 +153,16 @@ def solution_of(
         iterations=_locked(found.corrections),
         residual=_locked(found.residual * size),
         condition=_locked(found.condition),
-        # Points are rounded too, whatever is left of the rows: half a unit in the last place of lengths up to
-        # the diameter. What a car turns on is known to 13 roundings of its rotation and origin (see `rows`),
-        # sqrt(13) of eps / 2, which its own points show at once; the others do so with all that they hang on.
+        # Points are rounded too, whatever the residual: half a unit in the last place of lengths up to the
+        # diameter. The body on which a car turns has 13 roundings in its rotation and origin (see `rows`), so
+        # an error of sqrt(13) eps / 2. The points of that body have this error directly, all others with it.
         accuracy=_locked((found.residual + (1 + 2 * turns) * EPS) * size),
         **{kind: {n: _locked(a) for n, a in of.items()} for kind, of in asked.items()},
     )
 
 
 def _points(mechanism: Mechanism, found: Instants, displaced: Array, orders: int) -> Array:
-    """(orders, P, N, 3) all points and as many of their rates, mm and s."""
+    """(orders, P, N, 3) all points and as many of their rates as requested, mm and s."""
     drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
     arm = np.matvec(found.rotation[:, body].swapaxes(0, 1), arms[:, None])
     state = np.empty((orders, *arm.shape))
@@ -171,7 +172,7 @@ def _points(mechanism: Mechanism, found: Instants, displaced: Array, orders: int
         # p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r)
         state[1:] = speeds + carried(arm, spins, orders)[1:]
     state *= drawing.size
-    # What stands is where it is drawn, to the last digit.
+    # The standing body's points are exactly where they are drawn.
     given, still = np.array(list(drawing.points.values()))[:, None], (body == 0)[:, None, None]
     base = np.where(still, given, drawing.middle)
     state[0] = np.where(still, 0.0, state[0])

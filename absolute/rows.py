@@ -1,21 +1,21 @@
-"""Joints and inputs as rows: their values, Jacobian and drift from the poses of the bodies, all at once.
+"""Joints and inputs as rows: values, Jacobian and drift from the poses of the bodies, for all rows at once.
 
-A row is a . e, with a a direction of the first body and e a partner direction of the second (right angle), or
-point 2 less point 1 (offset). The unknown velocities of a body are those of its frame's origin and its
-angular velocity, in world axes: [o', w]. With r1 and r2 the arms of both points from the origins, or nothing
-and the partner direction, a row has the rate
+A row is a . e, with a a direction of the first body. For a right angle, e is a partner direction of the
+second body; for an offset, e is the second point minus the first. The unknown velocities of a body are those
+of its frame's origin and its angular velocity, in world axes: [o', w]. With r1 and r2 the arms of both points
+from the origins (for a right angle: zero and the partner direction), a row has the rate
     offset only:  a . (o2' - o1')     both:  w1 . (a x (r1 + e)) + w2 . (r2 x a).
-The arms are turned by themselves: as differences of points far out they would be rounded as those.
+Arms are rotated directly: differences of points far from the origin would lose digits.
 
-A distance |e| is such a row with a = e / |e|, and has that rate, since a' is at a right angle to e.
-The turn t of axes x, y of the first and x2, y2 of the second body about a common third one, with
-cos t = y . y2 and sin t = -x . y2, has the rate of the right angle  -(x cos t + y sin t) . y2  which is 0
-there, t held. Its value is known up to whole turns: `gap` takes the nearest.
+A distance |e| is such a row with a = e / |e|. It has the same rate, since a' is normal to e.
+The turn t of axes x, y of the first body to x2, y2 of the second, about a common third axis, has
+cos t = y . y2 and sin t = -x . y2. Its rate is that of the right angle -(x cos t + y sin t) . y2, which is 0
+there with t held. Its value is known up to whole turns: `gap` takes the nearest.
 
-A row's rate of order n, when the bodies have none of that order, is the n-th derivative of a . e by the
-product rule: a, r1 and r2 are carried by their bodies, e = o2 + r2 - o1 - r1. That of a distance l follows
-from l l = e . e, and that of a turn from t' = z . (w2 - w1), z the common axis. (What t goes beyond where it
-is, is also an arcsine of a . e; but rounding of its derivatives grows with the factorial of the order.)
+A row's rate of order n with zero body rates of that order is the n-th derivative of a . e by the product
+rule: a, r1 and r2 turn with their bodies, e = o2 + r2 - o1 - r1. The rate of a distance l follows from l l =
+e . e, and that of a turn from t' = z . (w2 - w1), z the common axis. (The change of t is also an arcsine of a
+. e, but the rounding of its derivatives grows with the factorial of the order.)
 """
 
 from collections.abc import Iterable, Sequence
@@ -27,10 +27,10 @@ from numpy.typing import NDArray
 from absolute.model import Row
 from absolute.vectors import EPS, Array, carried, cross, product_rule
 
-# A row is a sum of products of turned features and origins. About 27 roundings of eps / 2 of its terms
-# meet in it: four from the quaternion, four from its products, three from the turning, two from the
-# origin, eleven from the direction, three from the last product. Independent ones add up to
-# sqrt(27 / 3) of eps / 2, or 1.5 eps; more than 4 eps is not rounding alone.
+# A row is a sum of products of rotated vectors and origins. Its terms have about 27 roundings of eps / 2:
+# four from the quaternion, four from its products, three from the rotation, two from the origin, eleven from
+# the direction, three from the last product. Independent ones add up to sqrt(27 / 3) of eps / 2, or 1.5 eps;
+# more than 4 eps is not rounding alone.
 ROUNDINGS = 4 * EPS
 
 WHOLE_TURN = 2.0 * np.pi
@@ -40,9 +40,9 @@ class Placed(NamedTuple):
     """Rows evaluated at poses.
 
     Attributes:
-        rotation, origin: (..., bodies, 3, 3) and (..., bodies, 3) of the bodies.
+        rotation, origin: (..., bodies, 3, 3) and (..., bodies, 3) poses of the bodies.
         vectors: (..., 3, rows, 3) a, r1 and r2 of every row. e: (..., rows, 3).
-        values: (..., rows) a . e, and turns between -pi and pi.
+        values: (..., rows) a . e; for turns the angle between -pi and pi.
     """
 
     rotation: Array
@@ -53,13 +53,13 @@ class Placed(NamedTuple):
 
 
 class RowStack:
-    """Rows of a mechanism side by side.
+    """All rows of a mechanism, stacked.
 
     Attributes:
-        owners: names of their joints and inputs. first, second: their bodies.
-        drawn: what joints hold them to. count, unknowns: rows and columns of the Jacobian.
+        owners: names of the rows' joints and inputs. first, second: their bodies.
+        drawn: values that joints keep. count, unknowns: numbers of rows and columns of the Jacobian.
 
-    Columns of the Jacobian are those of [o', w] of all bodies that are unknown.
+    Columns of the Jacobian are the unknown ones among [o', w] of all bodies.
     """
 
     def __init__(self, rows: Sequence[Row], bodies: int, columns: NDArray[np.intp]) -> None:
@@ -70,11 +70,11 @@ class RowStack:
         self.owners = tuple(row.owner for row in rows)
         self.first, self.second = indices(r.first for r in rows), indices(r.second for r in rows)
         self.drawn = np.array([row.drawn for row in rows])
-        # a, r1 and r2 of all rows, (3, rows, 3), and whose they are.
+        # a, r1 and r2 of all rows, (3, rows, 3), and the bodies that they belong to.
         vectors = np.array([(row.along, row.first_arm, row.second_arm) for row in rows])
         self._local = vectors.reshape(-1, 3, 3).swapaxes(0, 1)
         self._holders = np.array((self.first, self.first, self.second))
-        # The vectors of each body side by side, which one product turns, and where they then are.
+        # Vectors grouped by body, to be rotated by one product, and the index of each vector afterwards.
         own = [np.flatnonzero(self._holders == body) for body in range(bodies)]
         self._beside, places = np.zeros((bodies, 3, max(map(len, own)))), np.zeros(3 * self.count, np.intp)
         for body, numbers in enumerate(own):
@@ -86,12 +86,12 @@ class RowStack:
             indices(number for number, row in enumerate(rows) if row.kind == kind)
             for kind in ("distance", "turn")
         )
-        # As wide as the vectors that it multiplies: numbers that are repeated on the way take longer.
+        # Repeated to the width of the vectors that it multiplies: broadcasting takes longer.
         offset = [float(row.kind in ("offset", "distance")) for row in rows]
         self._offset, self._offsets = np.array(offset), np.repeat(np.reshape(offset, (-1, 1)), 3, axis=1)
-        # What the terms of a row add up to at most, apart from the distances of the origins.
+        # Largest sum of a row's terms, without the distances of the origins.
         self._spans = np.sqrt(np.vecdot(self._local[1:], self._local[1:])).sum(axis=0)
-        # Where the Jacobian's entries are among the four vectors of a row's rate, row by row, and a zero.
+        # Index of each entry of the Jacobian among the four vectors of a row's rate, row by row, and a zero.
         entries = np.arange(12 * self.count).reshape(4, self.count, 3)
         source = np.full((self.count, bodies, 2, 3), entries.size)
         for number, row in enumerate(rows):
@@ -100,7 +100,7 @@ class RowStack:
         self._source = source.reshape(self.count, 6 * bodies)[:, columns]
 
     def place(self, rotation: Array, origin: Array) -> Placed:
-        """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
+        """Evaluate rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
         turned = rotation @ self._beside
         vectors = turned.reshape(*turned.shape[:-3], self._beside.size).take(self._read, -1)
         a, r1, r2 = (vectors[..., kind, :, :] for kind in range(3))
@@ -120,33 +120,33 @@ class RowStack:
         return Placed(rotation, origin, vectors, e, values)
 
     def gap(self, placed: Placed, target: Array) -> Array:
-        """(..., rows) target less value, of turns to the nearest of all that look alike."""
+        """(..., rows) target minus value; for turns the nearest of all equivalent targets."""
         gap: Array = target - placed.values
         if self._turns.size:
             gap[..., self._turns] -= WHOLE_TURN * np.round(gap[..., self._turns] / WHOLE_TURN)
         return gap
 
     def owners_of(self, rows: Iterable[int]) -> tuple[str, ...]:
-        """Names of the joints and inputs of some rows, each once."""
+        """Names of the joints and inputs of these rows, each once."""
         return tuple(dict.fromkeys(self.owners[row] for row in rows))
 
     def of_one_point(self, row: int) -> list[int]:
-        """The rows that say where the same point of a second body is from the same one of the first."""
+        """Numbers of the rows with the same point of the same first body and the same point of the second."""
         arms = self._local[1:]
         same = (arms == arms[:, [row]]).all(axis=(0, 2)) & (self._offset > 0.0)
         same &= (self.first == self.first[row]) & (self.second == self.second[row])
         return [int(number) for number in np.flatnonzero(same)]
 
     def read_at_foot(self, placed: Placed, gap: Array) -> Placed:
-        """Rows that are not closed, with their joints' forces where they belong on the first body.
+        """Rows that are not closed, with their joints' forces at the foot on the first body.
 
-        Where a joint is off by m, the sum of its rows' -gap a, each row's rate may be taken with its force at
-        the point of the second body, as in `place`, or at its foot on the axis of the first,
-            a . (o2' + w2 x (r2 - m) - o1' - w1 x (r1 + e - m)),
-        and once it is closed both are the same. Directions of right angles likewise.
+        In a joint that is open by m, the sum of its rows' -gap a, each row's rate may be taken with its force
+        at the point of the second body, as in `place`, or at that point's foot on the axis of the first,
+            a . (o2' + w2 x (r2 - m) - o1' - w1 x (r1 + e - m)).
+        When the joint is closed, both are equal. Directions of right angles are treated likewise.
         """
         owner, partner = np.array(self.owners), self._local[2]
-        # Rows of one joint that say where the same point, or direction, is.
+        # Rows of one joint about the same point, or the same direction.
         same = np.equal.outer(owner, owner) & np.equal.outer(self._offset, self._offset)
         mates = (same & (partner[:, None] == partner).all(-1)).astype(float)
         vectors = placed.vectors.copy()
@@ -154,7 +154,7 @@ class RowStack:
         return placed._replace(vectors=vectors)
 
     def jacobian(self, placed: Placed) -> Array:
-        """(..., rows, unknowns)."""
+        """The Jacobian, (..., rows, unknowns)."""
         a, r1, r2 = (placed.vectors[..., kind, :, :] for kind in range(3))
         push = self._offsets * a
         none = np.zeros((*a.shape[:-2], 1, 3))
@@ -163,14 +163,14 @@ class RowStack:
         return matrix
 
     def rounding(self, placed: Placed) -> Array:
-        """(..., rows) what rounding alone may make of a row: ROUNDINGS times the lengths of the vectors that
-        add up to it."""
+        """(..., rows) largest rounding error of each row: ROUNDINGS times the lengths of the vectors that it
+        sums."""
         far = np.sqrt(np.vecdot(placed.origin, placed.origin))
         between = far.take(self.first, -1) + far.take(self.second, -1)
         return np.asarray(ROUNDINGS * (self._spans + self._offset * between))
 
     def drift(self, placed: Placed, rates: Sequence[Array]) -> Array:
-        """Rate of the rows of the order after the last, when no body has a rate of that order.
+        """Rate of the rows, one order higher than the given body rates, if the bodies' rates of it are zero.
 
         Args:
             rates: [o', w], [o'', w'] and so on of the bodies, each (..., bodies, 2, 3).
@@ -196,12 +196,12 @@ class RowStack:
 
 
 def _product(one: Sequence[Array], other: Sequence[Array], order: int) -> Array:
-    """A derivative of the scalar product of two vectors, from their derivatives."""
+    """A derivative of the scalar product of two vectors, from the vectors' derivatives."""
     return np.asarray(product_rule(order, (np.vecdot(one[i], other[order - i]) for i in range(order + 1))))
 
 
 def _of_length(vectors: Sequence[Array]) -> Array:
-    """The last derivative of the length of a vector, (..., rows, 3) by derivative: l l' = e . e'."""
+    """The highest derivative of a vector's length, from its derivatives (..., rows, 3): l l' = e . e'."""
     lengths = [np.sqrt(np.vecdot(vectors[0], vectors[0]))]
     for n in range(1, len(vectors)):
         whole = product_rule(n - 1, (np.vecdot(vectors[i], vectors[n - i]) for i in range(n)))

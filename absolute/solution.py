@@ -1,4 +1,4 @@
-"""What a solved motion holds: plain arrays by name, one row per instant."""
+"""The result of a solved motion: plain arrays by name, one row per instant."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,26 +12,27 @@ class Solution:
 
     Attributes:
         position: point name -> (N, 3), mm, world axes; chassis, moving and carried points.
-        velocity: point name -> (N, 3), mm/s; empty when no rates were asked for.
-        acceleration: point name -> (N, 3), mm/s^2; empty when no rates were asked for.
-        higher: the jerk and so on of points, each point name -> (N, 3), mm/s^3, mm/s^4: as many as the inputs
-            were given with.
+        velocity: point name -> (N, 3), mm/s; empty if rates were not requested.
+        acceleration: point name -> (N, 3), mm/s^2; empty if rates were not requested.
+        higher: jerk and higher rates of points, each point name -> (N, 3), mm/s^3, mm/s^4 and so on, up to
+            the order of the given inputs.
         angular_velocity: moving body name -> (N, 3), rad/s, world axes; empty without rates.
         angular_acceleration: moving body name -> (N, 3), rad/s^2, world axes; empty without rates.
-        iterations: (N,) Newton corrections at each instant, from where it was predicted.
+        iterations: (N,) Newton corrections at each instant, from its prediction.
         residual: (N,) largest violation of any row, mm (rows of directions times the size of the
             mechanism).
         condition: (N,) condition number of the scaled Jacobian (1-norm).
-        accuracy: (N,) mm: the rows hold for points within this of those given, so that it is what is left
-            of the rows, and what rounds coordinates as large as the mechanism. What it makes of a number
+        accuracy: (N,) mm: the rows hold exactly for points within this distance of the given ones. It is the
+            residual plus the rounding of coordinates as large as the mechanism. How far it moves a number
             depends on the pose.
-        effects: name -> (N,), those asked for, in their units (see `EFFECTS`).
+        effects: name -> (N,), the requested ones, in their units (see `EFFECTS`).
         rod_force: name of a rod, or `damper` with its part in front -> (N,) axial force, N, tension positive;
-            empty when no loads were asked for.
-        joint_force: point of a ball joint, of a hinge, there across its line, or of a slide -> (N, 3), N,
-            world axes: on the knuckle, or on the other body that moves and is named first, or on a point of
-            no body; empty without loads.
-        hinge_thrust: first point of a hinge -> (N,), N: likewise, at both along the line to the second.
+            empty if loads were not requested.
+        joint_force: point of a ball joint, a hinge (only across its line) or a slide -> (N, 3), N, world
+            axes: on the knuckle, else on the first-named moving body, or on a point of no body; empty without
+            loads.
+        hinge_thrust: first point of a hinge -> (N,), N: on the same body, the sum of both forces along the
+            line to the second point.
     """
 
     position: Mapping[str, Array]
@@ -51,5 +52,5 @@ class Solution:
 
     @property
     def derivatives(self) -> tuple[Mapping[str, Array], ...]:
-        """Of points by order, that of order 0 their positions."""
+        """The points' positions and rates, by order of the derivative."""
         return self.position, self.velocity, self.acceleration, *self.higher

@@ -1,4 +1,4 @@
-"""Solve a motion: assemble the drawing, follow it through the instants, and take the rates there."""
+"""Solves a motion: assembles the drawing, follows it through the instants, and computes the rates there."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +18,8 @@ from absolute.results import Instants, Motion, solution_of
 from absolute.solution import Solution
 from absolute.vectors import EPS, Array
 
-# Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `rows`).
+# Roundings of eps in the rate of a row, from its pose and its velocities, each as in the row's value (see
+# `rows`).
 LEFT_OUT = 3 * 4 * EPS
 
 
@@ -28,8 +29,8 @@ class ClosedDrawing:
 
     Attributes:
         inputs: input name -> its value in the drawing, rad or mm.
-        position: point name -> (3,) where it is when the drawing is closed, mm.
-        movement: point name -> how far that is from where it is drawn, mm.
+        position: point name -> (3,) place in the closed drawing, mm.
+        movement: point name -> distance from the drawn to the closed place, mm.
     """
 
     inputs: Mapping[str, float]
@@ -64,20 +65,20 @@ def solve(
     Args:
         model: the linkage.
         inputs: name -> (N, 3) value, rate and acceleration of every input of the model (rad or mm, per s).
-            With the jerks of all as well, (N, 4), there are jerks of points, and so on, (N, orders).
+            With higher rates of all inputs, (N, orders), the solution has these rates of points too.
         rates: False for positions only.
         effects: names of `effects_in(model)`.
-        loads: also the forces of rods, joints and slides under the loads of the model.
+        loads: whether to compute forces of rods, joints and slides under the loads of the model.
     Returns:
         Solution with one row per instant.
     Raises:
-        DescriptionError: an axis of the model has no length or its lines point apart; rows that are too many;
-            loads of a mechanism that has none, or whose rows follow from each other; effects or loads of one
-            that lacks a role, a number of the car, or an input to take derivatives by.
-        InputError: names, shapes or values of inputs; an effect that is not known.
-        PoseError: the bodies as drawn do not fit together, the mechanism locks before the inputs of an
-            instant, or these do not fix the pose.
-        Every error raised at an instant carries the motion before it as `partial`.
+        DescriptionError: an axis of the model has no length, or its lines have opposite senses; surplus rows
+            that are not redundant; loads requested of a model without loads or with redundant rows; effects
+            or loads of a model without a role, car data, or an input to take derivatives by.
+        InputError: names, shapes or values of inputs; an unknown effect.
+        PoseError: the drawn bodies do not fit together, the mechanism locks before the inputs of an instant
+            are reached, or these do not determine the pose.
+        Every error at an instant carries the motion before it as `partial`.
 
     >>> import absolute
     >>> model = absolute.compile({  # a crank on a hinge, and how high its end is
@@ -95,7 +96,7 @@ def solve(
 
 
 class Assembled:
-    """A linkage whose drawing is put together, to be solved for any inputs.
+    """A linkage with its drawing assembled, to be solved for any inputs.
 
     Raises:
         DescriptionError, PoseError: as `solve`.
@@ -110,7 +111,7 @@ class Assembled:
     @property
     def drawn_inputs(self) -> dict[str, float]:
         """Values of the inputs in the drawing, rad or mm."""
-        # A drawn rack at its centre is at 0, not at -0.
+        # Adding 0 turns -0 into 0, for a rack drawn at its centre.
         drawn = self._mechanism.named((self._mechanism.drawn_inputs + 0.0).tolist())
         return dict.fromkeys(self.model.moves, 0.0) | drawn
 
@@ -121,13 +122,13 @@ class Assembled:
         effects: Sequence[str] = (),
         loads: bool = False,
     ) -> Solution:
-        """The motion by inputs at N instants; arguments and errors are those of `solve`."""
+        """The motion for inputs at N instants; arguments and errors as for `solve`."""
         model, mechanism = self.model, self._mechanism
         asked = effects_of(effects, model)
         by = inputs_of(asked, model)
         rated = rates or any(one.effect.by == TIME for one in asked.values())
         series = _series({*mechanism.values, *model.moves}, inputs)
-        # Rows that take the same value have a column each.
+        # Rows with the same value have a column each.
         columns = np.zeros((0, 3, 0))
         if series:
             columns = np.stack([series[name] for name in mechanism.values], axis=-1)
@@ -146,7 +147,7 @@ class Assembled:
             return solution_of(mechanism, found, moved, rates, **numbers(found))
 
         with np.errstate(over="ignore", invalid="ignore"):
-            # What effects and loads lack is missing from no instants as well.
+            # What effects or loads lack is reported before solving: even for zero instants.
             runs = [next(followed)]
             numbers(runs[0])
             try:
@@ -155,7 +156,7 @@ class Assembled:
                 error.partial = solution() if len(runs) > 1 else None
                 raise
             whole = solution()
-            # Where rates overflow, so do accelerations.
+            # Accelerations overflow wherever rates do.
             finite = np.ones(len(columns), dtype=np.bool_)
             for rates_of in (whole.acceleration, *whole.higher):
                 for rate in rates_of.values():
@@ -168,18 +169,18 @@ class Assembled:
             raise refused
 
     def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Instants]:
-        """The instants of values (N, orders, values), first none and then one run of them after the other,
-        with the velocities for unit rates of some inputs."""
+        """The instants of values (N, orders, values): first an empty run, then one run after the other, with
+        the velocities for unit rates of some inputs."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
-        # Of a slide by its travel, whatever the value that drives it.
+        # For a slide, per unit of its travel, whatever value drives it.
         steers = [drive.steers or 1.0 for drive in self.model.inputs]
         per = np.array(steers + [1.0] * (series.shape[2] - len(steers)))
         named = np.array(mechanism.values)
         units = [mechanism.targets(series[:, 0], (named == value) / per)[1] for value in by]
 
         def at(found: Configurations, rated: bool) -> tuple[Instants, NDArray[np.bool_]]:
-            """Also whether rows that were left out hold all velocities."""
+            """The results at some configurations, and whether left-out rows hold for all velocities."""
             placed, here = found.placed, slice(done, done + len(found.q))
             shape = (*placed.origin.shape[:2], 2, 3)
             slopes, moving = np.zeros((len(units), *shape)), np.zeros((len(targets) - 1, *shape))
@@ -206,7 +207,7 @@ class Assembled:
 
 
 def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, Array]:
-    """name -> (N, orders): value, rate, acceleration, and more with the jerk, of every input.
+    """name -> (N, orders): value, rate, acceleration and any higher rates of every input.
 
     Raises:
         InputError: an input is missing, unknown, of another length, or not finite.
@@ -224,7 +225,7 @@ def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, A
         if law.shape[1:] != (orders,):
             raise InputError(
                 f"{name!r} has shape {law.shape}; {('N', orders)} is needed: value, rate and acceleration at "
-                "each instant, and as many more of its rates as another input has",
+                "each instant, and as many higher rates as the other inputs have",
                 name,
                 law.shape,
             )
@@ -239,7 +240,7 @@ def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, A
             )
         if len(law) != count:
             raise InputError(
-                f"{name!r} has {len(law)} instants, the others have {count}; give all as many",
+                f"{name!r} has {len(law)} instants, the others have {count}; give all the same number",
                 name,
                 len(law),
             )
@@ -248,7 +249,7 @@ def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, A
 
 def _array(name: str, values: object) -> Array:
     try:
-        # A copy of 0 dimensions has one instant, and no numbers there.
+        # An array without dimensions becomes one instant without numbers.
         return np.atleast_1d(np.array(values, dtype=float))
     except (TypeError, ValueError) as error:
         raise InputError(f"{name!r} is not an array of numbers: {error}", name, values) from error
@@ -257,21 +258,21 @@ def _array(name: str, values: object) -> Array:
 def _of_rates(
     mechanism: Mechanism, found: Configurations, velocity: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """(N,) residuals with the rates of rows that were left out at unit speed, and whether these hold."""
+    """(N,) residuals including the rates of left-out rows at unit speed, and whether these rows hold."""
     if not len(found.choice.left_out):
         return found.residual, np.ones(len(velocity), dtype=np.bool_)
-    # A row that follows from the others has no rate, but for what the pose is off.
+    # A redundant row has zero rate, apart from the error of the pose.
     unknown = velocity.reshape(len(velocity), 6 * velocity.shape[1]).take(mechanism.columns, 1)
     rate = np.abs(np.matvec(found.jacobian[:, found.choice.left_out], unknown)).max(axis=1)
     speed = lengths(velocity)
     missed = np.divide(rate, speed, out=np.zeros_like(rate), where=speed > 0.0)
     allowed = LEFT_OUT * more_than_rounding(found.inverse) * speed
-    # What overflows is refused for that.
+    # NaN passes here: overflow has an error of its own.
     return np.maximum(found.residual, missed), ~(rate > allowed)
 
 
 def _overflow(instant: int, rates: Mapping[str, Array]) -> InputError:
-    # The squares of speeds are accelerations, and so on.
+    # Accelerations are of the order of squared speeds, and so on.
     fastest = max(
         rates, key=lambda name: max(abs(rate) ** (1.0 / d) for d, rate in enumerate(rates[name], 1))
     )

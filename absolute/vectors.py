@@ -11,26 +11,26 @@ Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 Places = NDArray[np.intp]
 
-# From 1 to the next number.
+# Distance from 1 to the next double.
 EPS = float(np.finfo(float).eps)
 
 NEXT = np.array([1, 2, 0])
 
 
 def cross(a: Array, b: Array) -> Array:
-    """a x b over the last axis, quicker than numpy's for a few vectors."""
+    """a x b over the last axis; quicker than numpy's for a few vectors."""
     product: Array = (a * b.take(NEXT, -1) - a.take(NEXT, -1) * b).take(NEXT, -1)
     return product
 
 
 def carried(vector: Array, spins: Sequence[Array], orders: int) -> list[Array]:
-    """A vector that a body carries, and its time derivatives: x' = w x x, and so by the product rule
+    """A vector fixed in a rotating body, and its time derivatives: from x' = w x x by the product rule
 
         x^(n+1) = sum_i C(n, i) w^(i) x x^(n-i),    i = 0 .. n.
 
     Args:
-        vector: (..., 3). spins: w and as many of its derivatives as are not zero, likewise.
-        orders: how many are wanted, the vector itself among them.
+        vector: (..., 3). spins: w and its derivatives as far as they are not zero, (..., 3) each.
+        orders: number of results, the vector itself included.
     """
     found = [vector]
     for n in range(orders - 1):
@@ -39,7 +39,7 @@ def carried(vector: Array, spins: Sequence[Array], orders: int) -> list[Array]:
 
 
 def product_rule(order: int, terms: Iterable[Any]) -> Any:
-    """sum_i C(order, i) terms_i, as many as there are."""
+    """sum_i C(order, i) terms_i, over the given terms."""
     total: Any = 0.0
     for i, term in enumerate(terms):
         share = term if i in (0, order) else comb(order, i) * term

@@ -4,8 +4,8 @@ from pointcoord import Scene, simulate
 motion = simulate(Scene.load("bounce"))
 motion.position["wheel_centre"]     # (N, 3) mm, at the scene's instants
 
-Names are imported when they are first used: the program starts before its libraries, so that it can answer
-for itself while they load.
+Names are imported when they are first used. So the program starts before its libraries, and can handle
+signals and report errors while they load.
 """
 
 from importlib import import_module
@@ -86,7 +86,7 @@ __all__ = [
     "sweep_blocks",
 ]
 
-# Where names are that are no errors.
+# Modules of the names that are not error classes.
 _MODULES = {
     "Designs": "sweeping.designs",
     "KinematicMap": "mapping.kinematic_map",

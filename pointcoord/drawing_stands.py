@@ -1,7 +1,7 @@
-"""Where a drawing stands: the inputs' drawn values, how far each can go from there, and the wheel's angles.
+"""State of a drawing: the drawn input values, the range of each input from there, and the wheel angles.
 
-Each input is driven alone, the others held as drawn, along a path that cannot change branch (see `assembly`),
-until it meets a pose beyond which there is none.
+Each input is driven alone, with the others held as drawn, along a path that cannot change branch (see
+`assembly`), until no pose exists beyond.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ class End:
     """An end of an input's range.
 
     Attributes:
-        value: the last reachable value, rad or mm; infinite where the input goes all the way round.
-        limits: the links and joints that hold each other there; empty where the input itself ends or has no
-            end.
+        value: the last reachable value, rad or mm; infinite where the input can turn through a whole turn.
+        limits: the links and joints that block each other there; empty where the input's own range ends, or
+            where there is no end.
     """
 
     value: float
@@ -46,13 +46,13 @@ class End:
 
 @dataclass(frozen=True)
 class Standing:
-    """A drawing, closed, and what it can do.
+    """A closed drawing, the range of its inputs, and its wheel angles.
 
     Attributes:
         inputs: drawn value of each input, rad or mm.
-        reach: the lower and the upper end of each input, the others as drawn.
-        angles: of the closed drawing, by name, rad.
-        closing: how far its points moved to close.
+        reach: lower and upper end of each input, with the others as drawn.
+        angles: wheel angles of the closed drawing by name, rad.
+        closing: how far its points moved when the drawing was closed.
     """
 
     inputs: Mapping[str, float]
@@ -62,7 +62,7 @@ class Standing:
 
 
 def standing(scene: Scene) -> Standing:
-    """Close a scene's drawing and try how far its inputs go.
+    """Close a scene's drawing and find how far each input can go.
 
     Raises:
         SceneError: the hardpoints make no mechanism.
@@ -87,7 +87,7 @@ def standing(scene: Scene) -> Standing:
 
 
 def drawn_inputs(scene: Scene) -> dict[str, float]:
-    """The inputs' values in the closed drawing alone, rad or mm.
+    """The inputs' values in the closed drawing, without their ranges, rad or mm.
 
     Raises:
         SceneError, AssemblyError: as `standing`.
@@ -96,7 +96,7 @@ def drawn_inputs(scene: Scene) -> dict[str, float]:
 
 
 def reach_of(scene: Scene, name: str) -> tuple[End, End]:
-    """The lower and the upper end of one input alone, the others as drawn.
+    """The lower and the upper end of one input, with the others as drawn.
 
     Raises:
         SceneError, AssemblyError: as `standing`.
@@ -116,7 +116,7 @@ def _drawn(mechanism: Mechanism, closed: Path) -> dict[str, float]:
 
 
 def drawn_angles(mechanism: Mechanism, axes: CarAxes, effects: Iterable[str], y: Array) -> dict[str, Array]:
-    """The angles that some effects give of poses y, (..., size), each (...,), rad."""
+    """The wheel angles that `effects` give for poses y, (..., size); each (...,), rad."""
     unit = mechanism.unit[..., None]
     places = {name: place * unit for name, place in mechanism.places(y).items()}
     poses = Poses(mechanism, axes, (places,), (places,), added=(None,))
@@ -137,7 +137,7 @@ def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
     place = mechanism.layout.scalar(drive.coordinate)
     found = []
     for farthest in drive.extremes(mechanism.drawing):
-        # Straight in the driven coordinate: at an extreme an input may have no value that it could be given.
+        # Straight in the driven coordinate: the extreme may lie outside the input's valid values.
         target = closed.y[first:].copy()
         target[place - first] = farthest
         there = drive.input_value(farthest, mechanism.drawing)[..., None]

@@ -9,18 +9,18 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-# No name of ours is longer, and few folders and files are.
+# No built-in name is longer, and few folders and files are.
 LONGEST = 60
 MARKS = "'\":;,)]"
 _LONGER = re.compile(rf"[^\s/]{{{LONGEST + 1},}}")
 
 
 def visible(text: str) -> str:
-    r"""The text with each character that does not print as its escape, such as \x1b, \n or \u202e.
+    r"""The text with each non-printing character replaced by its escape, such as \x1b, \n or \u202e.
 
-    These are the controls, the marks that turn the direction of writing, the separators but for the space,
-    and halves of characters, which file names may hold. What prints stays as it is, but of a word, or a part
-    of a path, that is longer than LONGEST only the beginning is there.
+    Replaced are control characters, marks that turn the direction of writing, separators other than a space,
+    and lone surrogates, which file names may hold. Printing characters stay, but a word, or a part of a path,
+    that is longer than LONGEST is cut.
     """
     escaped = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
     return _LONGER.sub(_beginning, escaped)
@@ -35,12 +35,12 @@ def _beginning(found: re.Match[str]) -> str:
 class PointcoordError(Exception):
     """Base of every error that pointcoord raises on purpose.
 
-    Its message is one line of characters that print, whatever a scene or a file is called. It can be
-    pickled, with its data, so that it comes back from another process.
+    Its message is one line of printing characters, whatever a scene or a file is called. It can be pickled
+    with its data, and so be passed between processes.
 
     Args:
         said: what is wrong, where, with the value.
-        allowed: what would be right. advice: what to try. Empty where what is said tells it.
+        allowed: what would be right. advice: what to try. Both are empty where `said` includes them.
 
     Attributes:
         partial: the `Motion` up to where it stopped, with at least one instant; None if nothing was solved.
@@ -61,7 +61,7 @@ class PointcoordError(Exception):
 
 
 def _again(kind: type[PointcoordError], message: str, data: Mapping[str, object]) -> PointcoordError:
-    """An error with a message and data at hand; its own `__init__` makes the one from the other."""
+    """Rebuild an error from its message and data: its own `__init__` would build the message again."""
     error = kind.__new__(kind, message)
     error.__dict__.update(data)
     return error
@@ -85,7 +85,7 @@ class SceneError(PointcoordError):
 
 
 class UnknownName(PointcoordError, LookupError):
-    """A name that nothing carries; the message lists the names that exist."""
+    """An unknown name; the message lists the names that exist."""
 
     def __init__(self, kind: str, name: str, valid: Iterable[str]) -> None:
         self.kind = kind
@@ -100,12 +100,12 @@ class UnknownName(PointcoordError, LookupError):
 
 
 class NotComputed(PointcoordError, LookupError):
-    """A result that the scene, or the method of its solution, does not give.
+    """A result that the scene, or its method of solution, does not compute.
 
     Args:
-        quantity: what is asked for.
-        effect: the effect that gives it; empty if a method does.
-        advice: what to try; adds the effect to the scene unless given.
+        quantity: the result asked for.
+        effect: the effect that computes it; empty if a method does.
+        advice: what to try; "add the effect to the scene" unless given.
     """
 
     def __init__(self, quantity: str, effect: str, advice: str = "") -> None:
@@ -116,14 +116,14 @@ class NotComputed(PointcoordError, LookupError):
 
 
 class MissingLibrary(PointcoordError, ImportError):
-    """Something needs an optional library that is not installed, or that does not load.
+    """An optional library is needed, and it is not installed or does not load.
 
     Args:
-        part: what needs it.
-        libraries: any of which would do.
-        problem: what is wrong with them, if they are there.
-        extra: of this distribution, that brings them; one of the same name for each unless given.
-        advice: what to try, if not to install them.
+        part: the feature that needs it.
+        libraries: the libraries, any one of which is enough.
+        problem: what is wrong with them, if they are installed.
+        extra: the extra of this distribution that installs them; named as each library unless given.
+        advice: what to try instead of installing them.
     """
 
     def __init__(
@@ -158,13 +158,13 @@ class MechanismError(PointcoordError):
 
 
 class InputOutOfRange(PointcoordError):
-    """An input has a value for which its equation has no or no unique meaning, or that is hardly known.
+    """An input value for which the equation has no solution or no unique one, or that is too uncertain.
 
     Args:
         name: the input. value: rad or mm. instant: s.
-        doubt: how far the value may be off, rad or mm, where the terms of the law cancel so far that no pose
-            can be proven from what is left.
-        law: its kind, where there is such a doubt.
+        doubt: uncertainty of the value, rad or mm, where the terms of the input's law cancel so far that no
+            pose can be proven from the difference.
+        law: kind of the law, where there is such an uncertainty.
     """
 
     def __init__(
@@ -197,7 +197,7 @@ class InputOutOfRange(PointcoordError):
 
 
 class AssemblyError(PointcoordError):
-    """The mechanism cannot follow its inputs beyond a certain place.
+    """The mechanism cannot follow its inputs beyond a certain pose.
 
     Args:
         problem: what stopped it.
@@ -205,9 +205,9 @@ class AssemblyError(PointcoordError):
         wanted: value of every input that was asked for.
         instant: time of the wanted pose, s, if it belongs to a motion.
         condition: condition number at the last assembled pose.
-        reduce: the input with the most still to go, measured as its driven coordinate; empty if none has
-            any way left, so that the drawing itself does not close.
-        limits: the links and joints that hold each other there, the strongest first.
+        reduce: the input with the largest remaining change of its driven coordinate; empty if no input has
+            any change left, so that the drawing itself does not close.
+        limits: the links and joints that block each other there, the strongest first.
     """
 
     def __init__(
@@ -229,33 +229,33 @@ class AssemblyError(PointcoordError):
         self.limits = limits
         self.instant = instant
         when = "" if instant is None else f" at t = {instant:.6g} s"
-        advice = "draw these nearer to closing"
+        advice = "draw the points of these closer to an assembled pose"
         if reduce:
             advice = f"bring {reduce!r} back towards its value there"
         super().__init__(
-            f"{problem}{when}: wanted {_told(wanted)}; assembly stopped at {_told(reached)} "
+            f"{problem}{when}: wanted {_listed(wanted)}; assembly stopped at {_listed(reached)} "
             f"(condition number {condition:.2g}), limited by {', '.join(limits[:3]) or 'an unknown link'}",
             advice=advice,
         )
 
 
-def _told(inputs: Mapping[str, float]) -> str:
+def _listed(inputs: Mapping[str, float]) -> str:
     return ", ".join(f"{name} = {value:.10g}" for name, value in inputs.items())
 
 
 class NotFollowed(PointcoordError):
-    """A motion that power series in time do not follow: they would be too many, or none follows an input.
+    """A motion that power series in time cannot follow: too many are needed, or none follows an input.
 
     Args:
-        instant: how far the series reach, s.
-        name: the input that changes too fast, or from too large terms, for any step after that; empty if the
-            series are too many.
-        coarsest: whether no larger tolerance is left to try.
-        limit: most series. start, stop: of the motion that needs more, s.
+        instant: time that the series reach, s.
+        name: the input that changes too fast after that, or whose terms are too large, for any step; empty if
+            too many series are needed.
+        coarsest: whether the tolerance cannot be made larger.
+        limit: largest number of series. start, stop: span of the whole motion, s.
 
     Attributes:
-        problem: which of the two, without numbers.
-        expected: about how many the whole motion takes, if that is too many.
+        problem: which of the two problems, without numbers.
+        expected: estimated number of series for the whole motion, if these are too many; else zero.
     """
 
     def __init__(
@@ -274,8 +274,8 @@ class NotFollowed(PointcoordError):
         if name:
             self.problem, allowed = "no series follows an input", ""
             said = (
-                f"input {name!r} changes too fast or too unevenly after t = {instant:.10g} s: no step that "
-                "time can tell apart follows it to the tolerance, though the mechanism could"
+                f"input {name!r} changes too fast or too unevenly after t = {instant:.10g} s: the mechanism "
+                "could follow, but the series misses the tolerance even with the shortest step in time"
             )
             advice = "smooth it there" + ("" if coarsest else ", allow a larger tolerance")
         else:
@@ -300,13 +300,13 @@ class SingularConfiguration(PointcoordError):
 
 
 class WrongArgument(PointcoordError, ValueError):
-    """A motion, a kinematic map or a sweep cannot be made, used or read as it was asked for.
+    """A motion, a kinematic map or a sweep cannot be made, used or read as requested.
 
     Args:
         what: the argument, option, file, instant or design at fault.
         problem: what is wrong, with the value.
         allowed: what would be right.
-        instant: s, if one is at fault.
+        instant: time at fault, s, if there is one.
     """
 
     def __init__(self, what: str, problem: str, allowed: str, instant: float | None = None) -> None:
@@ -317,14 +317,14 @@ class WrongArgument(PointcoordError, ValueError):
 
 
 class NotCovered(PointcoordError, ValueError):
-    """Inputs at which nothing is proven, though they lie in the range of a map, or on the way of a motion.
+    """Inputs at which nothing is proven, though they lie in the range of a map or on the path of a motion.
 
     Args:
-        inputs: value of each input: of a kinematic map the first that is not covered, of a motion the last
-            that are.
-        reason: why not, or not further.
-        count: how many of the poses that were asked for are not. asked: how many there are.
-        instant: of a motion by a map, up to when its way is covered, s; the start if nothing of it is.
+        inputs: value of each input: for a kinematic map at the first pose that is not covered, for a motion
+            at the last covered one.
+        reason: why the cover ends.
+        count: number of requested poses that are not covered. asked: number of requested poses.
+        instant: for a motion by a map, the time up to which its path is covered, s; the start if no part is.
     """
 
     def __init__(
@@ -341,15 +341,15 @@ class NotCovered(PointcoordError, ValueError):
         self.asked = asked
         self.instant = instant
         where = "the map does not cover"
-        advice = "keep to what `covers` says, or make the map of a smaller range or with more halvings"
+        advice = "use inputs that `covers` accepts, or make the map of a smaller range or with more halvings"
         if instant is not None:
-            where = f"the map of the inputs does not cover their way after t = {instant:.10g} s,"
+            where = f"the map of the inputs does not cover their path after t = {instant:.10g} s,"
             advice = "keep the inputs farther from there, or use the method 'series' or 'newton'"
         others = f"; {count} of {asked} poses are not covered" if asked > 1 else ""
-        super().__init__(f"{where} {_told(inputs)}: {reason}{others}", advice=advice)
+        super().__init__(f"{where} {_listed(inputs)}: {reason}{others}", advice=advice)
 
 
-# Names that errors had before they became one.
+# Earlier names of errors that are now one class.
 MapError = SweepError = OutsideMotion = WrongArgument
 MotionTooLong = MotionTooRough = NotFollowed
 MotionNotMapped = NotCovered

@@ -1,4 +1,4 @@
-"""Methods: the ways to solve a scene, each as data."""
+"""Solution methods, each described by a data class."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from pointcoord.solve.pointwise import (
 
 @dataclass(frozen=True)
 class Method:
-    """A way to solve a scene.
+    """A solution method.
 
     Attributes:
         name: in results and messages.
-        by_series: a chain of power series, dense in time; or poses at each of the scene's instants.
-        by_map: series in the inputs along their way, dense in time as well; beside `by_series`, only where a
-            chain is too long or no step of it follows an input.
-        at_instants: how these are solved for.
-        map_effort: factorisations that a map may take at most; as `patches.way_map` has it if not given.
-        linkage: what it makes of a scene's linkage, None of one that it does not solve; None if it solves
-            every one as it is.
-        only: which it solves alone, and why, in words.
+        by_series: whether it builds a chain of power series, dense in time.
+        by_map: whether it builds series in the inputs along their path, dense in time as well. With
+            `by_series`, used only where a chain is too long or no step of the chain follows an input.
+        at_instants: solver at the scene's instants, used without `by_series` and `by_map`.
+        map_effort: most factorisations for a map; the limit of `patches.way_map` if None.
+        linkage: converts a scene's linkage to one that the method solves, or to None if it cannot; None if
+            the method solves every linkage as it is.
+        only: which linkages it solves, and why only these, in words.
         square_velocity_term: the term of the acceleration equation that is quadratic in the velocities;
-            series have it in themselves.
-        effects: by name, the effects that it computes in another way than others.
+            series include this term already.
+        effects: by name, the effects that this method computes differently.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Method:
 
     @property
     def dense(self) -> bool:
-        """Whether its motions are known between the scene's instants too."""
+        """Whether its motions are also known between the scene's instants."""
         return self.by_series or self.by_map
 
     def __str__(self) -> str:
@@ -56,7 +56,7 @@ class Method:
 
 
 AUTO = Method("auto", by_series=True, by_map=True)
-"""A chain of power series, or a map of the inputs where that is too long or too rough."""
+"""A chain of power series, or a map of the inputs where the chain is too long or the motion too rough."""
 
 SERIES = Method("series", by_series=True)
 """A chain of power series, dense in time."""
@@ -65,13 +65,13 @@ MAP = Method("map", by_map=True)
 """A map of the inputs along their way, dense in time, however long or rough the motion is."""
 
 NEWTON = Method("newton")
-"""The paper's algorithm, at the scene's instants only, each from the one before."""
+"""The paper's algorithm, at the scene's instants only, starting each instant from the one before."""
 
 NEWTON_COLD = Method("newton-cold", at_instants=partial(solve_instants, cold=True))
-"""The same with each instant by itself, from the drawing."""
+"""As `newton`, but each instant starts from the drawing."""
 
 CHORD = Method("chord", at_instants=partial(solve_instants, chord=True))
-"""The same as `newton` with one factorisation kept for many instants."""
+"""As `newton`, but one factorisation is kept for many instants."""
 
 METHODS: Mapping[str, Method] = {
     method.name: method for method in (AUTO, SERIES, MAP, NEWTON, NEWTON_COLD, CHORD)
@@ -79,7 +79,7 @@ METHODS: Mapping[str, Method] = {
 
 
 def method_of(name: Method | str) -> Method:
-    """A method by its name, or itself.
+    """The method of a name; a `Method` is returned as it is.
 
     Raises:
         UnknownName: there is no such method.

@@ -1,9 +1,9 @@
-r"""Many poses of one car at inputs that have nothing to do with each other, each with a proven bound.
+r"""Many poses of one car at unrelated input values, each with a proven error bound.
 
-Patches cover the inputs that are asked for, outwards from the drawing's pose (see `patches.flood`): each pose
-on one is a sum of its series, within the bound that is proven of the patch. What no patch covers, or where
-there are few poses, goes along a path of its own from the closed drawing, and is proven by itself (see
-`numerics.kantorovich`); where the path ends it says what stops it.
+Patches cover the requested inputs outwards from the drawing's pose (see `patches.flood`). A pose on a patch
+is a sum of the patch's series, within the patch's proven bound. Poses that no patch covers, and all poses
+where there are few, are each followed along a separate path from the closed drawing and proven singly (see
+`numerics.kantorovich`). Where a path ends early, the error says what stops it.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ from pointcoord.solve.place import Path
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-# Poses that are worth a map, and how many of them are worth a factorisation of one: of a strut, an off-axis
-# strut and a double wishbone 100 poses on paths of their own took 40, 44 and 24 ms, and maps 40 to 90 ms.
+# From FEW poses on a map pays, with one factorisation per WORTH poses. For a strut, an off-axis strut and a
+# double wishbone, 100 poses on separate paths took 40, 44 and 24 ms, and maps 40 to 90 ms.
 FEW, WORTH = 200, 2
-# Poses on paths of their own at a time: their factors are some 10 MB.
+# Separate paths followed at a time: their factors take some 10 MB.
 PATHS = 256
 
 
@@ -49,11 +49,11 @@ class SolvedPoses(Named):
     """Poses for inputs of shape (...).
 
     Attributes:
-        numbers: by quantity and name; of points (..., 3), mm, of the car (...). Positions of every point, and
-            the scene's effects as far as they are made of places; NaN where there is no pose.
-        bound: how far any coordinate of a point that is solved for may be from the exact assembly, (...), mm;
-            infinite where there is no pose. carried_bound: the same of points that ride on a body.
-        failures: by place in the flattened inputs, why there is no pose.
+        numbers: by quantity and name, (..., 3), mm, for points and (...) for numbers of the car. Positions of
+            every point, and those of the scene's effects that depend on positions only; NaN without a pose.
+        bound: error bound of every coordinate of the solved points against the exact assembly, (...), mm;
+            infinite where there is no pose. carried_bound: error bound of the points fixed to a body.
+        failures: index in the flattened inputs -> why there is no pose.
     """
 
     numbers: Mapping[str, Channel]
@@ -75,21 +75,21 @@ class SolvedPoses(Named):
 def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float | None = None) -> SolvedPoses:
     """Solve a scene's suspension at any inputs, whatever the scene's own laws and instants.
 
-    Inputs that broadcast to two dimensions are a grid, such as travel by rack. Beside positions there are the
-    scene's effects as far as they are made of places, gradients among them.
+    Inputs that broadcast to two dimensions are a grid, such as travel by rack. Results are positions and
+    those of the scene's effects that depend on positions only, including gradients.
 
-    Every pose is on the branch of the drawing, by proof. For poses in the order of a motion `simulate` is
-    quicker, and for very many of one car `kinematic_map`.
+    Every pose is proven to lie on the branch of the drawing. For poses in the order of a motion `simulate` is
+    quicker, and for very many poses of one car `kinematic_map`.
 
     Args:
-        inputs: values of every input, rad or mm, of any shapes that broadcast; what moves the chassis is zero
+        inputs: values of every input, rad or mm, of any shapes that broadcast; chassis inputs are zero
             unless given.
-        tolerance: bound that positions should keep, mm; the scene's own unless given. Rounding may leave
-            more.
+        tolerance: error bound wanted for positions, mm; the scene's unless given. Rounding may make the bound
+            larger.
     Raises:
-        SceneError: the hardpoints do not make a mechanism, or closing the drawing makes another car of it.
-        UnknownName: an input that the suspension does not have, or one that is missing.
-        InputOutOfRange: a value that is not finite or has no meaning; a tolerance too.
+        SceneError: the hardpoints do not make a mechanism, or closing the drawing changes the car too much.
+        UnknownName: an input that the suspension does not have, or a missing input.
+        InputOutOfRange: an input value or a tolerance that is not finite or out of range.
         AssemblyError: the drawing cannot be closed.
 
     >>> angles, racks = np.linspace(1.5, 1.8, 7)[:, None], np.linspace(-10.0, 10.0, 5)
@@ -123,14 +123,14 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     count = int(np.prod(shape))
     rows, bounds = readout.room(count), np.full((2, count), np.inf)
     states = readout.states(rows)
-    # The first rows of a table are those of the points that move.
+    # The first rows of the table belong to the points that move.
     moving = rows[: 3 * len(moving_points(topology))]
     moving[...] = np.nan
     driving = {name: flat[name] for name in topology.required_inputs}
-    # A map gives places and no coordinates, along which effects may take derivatives.
+    # A map gives positions but not the coordinates that effects need for derivatives along a path.
     y = np.tile(closed.y, (count, 1)) if plan.along_ways else None
     rest = np.arange(count)
-    # Where some rows are left out of the equations they are looked at pose by pose.
+    # Redundant rows that are left out of the equations must be checked pose by pose.
     if count >= FEW and y is None and not topology.left_out:
         rest = rest[~_by_patches(mechanism, closed, driving, wanted, moving, bounds)]
     failures: dict[int, PointcoordError] = {}
@@ -155,7 +155,7 @@ def _by_patches(
     rows: Array,
     bounds: Array,
 ) -> NDArray[np.bool_]:
-    """Put poses into their places, (3 points, N) and (2, N), that lie on patches; which these are, (N,)."""
+    """Write the poses that patches cover into rows (3 points, N) and bounds (2, N); returns which, (N,)."""
     count = rows.shape[1]
     nobody = np.zeros(count, dtype=bool)
     ranges = {name: (float(values.min()), float(values.max())) for name, values in inputs.items()}
@@ -170,7 +170,7 @@ def _by_patches(
         start = start_at_drawing(domain, closed)
         patches = flood(domain, limits, start, Marked.touched_by(domain, values, values)).patches
     except (AssemblyError, InputOutOfRange):
-        # A path of its own says which pose it is.
+        # Following each pose separately will tell which one fails.
         return nobody
     number = patches.lookup.at(values)
     covered = np.flatnonzero(number >= 0)
@@ -193,7 +193,7 @@ def _by_paths(
     bounds: Array,
     y: Array | None,
 ) -> dict[int, PointcoordError]:
-    """Put poses into their places that paths of their own lead to; what stops the others, by number."""
+    """Write the poses that separate paths reach into rows and bounds; returns the errors of the others."""
     topology, unit = mechanism.topology, float(mechanism.unit)
     wanted = {name: values[some] for name, values in inputs.items()}
     pose, blocked = assembled(mechanism, wanted, closed, None, 0.0)
@@ -207,26 +207,26 @@ def _by_paths(
     bounds[0, own] = pose.bound[done]
     if y is not None:
         y[own] = pose.y[done]
-    # Products of the weights and of edges below the mechanism's size round some ten times.
+    # Products of weights and edges, which are shorter than the mechanism, take about ten roundings.
     bounds[1, own] = max(1.0, mechanism.carried_gain) * (pose.bound[done] + 16.0 * EPS * unit)
     return {int(some[place]): error for place, error in stopped.items()}
 
 
 def _rounded(chassis: ChassisMotion, laws: Laws, farthest: Array, origin: float) -> tuple[Array, float]:
-    """What turning points with the chassis and adding to them rounds, (N,), mm; and how many times as far
-    turning makes a coordinate be off.
+    """Rounding error of moving points with the chassis, (N,), mm; and the factor by which rotation may
+    enlarge the error of a coordinate.
 
     Args:
         farthest: distance of the farthest point from the mechanism's origin, (N,), mm.
-        origin: its largest coordinate, mm.
+        origin: largest coordinate of the mechanism's origin, mm.
     """
     shift = np.abs(sum(chassis.shifts(laws), np.zeros(3))).max(axis=-1)
-    # The displacement is made of products and added to the origin, and then to a place.
+    # The displacement is a sum of products, added to the origin and then to a position.
     rounded = np.where(shift > 0.0, 2.0 * EPS * shift + EPS * (farthest + origin), 0.0)
     centres = [chassis.centres[name] for name in laws if name in chassis.centres]
     if not centres:
         return rounded, 1.0
-    # A turn takes some 40 roundings of an arm from its centre, which is no longer than this; what it leaves
-    # is turned on by those after it.
+    # A rotation takes some 40 roundings of an arm from its centre, which is no longer than this. Later
+    # rotations turn the rounding error of earlier ones.
     arm = farthest + 2.0 * sum(float(np.linalg.norm(centre)) for centre in centres)
     return rounded + 64.0 * EPS * len(centres) * arm, SPREAD

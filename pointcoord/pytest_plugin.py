@@ -1,4 +1,4 @@
-"""The pytest plugin: a solver of one's own, tested in five lines.
+"""The pytest plugin: tests a user's own solver in five lines.
 
     import pytest
     from my_solver import solve
@@ -7,15 +7,15 @@
     def test_my_solver_is_right(scene, plain_scene, assert_agrees):
         assert_agrees(solve(plain_scene(scene)), scene, accuracy=1e-6)
 
-and that it does not answer where there is no answer:
+and tests that the solver refuses where no pose exists:
 
     @pytest.mark.impossible_scenes()
     def test_my_solver_refuses_what_cannot_be(scene, assert_refuses):
         assert_refuses(solve, scene)
 
-pytest loads this module at each start where it is installed, whether a test needs it or not. So nothing but
-pytest is in it, and a project that has a package `validate` of its own keeps it: what validates a solver is
-looked up by its name when a fixture or a mark is used, as the program's first lines do (`__main__`).
+Once installed, pytest loads this module at every start, whether or not a test needs it. So the module imports
+only pytest, and does not disturb a project that has a package `validate` of its own: this distribution's
+`validate` is imported by its name when a fixture or a mark is used, as in `__main__`.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ ARGUMENT = "scene"
 MARKS = {
     "suspension_scenes": (
         "(*names, hard=False, suspension=None, closure=None, near=1e-3)",
-        "built-in scenes (all, without names), hard cases, paths, or scenes themselves; hard=True adds every "
-        "hard case that has an answer, as near to its singular place as `near` says, or None: at all values; "
+        "built-in scenes (all, without names), hard cases, paths, or scenes themselves; hard=True adds each "
+        "hard case that has a pose, at the distance `near` from the singular pose (None: at all distances); "
         "suspension: scenes of this shipped mechanism only, such as 'five_link'",
     ),
     "impossible_scenes": (
@@ -48,7 +48,7 @@ MARKS = {
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Say what the marks are for."""
+    """Describe the marks for `pytest --markers`."""
     for name, (arguments, words) in MARKS.items():
         text = f"{name}{arguments}: run the test with each of these as its argument {ARGUMENT!r}: {words}."
         config.addinivalue_line("markers", text)
@@ -58,7 +58,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Run a marked test over its scenes."""
     own = {mark.name for mark in metafunc.definition.own_markers}
     marks = [mark for mark in metafunc.definition.iter_markers() if mark.name in MARKS]
-    # A mark of a class or a module is for those of its tests that take a scene.
+    # A mark on a class or a module applies to those of its tests that take a scene.
     if ARGUMENT not in metafunc.fixturenames:
         marks = [mark for mark in marks if mark.name in own]
     if not marks:
@@ -71,10 +71,10 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def scenes_of(where: str, marks: Iterable[pytest.Mark]) -> Mapping[str, Scene]:
-    """What some marks stand for, by the names that the tests get.
+    """The scenes that the marks ask for, by test id.
 
     Raises:
-        CollectError: one of them cannot be followed, or none of them leaves a scene.
+        CollectError: a mark has a wrong argument, or the marks leave no scene.
     """
     try:
         _require_ours()
@@ -98,19 +98,19 @@ def scenes_of(where: str, marks: Iterable[pytest.Mark]) -> Mapping[str, Scene]:
         except (SceneError, ValueError) as error:
             raise pytest.Collector.CollectError(f"{where}: {_line(error)}") from None
     if not found:
-        raise pytest.Collector.CollectError(f"{where}: no scene is as the mark says; leave `suspension` out")
+        raise pytest.Collector.CollectError(f"{where}: no scene fits the mark; leave `suspension` out")
     return found
 
 
 @pytest.fixture(scope="session")
 def reference() -> Callable[[Scene | str], Any]:
-    """A scene's numbers in many digits, proven and rounded once: `reference("bounce").position["..."]`.
+    """A scene's reference results, proven and rounded once: `reference("bounce").position["..."]`.
 
-    The fixture is a function of a scene, its name or its path. What each number may be off by is in
-    `.accuracy.claims`. A scene is solved once in a run.
+    The fixture is a function of a scene, its name or its path. The error bound of each number is in
+    `.accuracy.claims`. A scene is solved once per test run.
 
     Raises, when it is called:
-        SceneError: there is no such scene. NoReferenceError: an instant has no pose, or none can be proven.
+        SceneError: there is no such scene. NoReferenceError: an instant has no pose, or no provable pose.
     """
     reference_solution = _ours("formulations.reference_solution", "reference_solution")
     solved: dict[str, Any] = {}
@@ -127,14 +127,14 @@ def reference() -> Callable[[Scene | str], Any]:
 
 @pytest.fixture(scope="session")
 def plain_scene() -> Callable[[Scene | str], dict[str, Any]]:
-    """What a solver is given: a scene as plain data (see `validate.solvers.plain`)."""
+    """A scene as plain data, as a solver receives it (see `validate.solvers.plain`)."""
     given_to_solver = _ours("solvers.plain", "given_to_solver")
     return _in_one_line(lambda scene: given_to_solver(_loaded(scene)))
 
 
 @pytest.fixture(scope="session")
 def assert_agrees() -> Callable[..., Any]:
-    """`validate.assert_agrees`; where some numbers are not tested and none disagrees, the test is skipped."""
+    """`validate.assert_agrees`; the test is skipped if some numbers are not tested and none disagrees."""
     agrees, not_tested = (_ours("testing.assertion", name) for name in ("assert_agrees", "NotTested"))
 
     def agrees_or_skips(states: Mapping[str, Any], scene: Scene | str, *more: Any, **options: Any) -> Any:
@@ -161,22 +161,22 @@ def _loaded(scene: Scene | str) -> Scene:
 
 
 def _in_one_line(function: Callable[P, T]) -> Callable[P, T]:
-    """The function with what it says of its arguments told at the line of the test, not at one of ours."""
-    told_in_a_line = import_module("validate.testing.assertion").TOLD
+    """Wrap a function so that errors about its arguments point at the line of the test, not at the plugin."""
+    argument_errors = import_module("validate.testing.assertion").TOLD
 
     def called(*arguments: P.args, **options: P.kwargs) -> T:
         __tracebackhide__ = True
         try:
             return function(*arguments, **options)
-        except told_in_a_line as error:
-            told = error.with_traceback(None)
-        raise told from None
+        except argument_errors as error:
+            short = error.with_traceback(None)
+        raise short from None
 
     return called
 
 
 def _ours(module: str, name: str) -> Any:
-    """What has a name in a module of `validate`; the test fails in one line where there is none."""
+    """An object of a module of `validate` by its name; without `validate` the test fails with one line."""
     try:
         _require_ours()
     except ImportError as error:
@@ -187,7 +187,7 @@ def _ours(module: str, name: str) -> Any:
 
 
 def _require_ours() -> None:
-    """Raise ImportError unless `validate` is ours and what it needs is installed."""
+    """Raise ImportError unless `validate` is ours and its dependencies are installed."""
     from pointcoord.__main__ import NAME, not_ours
 
     try:
@@ -196,7 +196,7 @@ def _require_ours() -> None:
         raise ImportError(not_ours()) from None
     if getattr(validate, "DISTRIBUTION", None) != NAME:
         raise ImportError(not_ours())
-    import_module("validate.testing.scenes")  # which needs all of the extra
+    import_module("validate.testing.scenes")  # imports all libraries of the extra
 
 
 def _line(error: Exception) -> str:

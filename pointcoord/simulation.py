@@ -1,4 +1,4 @@
-"""From a scene to its motion."""
+"""Solves a scene: from its hardpoints, inputs and instants to its motion."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# How many places are tried between the end of a map and the next instant, to tell what stops it.
+# Poses that are tried between the end of a map and the next instant, to find what stops the motion.
 TRIED = 32
 # Largest share of a scene's tolerance that solved points may use (see `truncation_share`).
 TRUNCATION_SHARE = 0.1
@@ -58,21 +58,21 @@ def simulate(scene: Scene | str | PathLike[str], method: Method | str = AUTO) ->
     """Solve a scene by point coordinates.
 
     Args:
-        scene: or the name of a built-in one, or the path of a file.
-        method: `auto` (`series`, and `map` where that would take too many series or cannot follow an input);
+        scene: a scene, the name of a built-in one, or the path of a file.
+        method: `auto` (`series`, or `map` where `series` needs too many series or cannot follow an input);
             dense in time `series` (a chain of power series) and `map` (series in the inputs, on patches
-            that cover their way); at the scene's instants only `newton` (the paper's algorithm),
+            that cover their path); at the scene's instants only `newton` (the paper's algorithm),
             `newton-cold` (each instant from the drawing) and `chord` (a factorisation kept); or a method of
             your own. The motion's `method` and notes say which was used, and why.
     Raises:
         UnknownName: there is no such method.
-        SceneError: the hardpoints do not make a mechanism, or the scene was made wrong after it was read.
-        InputOutOfRange: an input leaves the values for which it has a meaning, or the terms of its law
-            cancel so far that no pose can be proven with it.
-        AssemblyError: the mechanism cannot follow the inputs; `partial` is the motion up to there, None if
-            there is none.
-        NotFollowed: the motion takes too many series, or none follows an input; likewise.
-        NotCovered: no map covers the way of the inputs, though no pose on it is singular; likewise.
+        SceneError: the hardpoints do not make a mechanism, or the scene was made invalid after reading.
+        InputOutOfRange: an input leaves its valid values, or the terms of its law cancel so far that no pose
+            can be proven.
+        AssemblyError: the mechanism cannot follow the inputs. For this and the next two errors `partial` is
+            the motion up to there, or None if nothing was solved.
+        NotFollowed: the motion takes too many series, or none follows an input.
+        NotCovered: no map covers the path of the inputs, though no pose on it is singular.
 
     >>> motion = simulate("steer")
     >>> motion.position["wheel_centre"].shape
@@ -87,17 +87,17 @@ def simulate(scene: Scene | str | PathLike[str], method: Method | str = AUTO) ->
 
 
 def checked_task(scene: Scene, method: Method) -> Task:
-    """A scene ready to be solved.
+    """Check a scene and prepare it for solving.
 
     Raises:
         SceneError, InputOutOfRange, AssemblyError: as `simulate`.
     """
-    # Its dictionaries can be written after it was read.
+    # A scene's dictionaries can be changed after reading.
     return prepare_task(Scene.checked(scene, scene.title or "scene"), method)
 
 
 def solve_task(task: Task) -> Motion:
-    """Solve a scene that is ready, by the method of the task.
+    """Solve a prepared scene by the method of the task.
 
     Raises:
         InputOutOfRange, AssemblyError, NotFollowed, NotCovered: as `simulate`.
@@ -112,27 +112,27 @@ def solve_task(task: Task) -> Motion:
     error = solved.status.error(motion)
     if error is not None:
         raise error
-    assert motion is not None  # what is complete has its first instant at least
+    assert motion is not None  # a complete motion has at least its first instant
     return motion
 
 
 @dataclass(frozen=True)
 class Effort:
-    """What the accuracy that a scene asks for makes the method `auto` do.
+    """Work that the method `auto` does for the accuracy that a scene asks for.
 
     Attributes:
-        method: which way it goes, `series` or `map`. why: a note that says so where it is the map.
-        tolerance: of positions, mm: the scene's, or the nearest that a series holds.
-        part: the same as a part of the car's size, which rates are held to.
-        orders: of each series.
-        moving, still: how many unknown coordinates the series have, and how many are solved once because
-            they stand still.
-        not_needed: how many are not solved for, because nothing that is reported hangs on them.
+        method: the method used, `series` or `map`. why: a note on why, if it is `map`.
+        tolerance: tolerance of positions, mm: the scene's, or the nearest that a series can keep.
+        part: that tolerance as a share of the car's size, used for rates.
+        orders: order of each series.
+        moving, still: numbers of unknown coordinates in the series, and of those solved once because they
+            stand still.
+        not_needed: number of unknowns that are not solved for, because nothing reported depends on them.
         points_not_needed: the points that are not solved for.
-        start: what assembling the start takes.
-        work: what all of it takes, but for the sums at the instants.
-        stop: how far the series reach, s.
-        status: whether that is the end, and if not, why.
+        start: work of assembling the first pose.
+        work: all work but the sums at the instants.
+        stop: time that the series reach, s.
+        status: whether the motion ends there, and if not, why.
     """
 
     method: str
@@ -151,16 +151,16 @@ class Effort:
 
 
 def effort(scene: Scene) -> Effort:
-    """Find what solving a scene takes, by building its series or its map; nothing is summed at its instants.
+    """Find the work of solving a scene by building its series or its map, without sums at its instants.
 
     Raises:
-        PointcoordError: what `simulate` raises before a motion begins.
+        PointcoordError: the errors that `simulate` raises before a motion begins.
     """
     require_scene(scene)
     task, solved = solve_by_either(prepare_task(Scene.checked(scene, scene.title or "scene"), AUTO))
     mechanism = task.readout.mechanism
     whole, mapped = scene.mechanism.topology, task.method is MAP
-    # A map is of all coordinates, whatever moves them.
+    # A map contains all coordinates, including those that stand still.
     moving = mechanism.map.unknowns if mapped else mechanism.moving_part(task.functions).system.unknowns
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
     return Effort(
@@ -182,13 +182,13 @@ def effort(scene: Scene) -> Effort:
 
 @dataclass(frozen=True)
 class Task:
-    """A scene ready to be solved: checked, its drawing closed and its first pose assembled.
+    """A prepared scene: checked, its drawing closed and its first pose assembled.
 
     Attributes:
         functions: the laws of the inputs that drive the linkage.
         start: the pose at the first instant.
         closing: how far closing the drawing moved its points.
-        instants: of the scene, s.
+        instants: the scene's instants, s.
     """
 
     scene: Scene
@@ -201,7 +201,7 @@ class Task:
 
 
 def prepare_task(scene: Scene, method: Method) -> Task:
-    """Check everything that can be checked before the motion, and assemble its start.
+    """Check everything that can be checked before the motion, and assemble the first pose.
 
     Raises:
         SceneError, InputOutOfRange, AssemblyError: as `simulate`.
@@ -219,7 +219,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     functions = {name: laws[name] for name in whole.topology.required_inputs}
     check_range(whole, functions, instants)
     readout.laws(instants)
-    # The drawing is closed as a whole: it is all of the car that must be the one that was drawn.
+    # The whole drawing is closed, not only the part to be solved: all of the car must be the drawn one.
     first, tolerance = scene.time.start, pose_tolerance(scene, method, whole)
     closed = close_drawing(whole, first, tolerance)
     moved = closing(whole, closed.y)
@@ -235,7 +235,7 @@ def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
     """Solve a motion as a chain of power series.
 
     Args:
-        hopeful: whether to go on to the most segments where the first ones tell that these will not do.
+        hopeful: whether to go on up to the most segments even if the first ones show that more are needed.
     """
     mechanism, time = task.readout.mechanism, task.scene.time
     settings = chain_settings(task.scene, mechanism, task.readout.plan.derivative)
@@ -246,10 +246,10 @@ def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
 
 
 def solve_by_map(task: Task, why: str = "") -> SolvedScene:
-    """Solve a motion by a map of its inputs along their way.
+    """Solve a motion by a map of its inputs along their path.
 
     Args:
-        why: a note on why by a map, if that was not asked for.
+        why: a note on why the map is used, if the user did not ask for it.
     """
     # Imported here: few scenes need it.
     from pointcoord.patches.way_map import map_way
@@ -266,10 +266,10 @@ def solve_by_map(task: Task, why: str = "") -> SolvedScene:
 
 
 def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
-    """Solve a motion by series, or where they are too long or too rough for it by a map.
+    """Solve a motion by series, or by a map where the series are too many or do not follow an input.
 
     Returns:
-        The task with the method that was used, and the motion; that of the series if neither is whole.
+        The task with the method that was used, and the motion; the series' motion if neither is complete.
     """
     stopped: PointcoordError | None = foreseen(task)
     if stopped is None:
@@ -279,13 +279,13 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
         mapped = solve_by_map(task, why_map(stopped))
         if mapped.status.complete:
             return replace(task, method=MAP), mapped
-        # As far as they come, then.
+        # Neither is complete: take the series as far as they reach.
         solved = solve_by_series(task)
     return replace(task, method=SERIES), solved
 
 
 def foreseen(task: Task) -> NotFollowed | None:
-    """Whether a chain is too long for certain, before it is built: a segment ends at every break."""
+    """The error of a chain that is certainly too long, before it is built: a segment ends at every break."""
     time = task.scene.time
     every = (instant for law in task.functions.values() for instant in law.breaks)
     inner = sorted({instant for instant in every if time.start < instant < time.stop})
@@ -296,7 +296,7 @@ def foreseen(task: Task) -> NotFollowed | None:
 
 
 def why_map(stopped: NotFollowed) -> str:
-    """Why a map was used instead of series, as a note."""
+    """A note on why a map was used instead of series."""
     if stopped.name:
         reason = f"no series in time follows {stopped.name!r} after t = {stopped.instant:.10g} s"
     else:
@@ -305,10 +305,10 @@ def why_map(stopped: NotFollowed) -> str:
 
 
 def _stop_of_map(task: Task, solved: ByMap) -> PointcoordError:
-    """Why a map does not cover the way of the inputs.
+    """Why a map does not cover the path of the inputs.
 
-    The way is followed a little further from the last pose that is covered, from place to place on straight
-    paths; where one of these is blocked, that is what stops the motion.
+    The path is followed from the last covered pose to the next instant, in short straight steps. If one of
+    them is blocked, that is what stops the motion.
     """
     mechanism, functions, way, time = task.readout.mechanism, task.functions, solved.way, task.scene.time
     until = max(way.until, time.start)
@@ -328,7 +328,7 @@ def _stop_of_map(task: Task, solved: ByMap) -> PointcoordError:
 
 
 def _at_instants(task: Task) -> SolvedScene:
-    """Solve a motion at each of the scene's instants by itself."""
+    """Solve a motion at each of the scene's instants separately."""
     mechanism, instants, plan = task.readout.mechanism, task.instants, task.readout.plan
     term = task.method.square_velocity_term
     allowed = pose_tolerance(task.scene, task.method, mechanism)
@@ -338,7 +338,7 @@ def _at_instants(task: Task) -> SolvedScene:
 
 
 def _motion(task: Task, solved: SolvedScene) -> Motion | None:
-    """The motion, whole or up to where it was solved; None if it is nowhere."""
+    """The motion, whole or up to the last solved instant; None if no instant is solved."""
     times = task.instants[task.instants <= solved.stop]
     if not len(times):
         return None
@@ -358,7 +358,7 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
 
 
 def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
-    """What the user should know: of the drawing, of how it was solved, and of single numbers."""
+    """Notes for the user: on the drawing, on the solution, and on missing numbers."""
     closed = (task.closing.words,) if task.closing.noticeable else ()
     return (
         *closed,
@@ -376,20 +376,21 @@ def _unsolved(task: Task) -> tuple[str, ...]:
 
 
 def _unsolved_in_words(task: Task) -> tuple[str, ...]:
-    """Of what nothing is known, not even whether it can follow the inputs."""
+    """A note on the points that are not solved for."""
     left_out = _unsolved(task)
     if not left_out:
         return ()
     return (
-        f"nothing that is reported hangs on {', '.join(left_out)}: not solved for, nor whether it can follow",
+        f"not solved for, because nothing reported depends on them: {', '.join(left_out)}; "
+        "whether these points can follow the inputs is not checked",
     )
 
 
 def require_the_drawn_car(scene: Scene, moved: Closing) -> None:
-    """Refuse a drawing whose closing makes another car of it, unless the scene asks for that by name.
+    """Refuse a drawing that changes too much when it is closed, unless the scene asks for that by name.
 
     Raises:
-        SceneError: it does.
+        SceneError: the closed drawing is another car.
     """
     if moved.changes_the_car and not scene.mechanism.topology.puts_in_place:
         raise SceneError(
@@ -402,21 +403,21 @@ def require_the_drawn_car(scene: Scene, moved: Closing) -> None:
 
 
 def require_scene(scene: object) -> None:
-    """Find what is no scene, such as the name of one.
+    """Refuse an object that is not a scene, such as the name of one.
 
     Raises:
-        SceneError: it is none.
+        SceneError: the object is not a scene.
     """
     if not isinstance(scene, Scene):
         allowed = "a Scene, as Scene.load(name) gives it"
-        raise SceneError(shown(scene), "", f"is a {type(scene).__name__}, and no scene", allowed)
+        raise SceneError(shown(scene), "", f"is a {type(scene).__name__}, not a scene", allowed)
 
 
 def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
     """The mechanism of a scene, as a method solves it.
 
     Raises:
-        SceneError: its hardpoints do not make one, or the method does not solve such a suspension.
+        SceneError: its hardpoints do not make a mechanism, or the method cannot solve such a suspension.
     """
     part = scene.mechanism
     source, topology = scene.title or "scene", part.topology
@@ -435,7 +436,7 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
 
 
 def check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
-    """Find an input out of range at the scene's instants before anything is solved."""
+    """Check the inputs' ranges at the scene's instants before anything is solved."""
     for low in range(0, len(instants), BLOCK):
         block = instants[low : low + BLOCK]
         series = {name: function.series(block, 0) for name, function in functions.items()}
@@ -447,12 +448,12 @@ def check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], ins
 
 
 def truncation_share(mechanism: Mechanism) -> float:
-    """Share of a scene's tolerance that solved points may use: carried ones multiply what these are off."""
+    """Share of a scene's tolerance for solved points, whose errors are enlarged in points fixed to a body."""
     return min(TRUNCATION_SHARE, 1.0 / mechanism.carried_gain)
 
 
 def chain_settings(scene: Scene, mechanism: Mechanism, derivative: int) -> Settings:
-    """How a scene's chain of series is cut; that of many designs as finely as the largest of them needs.
+    """Settings that cut a scene's chain of series; many designs take the finest cut that any of them needs.
 
     Args:
         derivative: highest time derivative that will be evaluated.
@@ -461,7 +462,7 @@ def chain_settings(scene: Scene, mechanism: Mechanism, derivative: int) -> Setti
 
 
 def map_limits(scene: Scene, mechanism: Mechanism, derivative: int) -> Limits:
-    """How near the patches of a scene's map must be; what rounding loses is bounded apart, as of series."""
+    """Error limits of the patches of a scene's map; rounding is bounded separately, as for series."""
     from pointcoord.patches.flood import Limits
 
     kept = chain_settings(scene, mechanism, derivative).kept.tolerance
@@ -470,27 +471,27 @@ def map_limits(scene: Scene, mechanism: Mechanism, derivative: int) -> Limits:
 
 
 def finest_tolerance(scene: Scene) -> float:
-    """The finest tolerance that a chain of series keeps, mm: below it truncation drowns in rounding.
+    """The finest tolerance that a chain of series can keep, mm: below it rounding exceeds truncation.
 
     Raises:
         SceneError: the hardpoints do not make a mechanism.
     """
     mechanism = scene_mechanism(scene)
-    # Inflated by what taking a share of it may round.
+    # Enlarged by the rounding of taking a share of it.
     return FINEST * (1.0 + 4.0 * EPS) * float(mechanism.unit) / truncation_share(mechanism)
 
 
 def pose_tolerance(scene: Scene, method: Method, mechanism: Mechanism) -> float:
-    """How far a pose that is solved for may be from the exact assembly, rounding apart, in units."""
+    """Largest error of a solved pose against the exact assembly, without rounding, in mechanism units."""
     settings = chain_settings(scene, mechanism, 0)
     if method.dense:
         return SOLVED * settings.kept.tolerance
-    # Finer than a sum of series can be, but no coarser.
+    # May be finer than a sum of series can be, but not coarser.
     return min(settings.tolerance, COARSEST)
 
 
 def tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
-    """Where the chain is cut by another tolerance than the scene's."""
+    """A note where the chain is cut to another tolerance than the scene's."""
     settings = chain_settings(scene, mechanism, 0)
     used = settings.kept.tolerance
     if used == settings.tolerance:
@@ -498,18 +499,18 @@ def tolerance_notes(scene: Scene, mechanism: Mechanism) -> tuple[str, ...]:
     reason = (
         "finer than the rounding of a sum of series" if used == FINEST else "too coarse to keep to one branch"
     )
-    held = used * float(mechanism.unit) / truncation_share(mechanism)
-    return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {held:.3g} mm was used",)
+    kept = used * float(mechanism.unit) / truncation_share(mechanism)
+    return (f"the tolerance of {scene.tolerance:.3g} mm is {reason}: {kept:.3g} mm was used",)
 
 
 def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> None:
-    """Find out whether a law that is less certain than the scene's tolerance leaves a pose unproven.
+    """Refuse a pose that is unproven only because a law is less certain than the scene's tolerance.
 
     Raises:
-        InputOutOfRange: it does, and with the law's values as they are the pose is proven.
+        InputOutOfRange: such a pose exists; with exactly known values of the law it is proven.
     """
-    doubts = {name: law.rounding(samples.times) for name, law in solved.functions.items()}
-    if all((doubt <= tolerance).all() for doubt in doubts.values()):
+    rounding = {name: law.rounding(samples.times) for name, law in solved.functions.items()}
+    if all((error <= tolerance).all() for error in rounding.values()):
         return
     # Imported here: few laws are so uncertain.
     from pointcoord.results.proof import prove
@@ -518,15 +519,15 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
     unproven &= np.isfinite(prove(solved, samples, certain=True).bound)
     if unproven.any():
         place = int(np.argmax(unproven))
-        name = max(doubts, key=lambda name: float(doubts[name][place]))
+        name = max(rounding, key=lambda name: float(rounding[name][place]))
         function, instant = solved.functions[name], float(samples.times[place])
         value, law = float(function.series(instant, 0)[0]), type(function).__name__.lower()
-        doubt = float(doubts[name][place])
-        raise InputOutOfRange(name, value, "", instant, doubt=doubt, law=law)
+        uncertainty = float(rounding[name][place])
+        raise InputOutOfRange(name, value, "", instant, doubt=uncertainty, law=law)
 
 
 def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
-    """Which numbers are none, and why."""
+    """Notes on the numbers that do not exist, and why."""
     notes, count = [], len(samples.times)
     for effect in solved.readout.plan.computed:
         why = f": {effect.no_number}" if effect.no_number else ""

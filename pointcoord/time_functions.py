@@ -1,10 +1,10 @@
 r"""Inputs as functions of time, given by their power series about any instant.
 
-A time function f answers one question: the coefficients f_k of
+A time function f returns the coefficients f_k of
 
     f(t + h) = sum_k f_k h^k,      f_0 = f(t), f_1 = f'(t), f_2 = f''(t) / 2, ...
 
-which is all that positions, velocities, accelerations and whole motions need.
+which positions, velocities, accelerations and whole motions are computed from.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# rad; the cosine of a smaller angle is 1, and its sine adds less than a rounding unit's own rounding.
+# rad. The cosine of a smaller angle is 1 to rounding, and its sine adds less than one rounding.
 SMALL_ANGLE = 2.0**-27
 
 
 class TimeFunction(ABC):
     """A scalar function of time that is analytic between its breaks.
 
-    A coefficient too large for the arithmetic comes out infinite; whoever uses it must check.
+    A coefficient that overflows is infinite; the caller must check.
     """
 
     @abstractmethod
@@ -43,29 +43,29 @@ class TimeFunction(ABC):
 
     @abstractmethod
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
-        """How far the computed value may be from the law's own, rounded once, shape (N,); or a derivative."""
+        """Rounding error of the computed value or derivative, beside one rounding of the exact one, (N,)."""
 
     @abstractmethod
     def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
-        """The law's own value and time derivatives, each (N,)."""
+        """The exact value and time derivatives of the law, enclosed, each (N,)."""
 
     def enclosed(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
-        """The law's own value and time derivatives, each rounded once, (N,).
+        """The exact value and time derivatives of the law, each rounded once, (N,).
 
-        A series of the law does not round its value, so that is expected beside what `rounding` says.
+        A series does not round its value to a double, so that one rounding is expected beside `rounding`.
         """
         values = enumerate(self.exact(instants, derivatives))
         return [self._rounded_once(value, instants, derivative) for derivative, value in values]
 
     def _rounded_once(self, exact: Enclosed, instants: Array, derivative: int) -> Enclosed:
-        """A value rounded to the nearest double: which one is certain, unless it lies next to a tie.
+        """The exact value rounded to the nearest double: certain, unless the value lies next to a tie.
 
-        Next to a tie it may be either neighbour. Where twice the working precision tells less than the
-        computed value does, that is taken, and it may be a neighbour as well.
+        Next to a tie either neighbour is possible. Where twice the working precision is less certain than
+        the computed value, the computed value is taken, which may also be a neighbour.
         """
-        nearest, doubt = exact.high, exact.radius[0]
+        nearest, radius = exact.high, exact.radius[0]
         gap = 0.5 * np.abs(np.nextafter(nearest, np.copysign(np.inf, exact.low)) - nearest)
-        proven = np.where(np.abs(exact.low) + doubt < gap, 0.0, doubt + 2.0 * gap)
+        proven = np.where(np.abs(exact.low) + radius < gap, 0.0, radius + 2.0 * gap)
         computed = factorial(derivative) * self.series(instants, derivative)[..., derivative]
         coarse = self.rounding(instants, derivative)
         neighbours = coarse + 2.0 * UNIT_ROUNDOFF * np.abs(computed)
@@ -76,10 +76,10 @@ class TimeFunction(ABC):
 
     @abstractmethod
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
-        """Between which numbers every computed value of it lies over spans of time, each (N,).
+        """Lower and upper bound of every computed value over spans of time, each (N,).
 
-        They come nearer to the least and the largest value with the square of a span's length, and are the
-        value itself where the law stands still.
+        The bounds approach the least and the largest value with the square of a span's length. Where the law
+        is constant, both bounds are its value.
 
         Args:
             first, last: ends of each span, (N,), s; no break lies between them.
@@ -93,7 +93,7 @@ class TimeFunction(ABC):
     @property
     @abstractmethod
     def still(self) -> bool:
-        """Whether it is constant by its form, whatever the instants."""
+        """Whether the law is constant at all times by its form."""
 
 
 @dataclass(frozen=True)
@@ -113,21 +113,21 @@ class Polynomial(TimeFunction):
         """
         t = np.asarray(instants, dtype=float)
         result = np.zeros((*t.shape, order + 1))
-        # Python's own number in place of an array without dimensions, which takes five times as long.
+        # A Python float in place of an array without dimensions, which takes five times as long.
         numbers: Any = t if t.ndim else t.item()
         count = min(order + 1, len(self.coefficients))
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(count):
                 result[..., k] = _doubled_horner(*self._shifted(k), numbers)
             if not np.isfinite(result).all():
-                # Splitting a number above 1e300 overflows; there only the plain sum is left.
+                # Splitting a number above 1e300 overflows; the plain sum does not.
                 for k in range(count):
                     plain = np.polyval(self._shifted(k)[0][::-1], t)
                     np.copyto(result[..., k], plain, where=~np.isfinite(result[..., k]))
         return result
 
     def _shifted(self, k: int) -> tuple[list[float], list[float]]:
-        """binomial(j, k) c_j as high and low, for j from k up."""
+        """binomial(j, k) c_j as high and low parts, for all j from k."""
         if k not in self._shifts:
             factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
             high, low = two_product(np.array(factors), np.array(self.coefficients[k:]))
@@ -139,7 +139,7 @@ class Polynomial(TimeFunction):
         return {}
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
-        """4 n^2 u^2 of the sum of magnitudes of n terms (Graillat, Langlois, Louvet); of a constant none."""
+        """4 n^2 u^2 times the sum of n terms' sizes (Graillat, Langlois, Louvet); zero for a constant."""
         law = [abs(c) * float(perm(j, derivative)) for j, c in enumerate(self.coefficients)][derivative:]
         count = len(law)
         with np.errstate(over="ignore"):
@@ -158,14 +158,14 @@ class Polynomial(TimeFunction):
         return found
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
-        """The series about the middle, each term at its largest."""
+        """Bounds from the series about the middle, with each term at its largest."""
         middle, half = middle_and_half(first, last)
         order = len(self.coefficients) - 1
         series = self.series(middle, order)
-        doubts = [self.rounding(middle, k) / factorial(k) for k in range(order + 1)]
+        errors = [self.rounding(middle, k) / factorial(k) for k in range(order + 1)]
         # The rounding of a value is largest at one of the ends: it grows with the distance from zero.
-        own = np.maximum(self.rounding(first), self.rounding(last))
-        return _about(series, np.stack(doubts, axis=-1), half, own)
+        at_ends = np.maximum(self.rounding(first), self.rounding(last))
+        return _about(series, np.stack(errors, axis=-1), half, at_ends)
 
     @property
     def still(self) -> bool:
@@ -199,7 +199,7 @@ class Sine(TimeFunction):
             result = np.empty((*np.shape(angle), order + 1))
             for turn in range(min(4, order + 1)):
                 result[..., turn::4] = quarter_turns[turn][..., None] * factors[turn::4]
-            # The offset may all but cancel a large swing: product and sum are rounded once together.
+            # The offset may nearly cancel a large swing: product and sum are rounded once together.
             swing, rest = two_product(np.array(self.amplitude), sine)
             value, carry = two_sum(swing, np.array(self.offset))
             exact = value + (carry + rest)
@@ -207,21 +207,20 @@ class Sine(TimeFunction):
         return result
 
     def _angle(self, instants: Array) -> tuple[Array, ...]:
-        """The angle as a sum of three numbers, without rounding.
+        """The angle as an unrounded sum of three numbers.
 
-        A large phase would swallow the digits of time, and the values would no longer change as the rates
-        say; a large frequency would swallow the phase.
+        In a single double a large phase would lose digits of the time, and the values would no longer change
+        with their rates; a large frequency would lose digits of the phase.
         """
         turned, rest = two_product(np.array(self.angular_frequency), instants)
         angle, low = two_sum(turned, np.array(self.phase))
         return angle, *(np.where(np.isfinite(part), part, 0.0) for part in (rest, low))
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
-        """Of the sine 4 u: functions right to a unit in the last place, a sum; for each further part of the
-        angle that is more than a rounding of it 6 u more, for two products more. A derivative's factor
-        adds 4 u: a power, two products.
+        """4 u times the amplitude for sine and sum; 6 u more for each further part of the angle that exceeds
+        SMALL_ANGLE, for two products more; 4 u more for a derivative's factor: a power and two products.
 
-        Next to a tie that may round the value the other way, by a unit in its last place.
+        The value may lie next to a tie and be rounded the other way, so 2 u of the value are added.
         """
         with np.errstate(over="ignore", invalid="ignore"):
             _, *rests = self._angle(np.asarray(instants, dtype=float))
@@ -233,7 +232,7 @@ class Sine(TimeFunction):
         return np.asarray(UNIT_ROUNDOFF * (swing + turned))
 
     def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
-        """The formulas of `series` in twice the working precision, whole turns taken off the angle."""
+        """The formulas of `series` in twice the working precision, without whole turns of the angle."""
         speed, swing = Enclosed.of(self.angular_frequency), Enclosed.of(self.amplitude)
         angle = speed * Enclosed.of(instants) + Enclosed.of(self.phase)
         cosine, sine = within_a_turn(angle).cosine_sine()
@@ -245,9 +244,9 @@ class Sine(TimeFunction):
         return found
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
-        """The values at the ends, or the crest or the trough where the angle may pass one.
+        """Bounds from the values at the ends, and from the crest or trough where the angle may pass one.
 
-        The angle in turns is rounded at most 8 times relative to the sum of its magnitudes.
+        The rounding of the angle in turns is at most 8 units relative to the sum of its magnitudes.
         """
         ends = [self.series(t, 0)[..., 0] for t in (first, last)]
         least, most = np.minimum(*ends), np.maximum(*ends)
@@ -257,10 +256,10 @@ class Sine(TimeFunction):
         with np.errstate(over="ignore", invalid="ignore"):
             angles = [self.angular_frequency * t + self.phase for t in (first, last)]
             sizes = np.maximum(np.abs(self.angular_frequency * first), np.abs(self.angular_frequency * last))
-            doubt = 8.0 * UNIT_ROUNDOFF * (sizes + abs(self.phase) + 1.0)
-            low, high = np.minimum(*angles) - doubt, np.maximum(*angles) + doubt
+            error = 8.0 * UNIT_ROUNDOFF * (sizes + abs(self.phase) + 1.0)
+            low, high = np.minimum(*angles) - error, np.maximum(*angles) + error
             quarter = np.copysign(0.25, self.amplitude)
-            # False for what overflows: then it may pass both.
+            # The negated comparison is true for overflow: then the angle may pass both.
             crest, trough = (
                 ~(np.ceil(low / TURN[0] - turned) > high / TURN[0] - turned) for turned in (quarter, -quarter)
             )
@@ -279,9 +278,9 @@ class Sine(TimeFunction):
 class Table(TimeFunction):
     """The cubic spline through (times, values), not-a-knot at its ends.
 
-    Its value, rate and acceleration are continuous; its third derivative jumps at the times, where it is that
-    of the piece that begins. What it means is what scipy's CubicSpline computes: the rounding of the spline's
-    own equations is not told apart.
+    Value, rate and acceleration are continuous; the third derivative jumps at the times, where the piece that
+    begins there counts. The law is defined as what scipy's CubicSpline computes: rounding in the spline's own
+    equations is not counted as an error.
     """
 
     times: tuple[float, ...]
@@ -296,17 +295,17 @@ class Table(TimeFunction):
         return result
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
-        """None: the computed spline is the law."""
+        """Zero: the computed spline is the law."""
         return np.zeros_like(instants)
 
     def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         return [Enclosed.of(self._spline(instants, nu=derivative)) for derivative in range(derivatives + 1)]
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
-        """The cubic about the middle, each term at its largest.
+        """Bounds from the cubic about the middle, with each term at its largest.
 
-        A cubic is computed from the start of its piece, and rounded at most 8 times relative to the sum of
-        its terms there.
+        A cubic is computed from the start of its piece. The rounding is at most 8 units relative to the sum
+        of the terms there.
         """
         middle, half = middle_and_half(first, last)
         knots, cubics = self._spline.x, np.abs(self._spline.c[::-1])
@@ -314,11 +313,11 @@ class Table(TimeFunction):
         reach = np.maximum(last - knots[place], 0.0)
         with np.errstate(over="ignore", invalid="ignore"):
             rounded = sum(cubics[k][place] * reach**k for k in range(4))
-            doubts = np.zeros((len(middle), 4))
+            errors = np.zeros((len(middle), 4))
             for k in range(4):
                 falling = (comb(j, k) * cubics[j][place] * reach ** (j - k) for j in range(k, 4))
-                doubts[:, k] = 8.0 * UNIT_ROUNDOFF * sum(falling)
-            return _about(self.series(middle, 3), doubts, half, 8.0 * UNIT_ROUNDOFF * rounded)
+                errors[:, k] = 8.0 * UNIT_ROUNDOFF * sum(falling)
+            return _about(self.series(middle, 3), errors, half, 8.0 * UNIT_ROUNDOFF * rounded)
 
     @property
     def finite(self) -> bool:
@@ -342,7 +341,7 @@ class Table(TimeFunction):
 
     @property
     def still(self) -> bool:
-        """Of one value, which is what the spline then gives everywhere."""
+        """Whether all values are equal and the spline gives that value everywhere."""
         return len(set(self.values)) == 1 and not self._spline.c[:-1].any()
 
 
@@ -356,7 +355,7 @@ class Sum(TimeFunction):
         return np.asarray(sum(term.series(instants, order) for term in self.terms))
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
-        """That of the terms; each is rounded once before the sums, and takes part in one sum for each."""
+        """The terms' rounding, one rounding of each term, and one for each sum that it takes part in."""
         factor = factorial(derivative)
         sizes = (factor * np.abs(term.series(instants, derivative)[..., derivative]) for term in self.terms)
         sums = (len(self.terms) + 1) * UNIT_ROUNDOFF * sum(sizes)
@@ -369,14 +368,14 @@ class Sum(TimeFunction):
         return first
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
-        """The sums of the least and of the largest values.
+        """The sums of the terms' lower and upper bounds.
 
-        Where the terms go against each other they come nearer with the span's length, not with its square.
+        Where terms change in opposite directions, the bounds approach with the span's length, not its square.
         """
         lows, highs = zip(*(term.values_over(first, last) for term in self.terms), strict=True)
         low, high = sum(lows), sum(highs)
         sizes = sum(np.maximum(np.abs(a), np.abs(b)) for a, b in zip(lows, highs, strict=True))
-        # A value and these sums are rounded alike.
+        # Counts the rounding of a value and of these sums.
         edge = 2.0 * (len(self.terms) + 1) * UNIT_ROUNDOFF * sizes
         return np.asarray(low - edge), np.asarray(high + edge)
 
@@ -395,33 +394,33 @@ def _factorials(order: int) -> Array:
 
 
 def middle_and_half(first: Array, last: Array) -> tuple[Array, Array]:
-    """Middles of spans, and half lengths that reach both ends whatever is rounded."""
+    """Middles of spans, and half lengths enlarged to reach both ends despite rounding."""
     middle = first + 0.5 * (last - first)
     return middle, np.maximum(last - middle, middle - first) * (1.0 + 4.0 * UNIT_ROUNDOFF)
 
 
-def _about(series: Array, doubts: Array, half: Array, rounded: Array) -> tuple[Array, Array]:
-    """Between which numbers the sum of a series lies, at most `half` from its middle, each (N,).
+def _about(series: Array, errors: Array, half: Array, rounded: Array) -> tuple[Array, Array]:
+    """Lower and upper bound of a series' sum at most `half` from its middle, each (N,).
 
     Args:
-        series: coefficients about the middles, (N, order + 1). doubts: how far these may be off, likewise.
-        rounded: what computing a value rounds beside that, (N,).
+        series: coefficients about the middles, (N, order + 1). errors: their error bounds, (N, order + 1).
+        rounded: further rounding in computing a value, (N,).
     """
     powers = half[:, None] ** np.arange(series.shape[-1])
     with np.errstate(over="ignore", invalid="ignore"):
-        spread = (np.abs(series) + doubts)[:, 1:] * powers[:, 1:]
+        spread = (np.abs(series) + errors)[:, 1:] * powers[:, 1:]
         moved = spread.sum(axis=-1)
         value = series[:, 0]
         # Twice the rounding of the value, of the sums here and of the powers.
         count = 4.0 * series.shape[-1] + 8.0
-        edge = moved + doubts[:, 0] + rounded
+        edge = moved + errors[:, 0] + rounded
         edge += count * UNIT_ROUNDOFF * (np.abs(value) + moved)
         still = moved == 0.0
         return np.where(still, value, value - edge), np.where(still, value, value + edge)
 
 
 def _doubled_horner(highs: list[Any], lows: list[Any], t: Any) -> Any:
-    """sum_j (high_j + low_j) t^j of an array or a number, rounded about once."""
+    """sum_j (high_j + low_j) t^j for an array or a number, in twice the working precision."""
     high, low = highs[-1], lows[-1]
     for c, c_low in zip(highs[-2::-1], lows[-2::-1], strict=True):
         product, rest = two_product(high, t)
@@ -438,10 +437,10 @@ def cosine_and_sine(angle: Array) -> tuple[Array, Array]:
     e_k = (i/k) sum_{j=1..k} j a_j e_{k-j}.
     """
     count = angle.shape[-1]
-    # From the last term to the first, so that those that a term is made of are a slice.
+    # Stored from last to first, so that the terms in each sum are one slice.
     terms = np.zeros(angle.shape, dtype=complex)
     terms.real[..., -1], terms.imag[..., -1] = np.cos(angle[..., 0]), np.sin(angle[..., 0])
-    turned = -1j * np.arange(count) * angle  # of which a scalar product takes the conjugate
+    turned = -1j * np.arange(count) * angle  # minus sign: `vecdot` conjugates its first argument
     for k in range(1, count):
         terms[..., -1 - k] = np.vecdot(turned[..., 1 : k + 1], terms[..., -k:]) / k
     return terms.real[..., ::-1], terms.imag[..., ::-1]

@@ -1,4 +1,4 @@
-"""The text of a scene: read from a file or a stream, never without end, and taken apart as TOML."""
+"""Reads the text of a scene from a file or a stream, up to a largest size, and parses it as TOML."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import IO, Any
 
 from pointcoord.errors import SceneError
 
-# A scene of 64 MB is a table of some two million rows; anything longer is no scene, or has no end.
+# 64 MB hold a table of some two million rows; anything longer is not a scene, or is endless.
 LARGEST = 64_000_000  # bytes
 
 
@@ -18,10 +18,10 @@ def read_file(path: str | Path, allowed: str) -> bytes:
     """The bytes of a file.
 
     Args:
-        allowed: what may be given in place of a path that cannot be read, for the message.
+        allowed: what the message says is allowed if the path cannot be read.
     Raises:
-        SceneError: it cannot be read, is no regular file (a device or a pipe may have no end, or never
-            begin), or is larger than a scene may be.
+        SceneError: the file cannot be read, is not a regular file (a device or a pipe may be endless, or
+            never send anything), or is larger than a scene may be.
     """
     source = str(path)
     try:
@@ -35,14 +35,14 @@ def read_file(path: str | Path, allowed: str) -> bytes:
 
 
 def read_stream(stream: IO[bytes], source: str) -> bytes:
-    """All bytes of a stream; it is read no further than the largest scene.
+    """All bytes of a stream, read up to the size of the largest scene.
 
     Raises:
-        SceneError: there are more, or they cannot be read.
+        SceneError: the stream is longer, or cannot be read.
     """
     pieces, left = [], LARGEST + 1
     try:
-        # An unbuffered stream gives what it has at hand, and nothing at its end.
+        # An unbuffered stream returns what is available, and nothing at its end.
         while left and (piece := stream.read(left)):
             pieces.append(piece)
             left -= len(piece)
@@ -57,7 +57,7 @@ def parsed(text: bytes, source: str) -> dict[str, Any]:
     """TOML in UTF-8, with or without a byte order mark, as plain data.
 
     Raises:
-        SceneError: it is something else.
+        SceneError: the text is not TOML in UTF-8.
     """
     # Imported here: a scene need not come from a file.
     import tomllib

@@ -1,4 +1,4 @@
-"""How messages show values, and the name that a misspelt one is near to."""
+"""Values as messages show them, and suggestions for misspelt names."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ def shown(value: object) -> str:
 
 
 def meant(name: str, known: Iterable[str]) -> str:
-    """A name that was perhaps misspelt, in words that follow it; empty if none is near."""
+    """The suggestion that follows an unknown name in a message; empty if no known name is near."""
     near = nearest(name, known)
     return f" (did you mean {near!r}?)" if near else ""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """The known name that a misspelt one is nearest to; empty if none is near."""
+    """The known name that is nearest to a misspelt one; empty if none is near."""
     # Imported here: few names are misspelt.
     from difflib import get_close_matches
 
@@ -33,6 +33,6 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def shown_key(key: int | str) -> str:
-    """A key or a place in a list, in at most 60 characters."""
+    """A key or an index in a list, in at most 60 characters."""
     text = str(key)
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."

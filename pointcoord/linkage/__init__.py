@@ -1,1 +1,1 @@
-"""A linkage as data: points, constraints, inputs and the map that they make."""
+"""A linkage as data: points, constraints and inputs, and the quadratic map made of them."""

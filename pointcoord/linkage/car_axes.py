@@ -1,4 +1,4 @@
-"""The axes of a car as directions that have names: up, outboard and rearward, and their opposites."""
+"""Named directions of a car: up, outboard and rearward, and their opposites."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ Array = NDArray[np.float64]
 
 Direction = Literal["up", "down", "outboard", "inboard", "rearward", "forward", "to_the_left"]
 SIGNS = {"left": -1.0, "right": 1.0}
-"""Of the outboard direction along right, by the side of the car."""
+"""Side of the car -> sign of the outboard direction along right."""
 OPPOSITE: Mapping[Direction, Direction] = {"down": "up", "inboard": "outboard", "forward": "rearward"}
 
 
 @dataclass(frozen=True, eq=False)
 class CarAxes:
-    """Unit vectors of one wheel's car, each of shape (..., 3), and what else its scene says of the wheel.
+    """Directions of the car for one wheel, as unit vectors (..., 3), with the scene's wheel and car data.
 
     Attributes:
-        up, right: as the car's axes are given; rearward is right x up.
+        up, right: the scene's axes; rearward is right x up.
         outboard: away from the car's middle, on the side of the wheel. An outboard line that turns to the
             left goes `to_the_left`, up x outboard.
         wheel_radius: mm; None where the scene has none.
-        car: what the scene says of the whole car, by name: lengths in mm, shares, and of its axle -1 at the
-            front and +1 at the rear.
-        loads: by part, or by an empty name, the force, N, and the moment, N mm, on the wheel at its contact
-            point, along the user's axes, each (3,).
+        car: data of the whole car by name: lengths in mm, shares, and `axle` as -1 at the front and +1 at
+            the rear.
+        loads: part, or "" without parts -> force, N, and moment, N mm, on the wheel at its contact point,
+            along the user's axes, each (3,).
     """
 
     up: Array
@@ -44,7 +44,7 @@ class CarAxes:
     loads: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
     def on(self, side: str) -> CarAxes:
-        """Those of a wheel on a side of the car; those of this wheel where it is not said."""
+        """The axes for a wheel on a side of the car; these axes where no side is given."""
         return replace(self, outboard=SIGNS[side] * self.right) if side else self
 
     def component(self, vector: Array, direction: Direction) -> Array:
@@ -54,7 +54,7 @@ class CarAxes:
         return np.asarray(vector @ self._vectors[direction])
 
     def enclosed(self, vector: Enclosed, direction: Direction) -> Enclosed:
-        """Where that component exactly is; a direction of the car's axes is exactly as it is given."""
+        """The exact component, enclosed; directions of the car's axes count as exact as given."""
         if direction in OPPOSITE:
             return -self.enclosed(vector, OPPOSITE[direction])
         if direction == "rearward":

@@ -1,11 +1,11 @@
-r"""The chassis moves: turns of the whole car about lines through drawn points, then a displacement.
+r"""Chassis motion: rotations of the whole car about lines through drawn points, then a displacement.
 
     x -> P + R(x - P),   R v = v + sin(a) k x v + (1 - cos(a)) (k (k . v) - v)      inputs a about P along k
     p(t) = x(t) + sum_i e_i h_i(t)                                        inputs h_i along directions e_i
 
-The turns follow each other in the order of the mechanism's file. Every constraint is made of differences of
-points, and no turn changes the length of one, so that neither changes a constraint. The mechanism is solved
-in the chassis' own frame, where neither the distance that the chassis goes nor its speed costs a digit.
+The rotations are applied in the order of the mechanism's file. Constraints depend on differences of points
+only, and rotations keep lengths, so chassis motion changes no constraint. The mechanism is solved in the
+chassis' own frame, where neither the distance that the chassis moves nor its speed costs accuracy.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 
-LARGEST = 1e300  # mm and s: sums with an origin and of some inputs stay finite
+LARGEST = 1e300  # mm and s: a sum with an origin and some inputs stays finite
 FASTEST = 1e140  # rad and s: squares of rates, times lengths, stay finite
-# A turn leaves no component of a vector larger than its length, which is this many times its largest one.
+# A rotation may enlarge the largest component of a vector to the vector's length, at most by this factor.
 SPREAD = 3.0**0.5
 
 
@@ -41,10 +41,10 @@ class ChassisMotion:
     """Inputs that move the chassis, each along a unit vector of shape (..., 3).
 
     Attributes:
-        functions: of those that a scene drives.
-        lacks: what a direction that is made of the user's lacks by rounding.
-        centres: of those that turn the car, in order, the place about which they do, (..., 3), mm from the
-            mechanism's origin.
+        functions: laws of those that the scene drives.
+        directions: unit vector of each input.
+        lacks: rounding error of a direction computed from the user's axes, to be added to the direction.
+        centres: rotating inputs in order -> centre of rotation, (..., 3), mm from the mechanism's origin.
     """
 
     functions: Mapping[str, TimeFunction]
@@ -54,7 +54,7 @@ class ChassisMotion:
 
     @classmethod
     def of(cls, mechanism: Mechanism, functions: Mapping[str, TimeFunction]) -> ChassisMotion:
-        """Those of a mechanism's inputs that move its chassis."""
+        """The chassis inputs of a mechanism."""
         topology, drawing = mechanism.topology, mechanism.drawing
         moves = topology.chassis_inputs.items()
         along = {name: axis_along(direction) if about else direction for name, (direction, about) in moves}
@@ -68,18 +68,18 @@ class ChassisMotion:
 
     @property
     def turning(self) -> list[str]:
-        """The inputs that turn the car, in order."""
+        """The driven inputs that turn the car, in order."""
         return [name for name in self.centres if name in self.functions]
 
     def shifts(self, laws: Mapping[str, Sequence[Array]]) -> list[Array]:
         """Displacement and its time derivatives, each (..., N, 3), mm; empty if nothing displaces the car.
 
         Args:
-            laws: by input its value and its time derivatives, each (N,), mm; those of turns are passed over.
+            laws: input -> its value and time derivatives, each (N,), mm; those of rotations are ignored.
         """
         sums: list[Array] = []
         for name, rates in ((name, rates) for name, rates in laws.items() if name not in self.centres):
-            # The instants lie side by side in memory, as in a table of results.
+            # Instants are contiguous in memory, as in a table of results.
             along = self.directions[name][..., None]
             parts = [(along * rate[..., None, :]).swapaxes(-1, -2) for rate in rates]
             sums = [old + new for old, new in zip(sums, parts, strict=True)] if sums else parts
@@ -89,7 +89,7 @@ class ChassisMotion:
         """The value of an input and its time derivatives, shape (derivatives + 1, N), mm or rad.
 
         Raises:
-            InputOutOfRange: a value, a rate or an acceleration is too large to be added to anything.
+            InputOutOfRange: a value, a rate or an acceleration is too large to be added without overflow.
         """
         largest, unit = (FASTEST, "rad") if name in self.centres else (LARGEST, "mm")
         with np.errstate(over="ignore", invalid="ignore"):
@@ -105,12 +105,12 @@ class ChassisMotion:
     def turned_by(
         self, laws: Mapping[str, Sequence[Array]], states: Sequence[Mapping[str, Array]]
     ) -> Sequence[Mapping[str, Array]]:
-        """States of points after the turns of the car, in their order.
+        """States of points after the rotations of the car, in their order.
 
         Args:
-            laws: by input its value and its time derivatives, each (N,), rad.
-            states: by time derivative, of points in the chassis' frame, each (..., N, 3), mm from the
-                mechanism's origin; those of a point up to its highest.
+            laws: input -> its value and time derivatives, each (N,), rad.
+            states: by time derivative, point -> state in the chassis' frame, each (..., N, 3), mm from the
+                mechanism's origin; each point up to its own highest derivative.
         """
         for name in (name for name in self.centres if name in laws):
             vectors = self.directions[name], self.centres[name]
@@ -121,7 +121,7 @@ class ChassisMotion:
         return states
 
     def taken_back(self, instants: Array, places: Array) -> Array:
-        """Where places of a moved car, (N, 3), mm from the mechanism's origin, are in the chassis' frame."""
+        """Places (N, 3) of a moved car, mm from the mechanism's origin, converted to the chassis' frame."""
         laws = {name: self.law(name, instants, 0) for name in self.functions}
         for shift in self.shifts({name: list(law) for name, law in laws.items()}):
             places = places - shift
@@ -132,10 +132,10 @@ class ChassisMotion:
     def enclosed(
         self, laws: Mapping[str, Sequence[Enclosed]], origin: Array, derivatives: int
     ) -> list[Enclosed]:
-        """Exact displacement with an origin added, and its time derivatives, each (N, 3), mm and s.
+        """Exact displacement plus an origin, and its time derivatives, enclosed, each (N, 3), mm and s.
 
         Args:
-            laws: by input, where its value and its time derivatives exactly are, each (N,).
+            laws: input -> its enclosed value and time derivatives, each (N,).
         """
         sums = [Enclosed.of(origin), *(Enclosed.of(np.zeros(3)) for _ in range(derivatives))]
         for name, law in laws.items():
@@ -152,14 +152,13 @@ class ChassisMotion:
         *,
         back: bool = False,
     ) -> Sequence[Mapping[str, Enclosed]]:
-        """Where points and their rates exactly are after the turns of the car.
+        """Exact places and rates of points after the rotations of the car, enclosed.
 
         Args:
-            laws: by input, where its value and its time derivatives exactly are, each (N,), in the unit of
-                time of the points.
-            points: by time derivative, every point in the chassis' frame, (N, 3), in units.
-            unit: their unit, a power of two, mm.
-            back: from after the turns to the chassis' frame.
+            laws: input -> its enclosed value and time derivatives, each (N,), in the points' unit of time.
+            points: by time derivative, point -> state in the chassis' frame, (N, 3), in units of length.
+            unit: the unit of length, a power of two, mm.
+            back: whether to rotate back, from the moved car to the chassis' frame.
         """
         names = [name for name in self.centres if name in laws]
         for name in reversed(names) if back else names:
@@ -171,7 +170,7 @@ class ChassisMotion:
         return points
 
     def _along(self, name: str) -> Enclosed:
-        """A direction: what is written, the product of two such, or either at the length 1."""
+        """A direction, enclosed: as given, or with the rounding of a cross product or of a unit length."""
         if name in self.lacks:
             return Enclosed.of(self.directions[name], self.lacks[name], PAIRS, PAIRS)
         return Enclosed.of(self.directions[name])
@@ -183,11 +182,11 @@ def _turned(
     axes: Callable[[V], tuple[V, V]],
     slopes: Sequence[tuple[V, V]],
 ) -> list[dict[str, V]]:
-    """Points and their time derivatives after a turn.
+    """Points and their time derivatives after a rotation.
 
     Args:
-        axes: k x v and k (k . v) - v of a vector v.
-        slopes: by derivative, those of the angle's sine and versine.
+        axes: v -> k x v and k (k . v) - v.
+        slopes: by derivative, the sine and the versine of the angle, differentiated.
     """
     found: list[dict[str, V]] = [{} for _ in states]
     for point, place in states[0].items():

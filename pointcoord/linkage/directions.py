@@ -1,4 +1,4 @@
-"""The directions of a car by name, from its axes `up` and `right`."""
+"""Named directions of a car, computed from its axes `up` and `right`."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ AXIS = "axis "
 
 
 def axis_along(direction: str) -> str:
-    """What the axis of a turn about a direction is called, which has the length 1 to twice the precision.
+    """Name of a rotation axis along a direction, which has unit length to twice the working precision.
 
-    Vectors of doubles have it to a rounding only, and would change lengths as they turn.
+    Direction vectors in doubles have unit length to one rounding only, and rotations would change lengths.
     """
     return f"{AXIS}{direction}"
 
 
 def car_directions(up: Array, right: Array) -> dict[str, Pair]:
-    """Each direction as a high and a low part, shape (..., 3); forward is up x right, rounded twice over."""
+    """Each direction as high and low part, shape (..., 3); forward is up x right, to twice the precision."""
     none = np.zeros_like(up), np.zeros_like(right)
     high, low = pair_cross((up, none[0]), (right, none[1]))
     return {
@@ -38,11 +38,11 @@ def car_directions(up: Array, right: Array) -> dict[str, Pair]:
 
 
 def direction_of(car: Mapping[str, Pair], name: str) -> Pair:
-    """One of a car's directions, or the axis along one (see `axis_along`)."""
+    """A direction of the car, or the axis along one (see `axis_along`)."""
     return car[name] if name in car else unit_pair(car[name.removeprefix(AXIS)])
 
 
 def unit_pair(vector: Pair) -> Pair:
-    """A vector over its length, (..., 3), to twice the precision."""
+    """A vector divided by its length, (..., 3), to twice the precision."""
     high, low = pair_root(pair_dot(vector, vector))
     return pair_quotient(vector, (high[..., None], low[..., None]))

@@ -1,4 +1,4 @@
-"""The drawing: where every point and direction of a car stands, before anything is solved."""
+"""The drawing: places of points and directions of a car before anything is solved."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Drawing:
     """The drawn points and directions, in the mechanism's own units, each of shape (..., 3).
 
     Attributes:
-        vectors: points, and the car's directions.
-        unit: the length that is 1, mm.
-        lacks: what the directions that are made of the user's numbers lack by rounding.
+        vectors: points, and directions of the car.
+        unit: length of one unit, mm.
+        lacks: rounding error of directions computed from the user's axes, to be added to the vectors.
     """
 
     vectors: dict[str, Array]
@@ -31,29 +31,29 @@ class Drawing:
     lacks: dict[str, Array] = field(default_factory=dict)
 
     def edge(self, head: str, tail: str = "") -> Pair:
-        """From the point `tail` to the point `head` as high and low; a direction where there is no tail."""
+        """From the point `tail` to the point `head`, as high and low part; without `tail`, a direction."""
         high = self.vectors[head]
         if tail:
             return two_sum(high, -self.vectors[tail])
         return high, self.lacks.get(head, np.zeros_like(high))
 
     def axis(self, tail: str, head: str) -> Pair:
-        """The drawn direction from tail to head, as high and low, of a length between 1/2 and 1.
+        """The drawn direction from tail to head, as high and low part, of a length between 1/2 and 1.
 
-        Without a tail, half the unit vector along a direction of the car.
+        Without a tail: half the unit vector along a direction of the car.
 
         Raises:
-            MechanismError: both points are in one place.
+            MechanismError: both points are at the same place.
         """
         scale = self.scale(tail, head)[..., None] if tail else 0.5
         high, low = self.edge(head, tail)
         return high * scale, low * scale
 
     def scale(self, tail: str, head: str) -> Array:
-        """The power of two that brings the drawn distance between 1/2 and 1, shape (...,).
+        """The power of two that scales the drawn distance to between 1/2 and 1, shape (...,).
 
         Raises:
-            MechanismError: both points are in one place.
+            MechanismError: both points are at the same place.
         """
         length = self.distance(tail, head)
         if not (length > 0.0).all():
@@ -65,7 +65,7 @@ class Drawing:
         return self.length(start, end)[0]
 
     def length(self, start: str, end: str) -> Pair:
-        """The same as high and low."""
+        """Drawn distance between two points as high and low part."""
         if (start, end) not in self._lengths:
             self._lengths[start, end] = pair_root(exact_square(self.vectors[start], self.vectors[end]))
         return self._lengths[start, end]
@@ -87,13 +87,13 @@ class Drawing:
 
 
 class Placed(NamedTuple):
-    """A coordinate, or the three of a vector, that a constraint reads off the drawing: (...,) or (..., 3).
+    """Coordinates that a constraint takes from the drawing: one, or the three of a vector; (...) or (..., 3).
 
     Attributes:
         values: as computed.
-        lacks: what they lack by rounding, at most 5 u of themselves; zero for unknowns, which the solver
-            improves anyway.
-        doubt: how uncertain values + lacks still are.
+        lacks: rounding error of the values, to be added to them, at most 5 u of them; zero for unknowns,
+            which the solver improves anyway.
+        doubt: uncertainty of values + lacks.
     """
 
     values: Array
@@ -102,7 +102,7 @@ class Placed(NamedTuple):
 
 
 def no_length(start: str, end: str) -> MechanismError:
-    """The error for two points in one place that a length or a line needs apart."""
+    """The error for two points at one place that must be apart for a length or a line."""
     return MechanismError(
         f"link {start} - {end} has no length: both points are at the same place; move one", [start, end]
     )

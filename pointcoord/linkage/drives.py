@@ -1,8 +1,8 @@
-r"""How an input of the user becomes a known coordinate of the map, and back.
+r"""Drives: how an input of the user becomes a known coordinate of the map, and back.
 
-A coordinate is s x or s cos(x - quarter pi / 2) of the input x, the cosine or with quarter = 1 the sine, with
-a number s of the drawing. Values are power series of shape (..., order + 1); lengths are in units of the
-mechanism.
+A coordinate is s x, or s cos(x - quarter pi / 2): the cosine of the input x, or with quarter = 1 the sine.
+The scale s is a number of the drawing. Values are power series of shape (..., order + 1); lengths are in
+units of the mechanism.
 """
 
 from __future__ import annotations
@@ -31,30 +31,30 @@ V = TypeVar("V", Array, Enclosed)
 
 SIDEWAYS = {"right": "to the right", "left": "to the left"}
 EXTREME = 8.0
-"""Sizes of the mechanism: no rod that is drawn within one size reaches as far."""
+"""In sizes of the mechanism: a rod drawn within one size cannot reach as far."""
 NO_LIMITS = -np.inf, np.inf
-# Of a computed cosine, in units of rounding: 1 unit in the last place, at worst. Of a term of its series by
-# so many more than of the one before: of the recursion only half / k times that is left, a product and a
-# quotient.
+# Rounding errors in units of rounding. ROUNDED: of a computed cosine, 1 unit in the last place at worst.
+# OF_A_TERM: additional for each term of its series; in the recursion only half / k times the previous term's
+# error is left, plus a product and a quotient.
 ROUNDED, OF_A_TERM = 2.0, 2.0
 
 
 @dataclass(frozen=True)
 class Drive:
-    """One driven coordinate and the input that drives it; its kinds are made by the functions below.
+    """One driven coordinate and its input; the functions below make each kind.
 
     Attributes:
         coordinate: name of the known coordinate. input: name of the input.
-        unit: of the input, rad or mm.
-        sign: where the input is positive, in words.
-        scale: s as high and low, shape (...).
-        drawn: the coordinate at which the drawing itself stands.
-        exact: whether s is a power of two, so that a product with it rounds nothing.
-        quarter: None where the coordinate is proportional to the input.
-        limits, allowed: the smallest and the largest value that have a meaning, and these in words.
-        of_slide: whether it is the travel of a slide, by which a car is steered.
-        pushed: the point that slides so along a direction of the car, if one does.
-        by_travel: what drives the coordinate by a travel, mm, where the input stands for one.
+        unit: unit of the input, rad or mm.
+        sign: direction in which the input is positive, in words.
+        scale: s as high and low part, shape (...).
+        drawn: value of the coordinate in the drawing.
+        exact: whether s is a power of two, so that multiplying by it is exact.
+        quarter: 0 for a cosine, 1 for a sine; None where the coordinate is proportional to the input.
+        limits, allowed: smallest and largest valid value, and the valid range in words.
+        of_slide: whether the coordinate is the travel of a slide, which steers the car.
+        pushed: the point that slides along a direction of the car, if any.
+        by_travel: the drive by the slide's travel, mm, where the input, a steering wheel, stands for one.
     """
 
     coordinate: str
@@ -73,19 +73,19 @@ class Drive:
 
     @property
     def travel(self) -> Drive:
-        """What drives the coordinate by a travel, or else this itself."""
+        """The drive of this coordinate by a travel if there is one, else this drive."""
         return self.by_travel or self
 
     @property
     def is_turn(self) -> bool:
-        """Whether the input is a turn of any size, which has two coordinates."""
+        """Whether the input is a rotation without limits, which has two coordinates."""
         return self.quarter is not None and not self.allowed
 
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The coordinate's series from the input's.
 
         Raises:
-            InputOutOfRange: a value that has no meaning for this kind.
+            InputOutOfRange: a value outside the valid range.
         """
         if self.allowed:
             first = np.ravel(value[..., 0])
@@ -105,22 +105,23 @@ class Drive:
     def series_over(
         self, middle: Array, half: Array, order: int, drawing: Drawing
     ) -> tuple[Array, tuple[Array, Array, Array]]:
-        """The coordinate's series where the input is middle + half s, for all of |s| <= 1.
+        """The coordinate's series where the input is middle + half s, for all |s| <= 1.
 
         Args:
             middle, half: shape (...). order: 3 or more, and at least the largest half.
         Returns:
-            The series, shape (..., order + 1), and how far it and its first and second derivative by s may be
-            off anywhere there, each (...); what `rounding` says of its first term is lacking apart from that.
+            The series, shape (..., order + 1), and error bounds of its value and its first and second
+            derivative by s over |s| <= 1, each (...). The error that `rounding` returns for the first term
+            comes in addition.
         """
         value, k = np.zeros((*np.shape(middle), order + 1)), np.arange(order + 1)
         value[..., 0], value[..., 1] = middle, half
         series, scale = self.series(value, drawing), self.scale(drawing)[0]
-        # s is off by at most 2 units, and the product by one.
+        # s has an error of at most 2 units, and the product adds one.
         units, left_out = np.full(order + 1, 0.0 if self.exact else 3.0), [0.0 * half] * 3
         if self.quarter is not None:
             units += ROUNDED + OF_A_TERM * k
-            # Terms half^k / k! cos(middle + k pi / 2): what is left out falls faster than the powers of
+            # Terms are half^k / k! cos(middle + k pi / 2): the remainder falls faster than the powers of
             # half / (order + 1).
             for d in range(3):
                 first = half ** (order + 1) / float(np.prod(np.arange(1.0, order + 2.0 - d)))
@@ -134,13 +135,13 @@ class Drive:
         return series, (value_off, rate_off, bend_off)
 
     def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
-        """What the computed coordinate of an input lacks, and how uncertain it is with that added.
+        """Rounding error of a computed coordinate, to be added to it, and the uncertainty that then remains.
 
-        The coordinate lacks in proportion what s does; a cosine and the product are rounded. It changes by no
-        more than s times what the input does.
+        The error is in proportion to that of s; the cosine and the product add rounding. An error of the
+        input counts at most s times.
 
         Args:
-            law: how far the input's value may be off, in its unit.
+            law: error bound of the input's value, in its unit.
         """
         scale, rest = self.scale(drawing)
         change = np.broadcast_to(scale * law, coordinate.shape)
@@ -150,22 +151,22 @@ class Drive:
         return coordinate * (rest / scale), _units(units) * np.abs(coordinate) + 1.01 * change
 
     def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> list[Enclosed]:
-        """Where the coordinate and its time derivatives exactly are.
+        """The exact coordinate and its time derivatives, enclosed.
 
         Args:
-            law: the input's value and its time derivatives, each (N,), in its unit per s^d.
+            law: the input's enclosed value and time derivatives, each (N,), in its unit per s^d.
         """
         values = list(law)
         if self.quarter is not None:
             cosine, sine = within_a_turn(law[0]).cosine_sine()
             slopes = turn_slopes(cosine, sine, Enclosed.of(1.0) - cosine, law[1:])
-            # A cosine and 1 less it have opposite derivatives.
+            # cos and versine 1 - cos have opposite derivatives.
             cosines, sines = [cosine, *(-versine for _, versine in slopes[1:])], [own for own, _ in slopes]
             values = sines if self.quarter else cosines
         scale, rest = self.scale(drawing)
         if self.exact:
             return [value.scaled(scale) for value in values]
-        # What is left of s is of the order of u^2, and plain doubles round it once or twice.
+        # The rest of s is of the order of u^2, so double rounding of it is enough.
         size = np.abs(scale)
         whole = Enclosed.of(scale, rest, 256 * UNIT_ROUNDOFF**2 * size, 2 * UNIT_ROUNDOFF * size)
         return [value * whole for value in values]
@@ -173,7 +174,7 @@ class Drive:
     def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
         """The input that gives a coordinate.
 
-        Of a cosine it is between 0 and pi, of a sine between -pi / 2 and pi / 2.
+        For a cosine it is between 0 and pi, for a sine between -pi / 2 and pi / 2.
         """
         value = coordinate / self.scale(drawing)[0]
         if self.quarter is None:
@@ -182,14 +183,14 @@ class Drive:
         return np.asarray(np.arcsin(value) if self.quarter else np.arccos(value))
 
     def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
-        """Two values of the coordinate beyond which no input makes sense, each of shape (...)."""
+        """Smallest and largest value of the coordinate that can make sense, each of shape (...)."""
         travel = self.travel
         farthest = travel.scale(drawing)[0] * (EXTREME * drawing.unit if self.quarter is None else 1.0)
         return (0.0 if self.quarter is None and self.allowed else -1.0) * farthest, farthest
 
 
 def turn_slopes(cosine: V, sine: V, versine: V, rates: Sequence[V]) -> list[tuple[V, V]]:
-    """Sine and versine of an angle, and their time derivatives, from its own.
+    """Sine and versine of an angle, and their time derivatives, from the rates of the angle.
 
     Both change with the angle: sin' = cos angle', (1 - cos)' = sin angle', and cos' = -(1 - cos)'.
     """
@@ -204,19 +205,19 @@ def turn_slopes(cosine: V, sine: V, versine: V, rates: Sequence[V]) -> list[tupl
 
 
 def times(count: int, product: V) -> V:
-    """So many times the same, in either arithmetic."""
+    """A product times a whole number, in either arithmetic."""
     return product.times(count) if isinstance(product, Enclosed) else product * count
 
 
 def _units(count: Array | float) -> Array:
-    """So many roundings in a row; none of none."""
+    """Relative error of `count` roundings in sequence; zero for none."""
     return np.where(np.asarray(count) > 0.0, np.asarray(count) + 0.01, 0.0) * UNIT_ROUNDOFF
 
 
 def arm_angle(coordinate: str, input: str, pivot: str, point: str, direction: str) -> Drive:
     """rise = d cos(angle), d the drawn length from pivot to point (paper eq. 12); angle in rad.
 
-    The cosine tells angles apart between 0 and pi only, so only these are allowed.
+    The cosine is unique between 0 and pi only, so other angles are not allowed.
     """
     line = "the upward vertical" if direction == "up" else f"the direction {direction}"
     return Drive(
@@ -239,8 +240,8 @@ def travel(
     """A displacement of a point from an origin along a direction of the car; mm.
 
     Args:
-        origin: where it counts from; the point itself where that is its own drawn place.
-        slides: whether the point is pushed along a line, inboard of what is linked to it.
+        origin: point from which it is measured; the point itself if measured from its own drawn place.
+        slides: whether the point is pushed along a line, inboard of the point linked to it.
     """
     sign, drawn = SIDEWAYS.get(direction, direction), methodcaller("along", origin, point, direction)
     pushed = point if slides else ""
@@ -248,9 +249,9 @@ def travel(
 
 
 def travel_along(coordinate: str, input: str, line: Line, point: str) -> Drive:
-    """A displacement of a point along a line, which may be drawn between two others; mm.
+    """A displacement of a point along a line, which may be drawn between two other points; mm.
 
-    The coordinate is the place along a vector d of the line, travel / |d|, whose length is a constant.
+    The coordinate is the place along a vector d of the line, travel / |d|, with |d| constant.
     """
     if line.head in DIRECTIONS:
         return travel(coordinate, input, line.origin, point, line.head)
@@ -259,24 +260,24 @@ def travel_along(coordinate: str, input: str, line: Line, point: str) -> Drive:
 
 
 def steered(of: Drive, per_turn: float) -> Drive:
-    """The turn of a steering wheel whose pinion makes a travel, per_turn / 2 pi of it; rad.
+    """The rotation of a steering wheel whose pinion moves a slide by per_turn / 2 pi mm per rad.
 
     Args:
-        of: the travel. per_turn: mm of it for a whole turn; where it is negative the other way.
+        of: the drive by the slide's travel. per_turn: mm per turn; negative reverses the direction.
     """
     scale, sign = partial(_per_turn, per_turn, of), f"{'' if per_turn > 0.0 else 'against '}{of.sign}"
     return replace(of, unit="rad", sign=sign, scale=scale, exact=False, by_travel=of)
 
 
 def distance_of(coordinate: str, input: str, start: str, end: str) -> Drive:
-    """The distance of two points; mm."""
+    """The distance between two points; mm."""
     above_zero, drawn = (float(np.nextafter(0.0, 1.0)), np.inf), methodcaller("distance", start, end)
     allowed = "a distance above 0 mm"
     return Drive(coordinate, input, "mm", "apart", _size, drawn, limits=above_zero, allowed=allowed)
 
 
 def turned_by(coordinate: str, input: str, part: int) -> Drive:
-    """A turn from the drawing on; one of its coordinates is the cosine, part 0, another the sine, 1; rad."""
+    """One coordinate of a rotation measured from the drawing: its cosine (part 0) or sine (part 1); rad."""
     sign = "right-handed about the hinge"
     return Drive(coordinate, input, "rad", sign, _one, partial(_turned, part), quarter=part)
 
@@ -300,7 +301,7 @@ def _by_length(line: Line, drawing: Drawing) -> Pair:
 
 
 def _per_turn(per_turn: float, of: Drive, drawing: Drawing) -> Pair:
-    """The travel's, times per_turn / 2 pi."""
+    """The scale of the travel, times per_turn / 2 pi."""
     turn = np.asarray(TURN[0]), np.asarray(TURN[1])
     return pair_product(pair_quotient(_exactly(np.asarray(per_turn)), turn), of.scale(drawing))
 

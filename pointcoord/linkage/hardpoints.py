@@ -1,4 +1,4 @@
-"""Putting hardpoints on a topology, with every check that can be made before anything is solved."""
+"""Builds a mechanism from a topology and hardpoints, with all checks possible before solving."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 AXES = ("up", "right")
-# Of a coordinate or a squared length, in the size of the car: of two places, each to half of its last digit.
+# Rounding of a coordinate or squared length, relative to the car's size: two places, half a last digit each.
 DRAWN_TO = 4.0 * UNIT_ROUNDOFF
 
 
 def build_mechanism(
     topology: Topology, points: Mapping[str, ArrayLike], directions: Mapping[str, ArrayLike]
 ) -> Mechanism:
-    """Hardpoints put on a topology, checked.
+    """A mechanism from a topology and hardpoints, checked.
 
     Args:
         points: every point of the topology, shape (..., 3), mm.
         directions: `up` and `right` of the car, unit vectors, shape (..., 3).
     Raises:
         UnknownName: a point or direction is missing or not part of the topology.
-        MechanismError: a coordinate is not finite, a link has no length, or the equations lose rank at the
+        MechanismError: a coordinate is not finite, a link has no length, or the equations lose rank in the
             drawing; the message names the free direction and the redundant rows.
     """
     mechanism = drawn_mechanism(topology, points, directions)
@@ -46,7 +46,7 @@ def build_mechanism(
 def drawn_mechanism(
     topology: Topology, points: Mapping[str, ArrayLike], directions: Mapping[str, ArrayLike]
 ) -> Mechanism:
-    """The same without a check that its equations have one solution."""
+    """As `build_mechanism`, without the check that the equations have one solution."""
     located = _checked(points, topology.points, "point")
     car = car_directions(**_checked(directions, AXES, "direction"))
     stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
@@ -57,8 +57,8 @@ def drawn_mechanism(
             f"the points span {np.max(extent):.3g} mm; allowed: more than 1e-100 and less than 1e100"
         )
     unit = np.ldexp(1.0, np.frexp(extent)[1])
-    # Truncated to a grid of four sizes, the origin is subtracted without rounding: a coordinate is
-    # never less than three quarters of a nonzero origin's, and never on the other side of zero.
+    # The origin is truncated to a grid of four sizes, so subtracting it is exact: a coordinate is at least
+    # three quarters of a nonzero coordinate of the origin, and on the same side of zero.
     grid = 4.0 * unit[..., None]
     origin = np.trunc(stack.mean(axis=-2) / grid) * grid + 0.0
     scaled = (stack - origin[..., None, :]) / unit[..., None, None]
@@ -73,7 +73,7 @@ def drawn_mechanism(
     drawing = Drawing(vectors, unit, {name: low for name, (_, low) in along.items() if low.any()})
     drawn, lacks, doubt = _drawn(topology, drawing)
     if topology.left_out:
-        # Rows that are left out follow from the others to the rounding of the drawing only.
+        # Rows that are left out follow from the others only to the rounding of the drawing.
         far = 1.0 + np.abs(origin).max(axis=-1) / unit
         doubt[..., topology.layout.one + 1 :] += DRAWN_TO * far[..., None]
     return Mechanism(
@@ -89,16 +89,16 @@ def drawn_mechanism(
 
 
 def hardpoints_moved(mechanism: Mechanism, moves: Mapping[str, Array]) -> Mechanism:
-    """A mechanism with the derivatives of all that is read off its drawing (see `infinitesimal`).
+    """A mechanism with the derivatives of everything computed from its drawing (see `infinitesimal`).
 
-    A drawing that is not closed gives them as it is drawn: closing it only moves its points to where these
-    known coordinates want them.
+    For a drawing that is not closed, the derivatives are those of the drawing as it is: closing it only moves
+    its points to where these known coordinates require.
 
     Args:
-        mechanism: of one car.
-        moves: by hardpoint, what its place changes by with each of K parameters, (K, 3), mm; of all.
+        mechanism: a single car.
+        moves: hardpoint -> change of its place with each of K parameters, (K, 3), mm; for all hardpoints.
     Returns:
-        Numbers with slopes, with the batch dimensions (K, 1).
+        The mechanism with slopes in its numbers, with the batch dimensions (K, 1).
     """
     drawing, topology = mechanism.drawing, mechanism.topology
     vectors = dict(drawing.vectors)
@@ -113,7 +113,7 @@ def hardpoints_moved(mechanism: Mechanism, moves: Mapping[str, Array]) -> Mechan
 
 
 def _carrier_weights(topology: Topology, drawing: Drawing) -> dict[str, Array]:
-    """Of every carried point."""
+    """Weights of every carried point."""
     return {name: carrier_weights(drawing, name, carriers)[0] for name, carriers in topology.carried.items()}
 
 
@@ -135,7 +135,7 @@ def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) ->
 
 
 def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
-    """The coordinates y at which the drawing stands, assembled or not, what they lack and their doubt."""
+    """The coordinates y of the drawing, assembled or not; their rounding error; and their uncertainty."""
     layout = topology.layout
     batch = np.broadcast_shapes(*(v.shape[:-1] for v in drawing.vectors.values()))
     kind = np.result_type(*drawing.vectors.values())
@@ -144,7 +144,7 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
     for name in (*layout.moving, *layout.chassis, *layout.directions):
         y[..., layout.span(name)] = drawing.vectors[name]
         if name in drawing.lacks:
-            # Two products and their difference, taken twice as exactly, or a difference of points.
+            # Either two products and their difference in twice the precision, or a difference of points.
             lacks[..., layout.span(name)] = drawing.lacks[name]
             doubt[..., layout.span(name)] = PAIRS
     for constraint in topology.constraints:
@@ -172,9 +172,9 @@ def _check_determined(mechanism: Mechanism) -> None:
     ]
     inputs = list(dict.fromkeys(driving))
     problems = [
-        *([f"free at the drawing: {', '.join(coordinates)}"] if free else []),
-        *([f"redundant or contradictory at the drawing: {', '.join(rows)}"] if lost else []),
-        *([f"these inputs may fight: {', '.join(inputs)}"] if len(inputs) > 1 else []),
+        *([f"free in the drawing: {', '.join(coordinates)}"] if free else []),
+        *([f"redundant or contradictory in the drawing: {', '.join(rows)}"] if lost else []),
+        *([f"these inputs may drive the same freedom: {', '.join(inputs)}"] if len(inputs) > 1 else []),
     ]
     raise MechanismError(
         f"{topology.name} is not determined: {'; '.join(problems) or 'its equations lose rank there'}; "
@@ -184,7 +184,7 @@ def _check_determined(mechanism: Mechanism) -> None:
 
 
 def dominant(directions: Array) -> list[int]:
-    """Indices of the components that take part in null directions, at least a tenth of the largest."""
+    """Indices of the components that are at least a tenth of the largest in some null direction."""
     if not len(directions):
         return []
     weight = np.abs(directions).max(axis=0)

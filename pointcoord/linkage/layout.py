@@ -1,8 +1,8 @@
-"""Which number of y is what: the order of the coordinates of a mechanism.
+"""Layout: the order of a mechanism's coordinates in the vector y.
 
-Unknown ones first: three per moving point, three per vector of a body, then one per slide. Known ones after
-them: the constants 0 and 1, three per chassis point, three per direction, one per driven coordinate, one per
-constant of the drawing. All lengths are in units of the mechanism's size, measured from its own origin.
+Unknowns come first: three per moving point, three per vector of a body, then one per slide. Known ones
+follow: the constants 0 and 1, three per chassis point, three per direction, one per driven coordinate, one
+per constant of the drawing. All lengths are in units of the mechanism's size, measured from its own origin.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Layout:
 
     @cached_property
     def unknowns(self) -> int:
-        """How many coordinates are unknown; the index of the constant 0, which comes after them."""
+        """Number of unknowns, which is also the index of the constant 0 after them."""
         return 3 * (len(self.moving) + len(self.vectors)) + len(self.ratios)
 
     @property
@@ -42,7 +42,7 @@ class Layout:
 
     @cached_property
     def _places(self) -> tuple[dict[str, slice], dict[str, int], int]:
-        """By name the places of vectors and of scalars, and how many coordinates there are in all."""
+        """Slices of vectors by name, indices of scalars by name, and the number of all coordinates."""
         vectors, scalars, first = dict[str, slice](), dict[str, int](), 0
         for triples, singles in (
             ((*self.moving, *self.vectors), self.ratios),
@@ -59,7 +59,7 @@ class Layout:
 
     @property
     def size(self) -> int:
-        """How many coordinates there are in all."""
+        """Number of all coordinates."""
         return self._places[2]
 
     def span(self, name: str) -> slice:
@@ -67,7 +67,7 @@ class Layout:
         return self._places[0][name]
 
     def vector(self, name: str) -> Triple:
-        """The same three as indices, also of three constants that make a vector; of no name those of zero."""
+        """Indices of a vector's three coordinates, also of three constants; of "" the constant 0's."""
         if not name:
             return self.zero, self.zero, self.zero
         if name in self._places[0]:
@@ -77,16 +77,16 @@ class Layout:
         return x, y, z
 
     def scalar(self, name: str) -> int:
-        """Index of a slide's place, of a driven coordinate or of a constant of the drawing."""
+        """Index of a slide's place, a driven coordinate or a constant of the drawing."""
         return self._places[1][name]
 
     def place(self, name: str) -> slice | int:
-        """Where a vector or a scalar is."""
+        """Slice of a vector, or index of a scalar."""
         vectors, scalars, _ = self._places
         return vectors[name] if name in vectors else scalars[name]
 
     def places_in(self, whole: Layout) -> list[int]:
-        """Where the coordinates are in a layout that has them all, in this one's order."""
+        """Indices of these coordinates in a larger layout that contains all of them, in this order."""
         vectors, scalars, size = self._places
         found = [whole.zero, whole.one] * (size // 2 + 1)
         for name, span in vectors.items():

@@ -1,8 +1,8 @@
 r"""A mechanism: a topology and the hardpoints of one car or of a batch of cars.
 
-Lengths are measured from an origin near the mechanism in a power of two that is its size, so that
-neither the distance from the user's origin nor the size of the car costs a digit, and scaling by a
-power of two changes no bit of a result.
+Lengths are measured from an origin near the mechanism, in a unit that is about its size and a power of two.
+So neither the distance from the user's origin nor the size of the car costs accuracy, and scaling by a power
+of two changes no bit of a result.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ class Mechanism:
     """A topology with hardpoints; build it with `hardpoints.build_mechanism`.
 
     Attributes:
-        origin: where its coordinates are measured from, shape (..., 3), mm.
-        unit: the length that is 1 in its coordinates, a power of two, shape (...,), mm.
-        drawing: its drawn points and its directions in its own coordinates.
+        origin: origin of its coordinates, shape (..., 3), mm.
+        unit: length of one unit of its coordinates, a power of two, shape (...,), mm.
+        drawing: its drawn points and directions in its own coordinates.
         drawn: the coordinates y of the drawing, shape (..., size).
-        drawn_lacks: what the known ones of these lack by rounding, shape (..., size).
-        drawn_doubt: how uncertain they still are with that added, shape (..., size).
-        carrier_weights: place of each carried point in the frame of its three carriers, shape (..., 3).
+        drawn_lacks: rounding error of the known ones of these, to be added to them, shape (..., size).
+        drawn_doubt: their uncertainty after that correction, shape (..., size).
+        carrier_weights: coordinates of each carried point in the frame of its three carriers, shape (..., 3).
     """
 
     topology: Topology
@@ -61,28 +61,28 @@ class Mechanism:
         return self.topology.map
 
     def moving_part(self, functions: Mapping[str, TimeFunction]) -> PartialMap:
-        """What of the constraints moves under these laws of the inputs; all of them if nothing would."""
+        """The constraints that move under these laws of the inputs; all constraints if none would."""
         driven = (drive for drive in self.topology.drives if not functions[drive.input].still)
         return moving_part(self.map, frozenset(self.layout.scalar(drive.coordinate) for drive in driven))
 
     @cached_property
     def drawn_places(self) -> Mapping[str, Array]:
-        """Where every point is drawn, each of shape (..., 3), mm from the origin."""
+        """Drawn place of every point, each of shape (..., 3), mm from the origin."""
         unit = self.unit[..., None]
         return {name: self.drawing.vectors[name] * unit for name in self.topology.points}
 
     @cached_property
     def drawn_factors(self) -> Factors:
-        """Factorisation of C_u at the drawing."""
+        """Factorisation of C_u in the drawing."""
         return factorise(self.map.jacobian(self.drawn))
 
     @cached_property
     def carried_gain(self) -> float:
-        """How many times as far as the coordinates of its carriers those of a carried point may be off.
+        """Largest ratio of a carried point's error bound to that of its carriers' coordinates.
 
-        |dp| <= |1 - a - b| |dp_0| + |a| |dp_1| + |b| |dp_2| + |c| |d(e1 x e2)|. An edge is off by twice as
-        much as its ends, and a component of the cross product by that times the edges' other components. It
-        is the largest of all points, of a batch too.
+        |dp| <= |1 - a - b| |dp_0| + |a| |dp_1| + |b| |dp_2| + |c| |d(e1 x e2)|. The error of an edge is twice
+        that of its ends; the error of a component of the cross product is that times the edges' other
+        components. The maximum is over all points, and over all cars of a batch.
         """
         gains = [1.0] * (not self.topology.carried)
         for name, carriers in self.topology.carried.items():
@@ -95,7 +95,7 @@ class Mechanism:
         return max(gains)
 
     def part(self, points: Collection[str]) -> Mechanism:
-        """The part that some points hang on (see `Topology.part`), with the same origin and unit."""
+        """The part that determines some points (see `Topology.part`), with the same origin and unit."""
         topology = self.topology.part(points)
         if topology is self.topology:
             return self
@@ -110,7 +110,7 @@ class Mechanism:
         )
 
     def taken(self, members: NDArray[np.intp] | int) -> Mechanism:
-        """Some members of a batch of one dimension, by number, or one car of it."""
+        """Some members of a batch with one dimension, by number, or one car of it."""
         vectors, lacks = (
             {name: place[members] if place.ndim > 1 else place for name, place in table.items()}
             for table in (self.drawing.vectors, self.drawing.lacks)
@@ -135,11 +135,11 @@ class Mechanism:
         return found
 
     def turned_over(self, y: Array) -> tuple[NDArray[np.bool_], tuple[Piece, Piece] | None]:
-        """Poses y, (..., size), in which two pieces of a line turn over from the drawing, and such a pair.
+        """Which poses y, (..., size), have two pieces of a line that turn over; and one such pair of pieces.
 
-        A drawing need not be assembled: its points are put on one line first. Pieces that are drawn more than
-        a right angle apart, each in its own direction, would turn over against each other on the way, and
-        nothing tells which of them was meant.
+        In a drawing that is not assembled, points are first moved onto their line. Pieces drawn more than a
+        right angle apart, each in its own direction, would reverse relative to each other on the way, and the
+        drawing does not tell which of them was meant.
         """
         pairs, places = self.topology.paired_pieces
 
@@ -160,11 +160,11 @@ class Mechanism:
 
         Args:
             inputs: coefficients of each input that drives a coordinate, shape (..., order + 1), rad or mm
-                per s**k. What moves the chassis is no part of the constraints (see `chassis`).
+                per s**k. Chassis inputs take no part in the constraints (see `chassis`).
         Returns:
             Coefficients, shape (..., order + 1, known coordinates), in the mechanism's units.
         Raises:
-            InputOutOfRange: a value or a rate that is not finite, or has no meaning for its drive.
+            InputOutOfRange: a value or a rate that is not finite, or a value outside its drive's range.
         """
         topology, layout = self.topology, self.layout
         shapes = {s.shape[:-1] for s in inputs.values()} | {self.drawn.shape[:-1]}
@@ -174,7 +174,7 @@ class Mechanism:
         known[..., 0, :] = self.drawn[..., layout.unknowns :]
         for drive, place in zip(topology.drives, topology.driven, strict=True):
             known[..., place - layout.unknowns] = drive.series(inputs[drive.input], self.drawing)
-        # What is no number in an input is none in the coordinate that it drives.
+        # NaN in an input becomes NaN in the coordinate that it drives.
         if np.isfinite(known).all():
             return known
         for name, series in inputs.items():
@@ -186,27 +186,27 @@ class Mechanism:
         raise InputOutOfRange(largest, worst, "values and rates that stay finite in every product")
 
     def input_values(self, known: Array) -> dict[str, Array]:
-        """The inputs that belong to known coordinates, shape (..., known coordinates) to (...)."""
+        """The inputs for known coordinates, shape (..., known coordinates) to (...)."""
         first = self.layout.unknowns
         found: dict[str, Array] = {}
         for drive in self.topology.drives:
             value = drive.input_value(known[..., self.layout.scalar(drive.coordinate) - first], self.drawing)
             turned = drive.input in found and drive.unit == "rad"
-            # Of a turn the cosine gives the size and then the sine the sign.
+            # For a rotation, the cosine gives the size, and then the sine gives the sign.
             found[drive.input] = np.copysign(found[drive.input], value) if turned else value
         return found
 
     def known_data(self, y: Array, laws: Mapping[str, Array] | None = None) -> tuple[Array, Array]:
-        """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.
+        """Rounding errors of the known coordinates, to be added to them, and the uncertainties that remain.
 
-        Drawn points and directions are exact, but of a mechanism some of whose rows are left out. What a
-        length or another constant of the drawing lacks was kept when it was drawn; of a drive its kind knows
-        (see `drives`).
+        Drawn points and directions are exact, except where rows are left out of the mechanism. The errors of
+        lengths and other constants of the drawing were stored with the drawing; drives compute theirs (see
+        `drives`).
 
         Args:
-            laws: how far the value of each input may be off, shape (...,), rad or mm; nothing unless given.
+            laws: error bound of the value of each input, shape (...,), rad or mm; zero unless given.
         Returns:
-            Two arrays of shape (..., size): y plus the first is right to within the second.
+            Two arrays of shape (..., size): y plus the first is exact to within the second.
         """
         layout = self.layout
         lacking, uncertainty = (
@@ -228,14 +228,14 @@ def carried_place(
     *,
     product: Callable[[Array, Array], Array] = cross,
 ) -> Array:
-    """A point that rides on a body, p = p_0 + a e1 + b e2 + c e1 x e2, shape (..., 3).
+    """A point fixed to a body, p = p_0 + a e1 + b e2 + c e1 x e2, shape (..., 3).
 
-    The weights come from the drawing (see `constraints.in_body`) and stay, so that it needs no equation.
+    The weights are constants from the drawing (see `constraints.in_body`), so the point needs no equation.
 
     Args:
         weights: (a, b, c), shape (..., 3).
-        base, first, second: places of its three carriers, shape (..., 3).
-        product: of two vectors.
+        base, first, second: places of the three carriers, shape (..., 3).
+        product: cross product of two vectors.
     """
     e1, e2 = first - base, second - base
     a, b, c = (weights[..., i, None] for i in range(3))

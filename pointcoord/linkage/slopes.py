@@ -1,9 +1,9 @@
 r"""Derivatives of poses by one known quantity, all others held: an input, a rod's length, or a joint's gap.
 
 With y = [u, w] and the known coordinates w(q), C(y) = 0 gives C_u u_q = -C_w w_q (implicit function theorem).
-What is moved is called a *way*. A gap opens a joint: one half of it, the point as some rows R read it, moves
-away from the other half, which adds the derivative of these rows by the point, C_u u_q = -R C_p. On a slide R
-are the rows of its line.
+The quantity q is called a *way*. A gap opens a joint: one half of the joint, the point as some rows R read
+it, moves away from the other half. This adds the derivative of these rows by the point, C_u u_q = -R C_p. On
+a slide, R are the rows of its line.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from pointcoord.numerics.power_series import cross_series
 
 Array = NDArray[np.float64]
 
-# Poses at a time: of as many as stay in a cache where they are summed.
+# Poses at a time, so that intermediate results stay in cache.
 POSES = 4096
 GAP = "gap"
-"""What the gap itself is called among the points that move along one."""
+"""Key of the gap vector itself among the derivatives of points along a gap."""
 
 
 @dataclass(frozen=True)
 class ByInput:
-    """By one input, rad or mm; by mm of its travel where it stands for one.
+    """By an input, rad or mm; by mm of its travel where the input is a steering wheel.
 
-    By nothing where it is none of the part that is solved for.
+    The derivative is zero for an input outside the part that is solved for.
     """
 
     input: str
@@ -40,17 +40,17 @@ class ByInput:
 
 @dataclass(frozen=True)
 class ByLength:
-    """By the length of a rod, at any rate."""
+    """By the length of a rod, up to a constant factor."""
 
     rod: str
 
 
 @dataclass(frozen=True)
 class ByGap:
-    """By the gap of a joint at a point, of a unit along an axis: of the half that is not the reported body's.
+    """By the gap of a joint at a point, one unit along an axis, of the half not on the reported body.
 
-    A half of the chassis stays, and the other one moves by as much the other way. On a slide it is the line
-    that moves.
+    If that half belongs to the chassis, it stays, and the other half moves by as much the other way. On a
+    slide the line moves.
     """
 
     point: str
@@ -63,13 +63,13 @@ Way = ByInput | ByLength | ByGap
 def moved_along(
     mechanism: Mechanism, y: Array, ways: Sequence[Way]
 ) -> tuple[dict[str, Array], list[dict[str, Array]]]:
-    """Every point of poses, and its derivative along each way, mm and mm per rad, mm or unit.
+    """Every point of poses, mm, and its derivative along each way, mm per rad, mm or unit.
 
     Args:
-        y: (N, size), or of a batch of cars (cars, N, size). Points have its shape, with 3 for the last.
+        y: (N, size), or (cars, N, size) for a batch of cars. Points have the same shape, with 3 as the last.
     """
     if y.ndim > 2:
-        # A car for each pose, for so many cars at a time that their matrices stay small.
+        # One car for each pose; some cars at a time, so that their matrices stay small.
         count = max(1, POSES // y.shape[1])
         parts = [
             moved_along(
@@ -95,7 +95,7 @@ def moved_along(
 
 
 def way_slopes(mechanism: Mechanism, y: Array, ways: Sequence[Way]) -> list[Array]:
-    """dy/dq along each way at poses y, (N, size), units per rad, mm or unit; zero of what moves nothing."""
+    """dy/dq along each way at poses y, (N, size), units per rad, mm or unit; zero where nothing moves."""
     if not ways:
         return []
     factors, found = factorise(mechanism.map.jacobian(y)), []
@@ -111,7 +111,7 @@ def known_slopes(mechanism: Mechanism, inputs: Mapping[str, Array], way: Way) ->
     """The known coordinates' part of dy/dq, (..., N, known).
 
     Args:
-        inputs: their values, each (N,), rad or mm.
+        inputs: values of the inputs, each (N,), rad or mm.
     """
     topology, unknowns, drawn = mechanism.topology, mechanism.map.unknowns, mechanism.drawn
     shape = np.broadcast_shapes(drawn.shape[:-1], *(value.shape for value in inputs.values()))
@@ -133,10 +133,10 @@ def known_slopes(mechanism: Mechanism, inputs: Mapping[str, Array], way: Way) ->
 
 
 def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
-    """Of a gap the coordinates that move, (size,), and 1 for the rows that read so.
+    """For a gap: 1 at the coordinates that move, (size,), and 1 at the rows that read them there.
 
-    The point of a joint of the chassis moves as what is known does; but not what the chassis turns about,
-    which is no half of the joint.
+    A joint's point on the chassis moves as a known coordinate. Rows that only use the point as a centre of
+    rotation of the chassis are not part of the joint.
     """
     layout, system = topology.layout, topology.map
     moved, rows = np.zeros(layout.size), np.zeros(len(system.rows))
@@ -162,7 +162,7 @@ def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
 
 
 def length_coordinate(topology: Topology, rod: str) -> int:
-    """The one constant of a rod's constraint: its length in whichever measure."""
+    """Index of the one constant of a rod's constraint: its length, in whatever form."""
     ends = {*topology.rods[rod]}
     of_the_rod = (constraint for constraint in topology.constraints if ends in map(set, constraint.segments))
     length = next(one.constants[0] for one in of_the_rod if len(one.constants) == 1)
@@ -170,7 +170,7 @@ def length_coordinate(topology: Topology, rod: str) -> int:
 
 
 def point_slopes(mechanism: Mechanism, y: Array, slopes: Array, way: Way) -> dict[str, Array]:
-    """The derivative of every point, (..., N, 3), mm per rad, mm or unit, from those of the coordinates."""
+    """The derivative of every point, (..., N, 3), mm per rad, mm or unit, from that of the coordinates."""
     series = point_series(mechanism, np.stack([y, slopes], axis=-2))
     moved = {name: each[..., 1, :] for name, each in series.items()}
     if isinstance(way, ByGap):
@@ -180,7 +180,7 @@ def point_slopes(mechanism: Mechanism, y: Array, slopes: Array, way: Way) -> dic
 
 
 def point_series(mechanism: Mechanism, series: Array) -> dict[str, Array]:
-    """The series of every point, (..., order + 1, 3), mm, from those of the coordinates."""
+    """The series of every point, (..., order + 1, 3), mm, from that of the coordinates."""
     layout, topology = mechanism.layout, mechanism.topology
     found = {name: series[..., list(layout.vector(name))] for name in (*topology.chassis, *topology.moving)}
     for name, carriers in topology.carried.items():

@@ -1,4 +1,4 @@
-"""A topology: what is joined to what, as data; no numbers of a particular car."""
+"""A topology: how points are joined, as data, without dimensions of a particular car."""
 
 from __future__ import annotations
 
@@ -22,32 +22,33 @@ Piece = tuple[str, str]
 
 @dataclass(frozen=True)
 class Topology:
-    """A linkage as points, bodies, constraints and inputs, with names for the parts that others ask for.
+    """A linkage as points, bodies, constraints and inputs, with names for the parts that effects need.
 
     Attributes:
-        name: what messages call it.
-        chassis: points that the chassis carries. moving: points to be solved for.
-        bodies: points of each body of three or more points whose rates are of interest.
-        carried: points that ride on a body and constrain nothing, with the three points that carry them.
-        directions: vectors that the chassis carries, each by the points from which and to which it is drawn;
-            where the first is empty, the second is a direction of the car.
+        name: the linkage's name in messages.
+        chassis: points of the chassis. moving: points to be solved for.
+        bodies: body of three or more points whose rates are needed -> its points.
+        carried: point fixed to a body without constraining it -> the three points that carry it.
+        directions: vector fixed to the chassis -> the points from and to which it is drawn; where the first
+            is empty, the second is a direction of the car.
         constraints: links, slides, rack, driven heights.
-        drives: the inputs that drive a coordinate.
-        roles: the points of each role that the mechanism has (`mechanisms/README.md` says what they are), of
-            a part's with the part's name and a dot before it; of a knuckle, the points that stand for it.
-        sides: the side of the car that each part is on, left or right; empty without parts.
-        rods: the two ends of each rod.
-        joints: the point of each ball joint of two bodies and no more, or both of a hinge, with the other
-            points of the body whose force on the other one is asked for; none where that is the chassis.
-        sliding: the points on slides whose force is asked for, each with the slide, and whether the force
-            is asked for on the line's body, and not on the point.
-        stand_ins: points that a car need not give, each with the point that then stands in for it.
-        chassis_inputs: inputs that move the whole chassis, each along a direction, zero if not given; those
-            that turn it, before it is displaced and in this order, with the drawn point about which they do.
-        rolling: those of these that are driven and turn it about a line along the car.
-        left_out: numbers of rows that follow from the others; they are no part of the map, and are looked at
-            again at every answer.
-        puts_in_place: whether closing the drawing moves points on purpose, however far that is.
+        drives: the drives of coordinates by inputs.
+        roles: role -> its points (see `mechanisms/README.md`); a part's roles start with the part and a dot;
+            for a knuckle, the points that represent it.
+        sides: part -> its side of the car, left or right; empty without parts.
+        rods: rod -> its two ends.
+        joints: point of a ball joint of exactly two bodies, or both of a hinge -> the other points of the
+            body that exerts the reported force; empty if that is the chassis.
+        sliding: point on a slide whose force is reported -> the slide, and whether the force is reported on
+            the line's body instead of the point.
+        stand_ins: point that a car need not give -> the point that then stands in for it.
+        chassis_inputs: input that moves the whole chassis, zero if not given -> its direction, and for a
+            rotation the drawn point about which it turns, else "". Rotations come before displacements, in
+            this order.
+        rolling: the driven chassis inputs that turn it about a line along the car.
+        left_out: numbers of rows that follow from the others; they are not part of the map, and are checked
+            again at every solution.
+        puts_in_place: whether closing the drawing moves points on purpose, however far.
     """
 
     name: str
@@ -71,7 +72,7 @@ class Topology:
 
     @cached_property
     def points(self) -> tuple[str, ...]:
-        """Every point that a car of this kind has."""
+        """Every point that a car with this linkage has."""
         return (*self.chassis, *self.moving, *self.carried)
 
     @property
@@ -85,7 +86,7 @@ class Topology:
 
     @property
     def wheel_axis(self) -> tuple[str, ...]:
-        """Of a mechanism without parts."""
+        """The wheel axis of a mechanism without parts."""
         return self.role("wheel_axis")
 
     @property
@@ -94,11 +95,11 @@ class Topology:
         return self.wheel_axis[1] if self.wheel_axis else ""
 
     def driven_along(self, way: str, part: str = "") -> tuple[str, ...]:
-        """The driven inputs that are the travel of a slide, `by_rack`, those that are not, `by_travel`, or
-        those that roll the chassis, `by_roll`.
+        """The driven inputs of a kind: the travel of a slide (`by_rack`), other inputs of the linkage
+        (`by_travel`), or inputs that roll the chassis (`by_roll`).
 
         Args:
-            part: whose wheel they move; those of another part are left out.
+            part: part whose wheel they move; inputs of other parts are left out.
         """
         if way == "by_roll":
             return self.rolling
@@ -114,23 +115,23 @@ class Topology:
     def required_inputs(self) -> tuple[str, ...]:
         """Inputs that must be given: those that drive a coordinate.
 
-        What moves the chassis is among them where a height over the ground is driven.
+        Chassis inputs are included where a height over the ground is driven.
         """
         return tuple(dict.fromkeys(drive.input for drive in self.drives))
 
     @property
     def holding_inputs(self) -> tuple[str, ...]:
-        """Those of them that hold a freedom of the mechanism."""
+        """The required inputs that hold a freedom of the mechanism."""
         return tuple(name for name in self.required_inputs if name not in self.chassis_inputs)
 
     @cached_property
     def turning(self) -> tuple[str, ...]:
-        """The inputs that are turns of any size from the drawing on, each with two coordinates."""
+        """The inputs that are rotations without limits, from the drawing; each has two coordinates."""
         return tuple(dict.fromkeys(drive.input for drive in self.drives if drive.is_turn))
 
     @cached_property
     def driven(self) -> tuple[int, ...]:
-        """Places of the driven coordinates, drive by drive."""
+        """Indices of the driven coordinates, drive by drive."""
         return tuple(self.layout.scalar(drive.coordinate) for drive in self.drives)
 
     @property
@@ -160,7 +161,7 @@ class Topology:
 
     @cached_property
     def rows_of(self) -> tuple[tuple[int, ...], ...]:
-        """By constraint, the numbers of its rows in the map; less than it has where some are left out."""
+        """Row numbers of each constraint in the map; fewer than the constraint has if some are left out."""
         found, every, number = [], iter(range(len(self._every_label))), 0
         for constraint in self.constraints:
             kept = sum(next(every) not in self.left_out for _ in constraint.labels)
@@ -171,11 +172,11 @@ class Topology:
     def strongest(self, forces: Array) -> tuple[str, ...]:
         """Names of the constraints that take part in a balance of forces.
 
-        What can lock, links and slides, comes first; what only says how a body is made, last.
+        Links and slides, which can lock, come first; constraints that only hold a body together come last.
 
         Args:
-            forces: one per row, shape (rows,); a constraint counts by the largest of its rows, and takes
-                part from a tenth of the largest of all.
+            forces: one per row, shape (rows,). A constraint counts by the largest of its rows, and takes part
+                from a tenth of the largest of all.
         """
         sizes: dict[str, float] = {}
         ranks: dict[str, int] = {}
@@ -202,7 +203,8 @@ class Topology:
     def paired_pieces(self) -> tuple[tuple[tuple[Piece, Piece], ...], NDArray[np.intp]]:
         """Pairs of pieces of one line, and the coordinates of their starts and ends, (pairs, 2, 2, 3).
 
-        Pieces are pairs of points that have a sense along it: links on it, and slides from its start.
+        A piece is a pair of points with a sense along the line: a link on it, or its start and a sliding
+            point.
         """
         on_lines: dict[Piece, list[str]] = {}
         for constraint in self.constraints:
@@ -219,7 +221,7 @@ class Topology:
 
     @cached_property
     def map(self) -> QuadraticMap:
-        """All constraints as one quadratic map; the same for every car of this topology."""
+        """All constraints as one quadratic map, shared by all cars of this topology."""
         return self._map_of([row for row in range(len(self._every_label)) if row not in self.left_out])
 
     @cached_property
@@ -232,18 +234,18 @@ class Topology:
         return quadratic_map([rows[number] for number in numbers], self.layout.unknowns, self.layout.size)
 
     def without(self, rows: tuple[int, ...]) -> Topology:
-        """The same with rows left out that follow from the others, made once."""
+        """The topology with redundant rows left out; cached."""
         if rows not in self._others:
             self._others[rows] = replace(self, left_out=rows)
         return self._others[rows]
 
     def part(self, points: Collection[str]) -> Topology:
-        """The part that some of its points hang on, made once; all of it if no input moves them.
+        """The part that determines some points; cached. The whole topology if no input moves these points.
 
-        The blocks of the map that give the points, and those that these read, are kept with all that they are
-        made of: a constraint with all its rows and its own coordinates, a point and a vector with all three
-        coordinates. So what is left is a linkage like any other. Where its points are does not depend on what
-        is left out, nor on whether that can be assembled.
+        The blocks of the map that give the points are kept, and all blocks that these read. A constraint is
+        kept with all its rows and its own coordinates, a point or a vector with all three coordinates. So the
+        part is a linkage like any other. The places of its points do not depend on what is left out, nor on
+        whether the rest can be assembled.
         """
         wanted = frozenset(points)
         if wanted.issuperset(self.points) or self.left_out:
@@ -272,7 +274,7 @@ class Topology:
         return replace(self, moving=names, bodies=bodies, carried=carried, constraints=chosen, drives=drives)
 
     def _kept(self, unknowns: set[int]) -> tuple[tuple[Constraint, ...], set[int]]:
-        """The constraints that some unknowns hang on, and all coordinates that they read."""
+        """The constraints that determine some unknowns, and all coordinates that these constraints read."""
         system, layout, order = self.map, self.layout, self.map.block_order
         own = [_own(constraint, layout) for constraint in self.constraints]
         block_of = {row: block for block in order.blocks for row in block.rows}
@@ -287,14 +289,14 @@ class Topology:
                 if not (solved.isdisjoint(rows) and own[number].isdisjoint(read))
             ]
             for row in (row for number in kept for row in self.rows_of[number]):
-                # Rows of a constraint that is kept may belong to blocks that were not asked for.
+                # Rows of a kept constraint may belong to further blocks.
                 read.update(system.reads[row], block_of[row].unknowns)
             read.update(i for triple in triples if not read.isdisjoint(triple) for i in triple)
         return tuple(self.constraints[number] for number in kept), read
 
     @cached_property
     def fighting(self) -> tuple[str, ...]:
-        """Inputs of rows that are more than the coordinates that they hold, however the car is drawn."""
+        """Inputs of rows that outnumber the coordinates they determine, in every drawing of the car."""
         rows = rows_too_many(self.map.reads, self.map.unknowns)
         read = {coordinate for row in rows for coordinate in self.map.reads[row]}
         named = (drive.input for drive in self.drives if self.layout.scalar(drive.coordinate) in read)
@@ -302,6 +304,6 @@ class Topology:
 
 
 def _own(constraint: Constraint, layout: Layout) -> set[int]:
-    """The coordinates that belong to a constraint alone."""
+    """The coordinates that belong to this constraint alone."""
     vectors = {i for name in constraint.vectors for i in layout.vector(name)}
     return vectors | {layout.scalar(name) for name in (*constraint.slides, *constraint.constants)}

@@ -1,6 +1,6 @@
 """Mechanism files: read, checked, flattened and compiled to a topology.
 
-The package's name keeps the shipped ones: `shipped()` lists them, `mechanism_file(name)` gives one.
+`shipped()` lists the mechanisms of the package; `mechanism_file(name)` reads one.
 """
 
 from pointcoord.mechanism.file import MechanismFile, mechanism_file, shipped

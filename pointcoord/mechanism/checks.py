@@ -1,4 +1,4 @@
-"""Whether the names of a mechanism mean something, and its bodies, rods and slides can be joined so."""
+"""Checks the names of a mechanism, and whether its bodies, rods and slides can be joined as given."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ A_POINT = "point of a body, rod or slide"
 
 
 def check(structure: Structure) -> None:
-    """Check what the entries of a mechanism make together.
+    """Check that the entries of a mechanism agree with each other.
 
     Raises:
         TableFault: the first fault.
@@ -30,7 +30,7 @@ def check(structure: Structure) -> None:
 
 def _bodies(structure: Structure) -> None:
     if not structure.bodies.get(CHASSIS):
-        problem = f"there is no body {CHASSIS!r}, the ground, with points"
+        problem = f"the body {CHASSIS!r}, the ground, is missing or has no points"
         raise TableFault(("bodies",), problem, f"a body {CHASSIS!r}")
     for body, points in structure.moving_bodies.items():
         if len(points) < 3:
@@ -38,14 +38,14 @@ def _bodies(structure: Structure) -> None:
             raise TableFault(
                 ("bodies", body),
                 f"has {len(points)} point{'' if len(points) == 1 else 's'}{hint}",
-                "three points that are not in one line, or more",
+                "three points or more, not all in one line",
             )
     for (one, points), (other, others) in combinations(structure.bodies.items(), 2):
         both = [name for name in points if name in others]
         if len(both) > 2:
             raise TableFault(
                 ("bodies", other),
-                f"shares {', '.join(both)} with {one}: three points make the two one body",
+                f"shares {', '.join(both)} with {one}: three shared points make the two one rigid body",
                 "one shared point (a ball joint) or two (a hinge); or write the two as one body",
             )
     held = {end for ends in structure.rods.values() for end in ends}
@@ -55,7 +55,7 @@ def _bodies(structure: Structure) -> None:
         if held.isdisjoint(points) and not any(shared):
             raise TableFault(
                 ("bodies", body),
-                "nothing holds this body: no other body, rod or slide has one of its points",
+                "nothing holds this body: none of its points is shared with another body, a rod or a slide",
                 "a point that it shares with another body, a rod or a slide",
             )
 
@@ -67,7 +67,7 @@ def _rods(structure: Structure) -> None:
         for body in structure.bodies_of(pair[0]):
             if pair[1] in structure.bodies[body]:
                 raise TableFault(
-                    ("rods", rod), f"joins two points of {body}, which are held already", "two bodies"
+                    ("rods", rod), f"joins two points of {body}, whose distance is fixed", "two bodies"
                 )
         for end in pair:
             free = not structure.bodies_of(end) and end not in sliding
@@ -92,14 +92,14 @@ def _slides(structure: Structure) -> None:
             if slide.along == slide.through:
                 raise TableFault(
                     (*place, "along"),
-                    f"is {slide.along!r} as through is, so the line has no direction",
-                    "a direction, or a point beside it",
+                    f"is {slide.along!r}, the same point as through, so the line has no direction",
+                    "a direction, or another point",
                 )
         for point in slide.points:
             if point in own:
                 raise TableFault(
                     (*place, "points"),
-                    f"{point!r} is a point of {slide.body} itself, so it cannot slide in it",
+                    f"{point!r} is a point of {slide.body}, so it cannot slide on a line of {slide.body}",
                     f"points that {slide.body} does not have",
                 )
         if not slide.turns:
@@ -108,14 +108,14 @@ def _slides(structure: Structure) -> None:
 
 def _one_body(structure: Structure, points: tuple[str, ...], place: tuple[str, ...]) -> None:
     if len(points) < 2:
-        raise TableFault((*place, "turns"), "a single point has no turn to be kept from", "two points")
+        raise TableFault((*place, "turns"), "a single point cannot be kept from turning", "two points")
     bodies = set(structure.bodies_of(points[0])).intersection(structure.bodies_of(points[1]))
     if len(bodies) != 1:
         raise TableFault(
             (*place, "points"),
-            f"{points[0]} and {points[1]} are of {' and of '.join(sorted(bodies)) or 'no one body'}, so that "
-            "it is not said which of them is kept from turning",
-            "with turns = false, the first two of one body alone",
+            f"{points[0]} and {points[1]} are of {' and of '.join(sorted(bodies)) or 'no common body'}, so "
+            "the body kept from turning is not defined",
+            "with turns = false, first two points that one body alone shares",
         )
 
 
@@ -135,7 +135,7 @@ def _inputs(structure: Structure) -> None:
 
 
 def _roles(structure: Structure) -> None:
-    """The points of some roles are of one body: the chassis, or what carries the wheel."""
+    """Check names in roles, and that points of some roles belong to the chassis or the wheel's carrier."""
     for role, who in structure.roles.items():
         place, (prefix, dot, last) = ("roles", role), role.rpartition(".")
         if last == "knuckle":

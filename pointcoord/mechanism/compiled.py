@@ -1,9 +1,9 @@
-r"""A structure, drawn somewhere, and the inputs that are driven as a topology of points (`linkage.topology`).
+r"""Compiles a structure, its drawn points and its driven inputs to a topology of points (`linkage.topology`).
 
-Unknown are the points where something is joined: those of two bodies, ends of rods, what slides and what
-an input drives. At most three of a body are its triangle, whose sides are links; a further one is held in
-the triangle, and what nothing needs is carried by it. A side whose two points another body holds already is
-no link of its own: so a hinge of two shared points takes no row too many.
+The unknowns are the points where something is joined: points of two bodies, ends of rods, sliding points and
+driven points. At most three points of a body are its triangle, whose sides are links. Further points are held
+in the triangle; those that nothing is joined to are only carried. A side whose two points another body holds
+already is not made a link again, so a hinge of two shared points adds no redundant row.
 """
 
 from __future__ import annotations
@@ -54,11 +54,12 @@ Array = NDArray[np.float64]
 Place = tuple[float, float, float]
 Made = tuple[list[Constraint], list[Drive]]
 
-# The sine of the angle of a triangle from which on it is taken for its body; of flatter ones the best is.
+# Sine of the smallest angle of a triangle. The first triangle above this stands for its body; if all are
+# flatter, the least flat one does.
 FLAT = 0.1
-# Where a turn along it rolls the car.
+# Directions about which a turn of the car is roll.
 LENGTHWISE = ("forward", "rearward")
-# Places round by u of the car's size; sines below this are none.
+# Coordinates are rounded by u of the car's size; smaller sines count as zero.
 IN_LINE = 1e-13
 
 
@@ -67,10 +68,10 @@ class Compiler:
     """Compiles the linkage of a car.
 
     Attributes:
-        driven: names of inputs; those that move the chassis may be among them.
-        points: as drawn, mm; all in one place where only their order counts.
+        driven: names of the driven inputs, which may include chassis inputs.
+        points: drawn places, mm; all the same place if only the points' order counts.
         axes: `up` and `right` of the car.
-        lengths: that inputs need beside the points, by name, mm.
+        lengths: further lengths that inputs need, by name, mm.
     """
 
     structure: Structure
@@ -81,7 +82,7 @@ class Compiler:
 
     @property
     def key(self) -> Hashable:
-        """What the topology is made of: the same for all cars that are alike."""
+        """Everything that the topology depends on: equal keys give one topology for all such cars."""
         needed = {self.structure.inputs[name].length for name in self.driven}
         lengths = tuple((name, length) for name, length in self.lengths.items() if name in needed)
         chosen = (*self.triangles.items(), *self.edges.items())
@@ -117,7 +118,7 @@ class Compiler:
                 if point not in self.solved and point not in chassis
             },
             directions=self._directions(),
-            # Several heights may be over one ground.
+            # Several heights may be measured from one ground.
             constraints=tuple(dict.fromkeys(constraints)),
             drives=tuple(dict.fromkeys(driving)),
             roles=roles,
@@ -132,7 +133,7 @@ class Compiler:
         )
 
     def _directions(self) -> dict[str, tuple[str, str]]:
-        """What the chassis carries: directions of the car, and the lines of its slides that are drawn."""
+        """Directions fixed to the chassis: directions of the car, and drawn lines of the chassis' slides."""
         slides, inputs = self.structure.slides.items(), self.structure.inputs.items()
         asked = [one for name, one in inputs if name in self.driven or one.moves_the_chassis]
         names = [direction for one in asked for direction in one.directions]
@@ -145,7 +146,7 @@ class Compiler:
         }
         return {name: ("", name) for name in names} | lines
 
-    # What stands for the bodies of the drawing.
+    # Points that represent the bodies.
 
     @cached_property
     def chassis(self) -> KeysView[str]:
@@ -166,9 +167,10 @@ class Compiler:
 
     @cached_property
     def solved(self) -> Collection[str]:
-        """The points that are solved for, and those of the chassis among them.
+        """The points that are solved for, including those of the chassis among them.
 
-        What rides on a body is carried by moving points; on others it is solved for.
+        A point that is fixed to a body is carried where the body's triangle moves; where the triangle has a
+        point of the chassis, the point is solved for.
         """
         found = dict.fromkeys(
             name
@@ -184,9 +186,8 @@ class Compiler:
     def triangles(self) -> dict[str, Triangle]:
         """The three points that stand for each moving body.
 
-        Those that something is joined to come first, in the order of the file; others only where there are
-        fewer than three or all are drawn in one line, and where there are more, those in one line are passed
-        over.
+        Points that something is joined to come first, in the file's order. Others are used only where fewer
+        than three are joined or all joined ones are in one line. Triangles in one line are passed over.
         """
         found: dict[str, Triangle] = {}
         bodies = self.structure.moving_bodies
@@ -195,7 +196,7 @@ class Compiler:
             hinges = [self.structure.shared(body, other) for other in (CHASSIS, *[*bodies][:number])]
             paired = [p for hinge in hinges if len(hinge) == 2 for p in hinge if p in self.needed]
             order = list(dict.fromkeys((*paired, *joined, *names)))
-            # Two are settled where a hinge holds them, or where no more are joined.
+            # Two corners are fixed where a hinge holds them, or where fewer than three points are joined.
             settled = order[:2] if len(joined) < 3 or len(paired) >= 2 else []
             tried = [one for one in combinations(order, 3) if not settled or settled == [*one[:2]]]
             of_joined = [one for one in tried if {*one} <= {*joined}]
@@ -205,28 +206,28 @@ class Compiler:
         return found
 
     def _in_line(self, tried: list[Triangle]) -> bool:
-        """Whether the corners of all of some triangles are drawn apart and in one line."""
+        """Whether each of these triangles has three distinct corners in one line."""
         corners = [[self.points[name] for name in one] for one in tried]
         return all(len({*map(tuple, one)}) == 3 and _sine(one) <= IN_LINE for one in corners)
 
     def _best(self, tried: list[Triangle]) -> Triangle:
-        """The first that is not flat, or the least flat."""
+        """The first triangle that is not flat, or the least flat one."""
         sines = [_sine([self.points[name] for name in one]) for one in tried]
         good = next((one for one, sine in zip(tried, sines, strict=True) if sine > FLAT), None)
         if max(sines) <= IN_LINE and len({*self.points.values()}) > 1:
             names = tuple(dict.fromkeys(name for one in tried for name in one))
             raise MechanismError(
-                f"{', '.join(names)} lie in one line, and so cannot stand for a body; draw one off the line, "
-                "or give the body a further point",
+                f"{', '.join(names)} lie in one line, so they do not fix a body's orientation; move one of "
+                "them off the line, or give the body another point",
                 names,
             )
         return good or tried[sines.index(max(sines))]
 
     @cached_property
     def edges(self) -> dict[str, tuple[Ends, Ends]]:
-        """By slide that keeps two bodies from turning, an edge of each.
+        """Slide that keeps two bodies from turning -> one edge of each body.
 
-        Their product changes most by a turn about its line.
+        The edges are chosen so that their scalar product changes most with a turn about the slide's line.
         """
         still = {name: slide for name, slide in self.structure.slides.items() if not slide.turns}
         if not still:
@@ -249,23 +250,23 @@ class Compiler:
         return found
 
     def _unit_edges(self, body: str, vectors: Mapping[str, Array]) -> Iterator[tuple[Ends, Array]]:
-        """The edges of a body's triangle, or the car's axes for those of the chassis, at the length 1."""
+        """Unit vectors along the edges of a body's triangle; for the chassis, along the car's axes."""
         axes = [("up", ""), ("right", ""), ("forward", "")]
         for p, q in axes if body == CHASSIS else combinations(self.triangles[body], 2):
             edge = vectors[p] - (vectors[q] if q else 0.0)
             yield (p, q), edge / max(float(np.linalg.norm(edge)), 1e-300)
 
-    # Rows of bodies, rods and slides.
+    # Rows of bodies, rods and slides
 
     def _bodies(self) -> Iterator[Constraint]:
-        """The sides of each triangle that nothing else holds, and the rods that are links."""
+        """Links for the triangle sides that nothing else holds, and for rods."""
         moving = self.structure.moving_bodies.items()
         bodies = [({*self.triangles[body]}, {*names} & {*self.solved}) for body, names in moving]
         before = [{*self.chassis}]
         for (a, b, c), (_, points) in zip(self.triangles.values(), bodies, strict=True):
             for start, end in ((b, a), (c, a), (c, b)):
                 side = {start, end}
-                # A body that has one of the two as a further point holds their distance, first or last.
+                # A body that has one of the two as a further point fixes their distance, wherever listed.
                 further = any(side <= others and not side <= corners for corners, others in bodies)
                 if not further and not any(side <= others for others in before):
                     yield link(start, end)
@@ -275,7 +276,7 @@ class Compiler:
                 yield link(*ends)
 
     def _points_in_bodies(self) -> Iterator[Constraint]:
-        """What else the bodies need: further points, and the normals of those with an axis of their own."""
+        """Rows of the bodies' further points, and of the normals of bodies that need one."""
         turned = [one for one in map(self.structure.inputs.get, self.driven) if isinstance(one, Turn)]
         with_axis = {one.on for one in turned} | {
             line.axis.body for line in self._lines.values() if line.axis
@@ -289,7 +290,7 @@ class Compiler:
 
     @cached_property
     def _lines(self) -> dict[str, Line]:
-        """By slide, its line: of the chassis, through two points of a body, or along an axis of its own."""
+        """Slide -> its line: of the chassis, through two points of a body, or along a body-fixed axis."""
         return {name: self._line(name, slide) for name, slide in self.structure.slides.items()}
 
     def _line(self, name: str, slide: Slide) -> Line:
@@ -303,9 +304,9 @@ class Compiler:
 
     @cached_property
     def _on_axes(self) -> dict[str, Ends]:
-        """By point that a rod holds on an axis of a body, at its length from another there: the rod's ends.
+        """Point that a rod holds on a body's axis, at its length from another point there -> the rod's ends.
 
-        The first rod of a point is no link, but holds it.
+        The first rod at such a point is not made a link; it places the point on the axis.
         """
         found: dict[str, Ends] = {}
         for name in (name for name, line in self._lines.items() if line.axis):
@@ -316,11 +317,11 @@ class Compiler:
         return found
 
     def _slide(self, name: str) -> Iterator[Constraint]:
-        """The points of a slide, and what keeps bodies from turning about its line."""
+        """Rows of the points of a slide, and the row that keeps two bodies from turning about its line."""
         slide, along = self.structure.slides[name], self._lines[name]
         joined = any({*ends} == {*slide.points} for ends in self.structure.rods.values())
         if along.between and joined and name not in self.travels:
-            # Two points that a rod joins make the line, and the two of the body are on it.
+            # The rod's two ends define the line, and the body's two points lie on it.
             start, end = slide.points
             line = Line(f"line {start} - {end}", start, end, between=True, slide=name)
             for point in (slide.through, slide.along):
@@ -348,16 +349,16 @@ class Compiler:
         return on_line(point, line, f"place of {point} on the {line.name if line.axis else name}")
 
     def _travel_of(self, slide: str) -> str:
-        """What the place of its first point is called where an input drives it; empty where none does."""
+        """Name of the coordinate of a slide's first point along it, if an input drives it; else empty."""
         input = self.travels.get(slide, "")
-        # Slides along directions of the car have one travel in one coordinate.
+        # Slides along directions of the car share one coordinate per input.
         along = "" if self._lines[slide].head in DIRECTIONS else f" along the {slide}"
         return input and f"{input} travel{along}"
 
-    # Rows and drives of inputs.
+    # Rows and drives of inputs
 
     def _input(self, name: str, one: Input) -> Made:
-        """Rows and drives of an input that is driven; none of one that moves the chassis."""
+        """Rows and drives of a driven input; none for a chassis input."""
         value, cosine, sine = (f"{what} {name}" for what in ("value of", "cosine of", "sine of"))
         match one:
             case Arm(of=of, about=about, from_=direction):
@@ -393,13 +394,13 @@ class Compiler:
         found: dict[str, Drive] = {}
         for slide in slides:
             point, place = self.structure.slides[slide].points[0], self._travel_of(slide)
-            # Several along one direction of the car have one travel.
+            # Several slides along one direction of the car share one travel.
             found.setdefault(place, drives.travel_along(place, name, self._lines[slide], point))
         return list(found.values())
 
     @cached_property
     def travels(self) -> dict[str, str]:
-        """By slide whose travel is driven, the input.
+        """Slide whose travel is driven -> the input.
 
         Raises:
             MechanismError: two inputs drive one slide, whose travel has one coordinate.
@@ -409,18 +410,18 @@ class Compiler:
             for slide in self.structure.inputs[name].named("slide"):
                 if found.setdefault(slide, name) != name:
                     raise MechanismError(
-                        f"{found[slide]} and {name} both drive the travel of {slide}; allowed: one input for "
-                        "a slide, so leave one of them out",
+                        f"{found[slide]} and {name} both drive the travel of {slide}; allowed: one input per "
+                        "slide, so leave one of them out",
                         (found[slide], name),
                     )
         return found
 
     @cached_property
     def _ground(self) -> tuple[Ground, list[Drive]]:
-        """The ground as the driven chassis sees it, and what drives it.
+        """The ground as seen from the driven chassis, and the drives of the chassis.
 
         Raises:
-            MechanismError: the chassis is turned about a point that it does not carry.
+            MechanismError: the chassis turns about a point that does not belong to it.
         """
         chassis, ground, moves, made = [*self.chassis], Ground(), list[tuple[str, str]](), list[Drive]()
         for name in reversed(self.driven):
@@ -428,8 +429,8 @@ class Compiler:
             if isinstance(one, Turns):
                 if one.about not in chassis:
                     raise MechanismError(
-                        f"{name} turns the chassis about {one.about}, which it does not carry, and a height "
-                        f"over the ground is driven; allowed: about one of {', '.join(chassis)}",
+                        f"{name} turns the chassis about {one.about}, which is not a chassis point, while a "
+                        f"height over the ground is driven; allowed: about one of {', '.join(chassis)}",
                         (name, one.about),
                     )
                 pair = f"cosine of {name}", f"sine of {name}"
@@ -445,7 +446,7 @@ class Compiler:
         """A length that an input needs, mm.
 
         Raises:
-            MechanismError: the scene does not say it.
+            MechanismError: the scene does not give this length.
         """
         if name not in self.lengths:
             what, usual = LENGTHS[name]
@@ -458,9 +459,9 @@ class Compiler:
 
 
 def _sine(corners: list[Place]) -> float:
-    """Of the smallest angle of a triangle, about: twice its area by the squares of its longest side."""
+    """Approximate sine of a triangle's smallest angle: twice its area over the square of its longest side."""
     places = np.array(corners, dtype=float)
-    # By a power of two, which rounds nothing: squares of huge coordinates have no number.
+    # Scaled by a power of two, which is exact, since squares of huge coordinates overflow.
     a, b, c = np.ldexp(places, -int(np.frexp(np.abs(places).max())[1]) - 1)
     longest = max(float(np.sum((p - q) ** 2)) for p, q in ((a, b), (b, c), (a, c)))
     area = float(np.linalg.norm(np.cross(b - a, c - a)))

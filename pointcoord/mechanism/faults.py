@@ -1,4 +1,4 @@
-"""What is wrong with a file's tables: where, what, and what is allowed; and what pydantic says, likewise."""
+"""Errors in the tables of a file, with place, problem and allowed values; and pydantic's errors as such."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 from pointcoord.errors import SceneError
 from pointcoord.wording import meant, shown, shown_key
 
-# What pydantic says in Python's terms, and a file in its own.
+# Pydantic's messages that speak of Python types -> messages that speak of the file.
 WORDS = {
     "missing": "this key is missing",
     "dataclass_type": "Input should be a table",
@@ -19,15 +19,15 @@ WORDS = {
     "string_too_short": "Input should be a name",
     "tuple_type": "Input should be a list",
 }
-# Faults that say themselves what is given.
+# Errors whose message contains the value already.
 COMPLETE = ("missing", "too_short", "too_long", "value_error")
 
 
 class TableFault(ValueError):
-    """A table is not as it must be.
+    """An error in a table.
 
     Args:
-        place: keys from the top of the tables. problem: with the value. allowed: what would be.
+        place: keys from the top of the tables. problem: with the value. allowed: what would be right.
     """
 
     def __init__(self, place: Iterable[str | int], problem: str, allowed: str = "") -> None:
@@ -35,37 +35,37 @@ class TableFault(ValueError):
         super().__init__(problem)
 
     def under(self, *place: str | int) -> TableFault:
-        """The same of tables that stand at a place of others."""
+        """The same error in tables that are part of larger tables, at `place`."""
         return TableFault((*place, *self.place), self.problem, self.allowed)
 
     def of_file(self, source: str, others: int = 0) -> SceneError:
-        """The error of a file, by its name, in which this is the fault and so many others are too."""
+        """This error as an error of a file; `others` is the number of further errors in it."""
         more = f" (and {others} more)" if others else ""
         return SceneError(source, ".".join(map(shown_key, self.place)), self.problem + more, self.allowed)
 
 
 def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str | int] = ()) -> TableFault:
-    """The fault of a name that nothing has."""
+    """The error for an unknown name."""
     there = tuple(known)
     hint = meant(name, there) if isinstance(name, str) else ""
     return TableFault(place, f"no {kind} is called {shown(name)}{hint}", ", ".join(there) or "none")
 
 
 def known_name(kind: str, name: object, known: Collection[str], place: Iterable[str | int] = ()) -> None:
-    """Pass if something has the name.
+    """Check that a name is known.
 
     Raises:
-        TableFault: nothing has.
+        TableFault: it is unknown.
     """
     if name not in known:
         raise no_such(kind, name, known, place)
 
 
 def known_keys(table: object, known: Collection[str]) -> object:
-    """A table that has no other keys than the known ones.
+    """The table, checked to have only known keys.
 
     Raises:
-        TableFault: it has.
+        TableFault: a key is unknown.
     """
     given = table if isinstance(table, Mapping) else {}
     for key in given:
@@ -76,7 +76,7 @@ def known_keys(table: object, known: Collection[str]) -> object:
 
 
 def faults_of(error: ValidationError, place: Sequence[str | int] = ()) -> list[TableFault]:
-    """What pydantic found in a table at a place."""
+    """Pydantic's errors in a table at a place."""
     return [_fault(found, place) for found in error.errors(include_url=False)]
 
 
@@ -86,8 +86,8 @@ def _fault(found: ErrorDetails, place: Sequence[str | int]) -> TableFault:
     if isinstance(cause, TableFault):
         return cause.under(*where)
     if found["type"] == "missing" and isinstance(where[-1], int):
-        return TableFault(where, f"a number is missing: there are {where[-1]} where three belong")
-    said = str(cause) if cause else found["msg"].replace("Tuple", "List").replace(" after validation", "")
-    words = WORDS.get(found["type"]) or said
-    told = found["type"] in COMPLETE or isinstance(value, Mapping | BaseModel)
-    return TableFault(where, words if told else f"{words}, not {shown(value)}")
+        return TableFault(where, f"a number is missing: {where[-1]} given where three are needed")
+    message = str(cause) if cause else found["msg"].replace("Tuple", "List").replace(" after validation", "")
+    words = WORDS.get(found["type"]) or message
+    complete = found["type"] in COMPLETE or isinstance(value, Mapping | BaseModel)
+    return TableFault(where, words if complete else f"{words}, not {shown(value)}")

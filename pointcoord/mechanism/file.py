@@ -1,4 +1,4 @@
-"""Mechanism files: found, read and checked, with parts put in and closures applied."""
+"""Mechanism files: finds, reads and checks them, includes their parts and applies closures."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from pointcoord.mechanism.structure import CLOSING, TABLES, Structure, read
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import shown
 
-# The shipped ones. (importlib.resources takes as long to import as a fifth of numpy.)
+# The shipped mechanisms. (Importing importlib.resources would take a fifth of numpy's import time.)
 MECHANISMS = Path(__file__).parents[1] / "mechanisms"
 AS_DRAWN = "drawn"
 ENDING = ".toml"
 BY_ORDER: Place = (0.0, 0.0, 0.0)
-"""Where all points are if only their order counts."""
+"""Place of every point if only the points' order counts."""
 AXES: Mapping[str, Place] = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
-"""Of a car that says nothing of them."""
+"""Axes of a car that gives none."""
 
 
 @cache
@@ -56,12 +56,12 @@ PART = Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fiel
 
 @dataclass(frozen=True)
 class MechanismFile:
-    """A mechanism by its tables, checked.
+    """A mechanism's checked tables.
 
     Attributes:
-        name: in messages and results.
-        structures: by closure, what it is then; "drawn" is the tables as they stand.
-        mirrored: by prefix of its points, whether a part of it is mirrored.
+        name: the mechanism's name in messages and results.
+        structures: closure -> structure; "drawn" is the structure of the unchanged tables.
+        mirrored: prefix of a part -> whether its points are mirrored.
     """
 
     name: str
@@ -74,7 +74,7 @@ class MechanismFile:
 
     @cached_property
     def points(self) -> tuple[str, ...]:
-        """Every point that a car of it may have, whatever its closure."""
+        """Every point that a car with this mechanism may have, over all closures."""
         return tuple(dict.fromkeys(name for one in self.structures.values() for name in one.points))
 
     def topology(
@@ -85,14 +85,14 @@ class MechanismFile:
         axes: Mapping[str, Place] | None = None,
         lengths: Mapping[str, float] | None = None,
     ) -> Topology:
-        """The linkage of a car, made once for all that are alike.
+        """The linkage of a car; cars of equal `Compiler.key` share one.
 
         Args:
-            driven: names of the inputs that are driven; the first of the file that are enough unless given.
-            points: as drawn, mm. They say which points are there, and which stand for a body; by order of
-                the file unless given.
+            driven: names of the driven inputs; by default the first in the file that hold all freedoms.
+            points: drawn places, mm. They decide which optional points exist, and which points represent a
+                body; by default the order in the file decides.
             axes: `up` and `right` of the car.
-            lengths: what inputs may need beside the points, by name, mm.
+            lengths: further lengths that inputs need, by name, mm.
         """
         whole, along = self.structures[closure], axes or AXES
         linkage = partial(self._linkage, closure, points, along, lengths or {})
@@ -139,10 +139,10 @@ class MechanismFile:
         points: Mapping[str, Place] | None = None,
         axes: Mapping[str, Place] | None = None,
     ) -> int:
-        """How many inputs hold the mechanism: coordinates less equations, of which some may be redundant.
+        """Number of freedoms without driven inputs: coordinates less independent equations.
 
         Args:
-            points: as drawn, mm. Without them no equation is taken for redundant.
+            points: drawn places, mm. Without them every equation is taken as independent.
         """
         topology = self._linkage(closure, points, axes or AXES, {}, ())
         if points is None:
@@ -155,14 +155,14 @@ class MechanismFile:
 
     @classmethod
     def of(cls, tables: Mapping[str, Any], name: str) -> MechanismFile:
-        """Check the tables of a mechanism; a part's file is in place of its name (`whole_tables`).
+        """Check a mechanism's tables, with the tables of parts in place of their files (`whole_tables`).
 
         Raises:
             TableFault: the first fault.
         """
         known_keys(tables, (*TABLES, "title"))
         given = {key: value for key, value in tables.items() if value is not None}
-        # A table that is not there is not read: most files have neither, and to build a reader takes time.
+        # Absent tables are not read: most files have neither, and building a reader takes time.
         changed = read(dict[Name, CHANGES], given["closures"], "closures") if "closures" in given else {}
         parts = read(dict[Name, PART], given["parts"], "parts") if "parts" in given else {}
         closures = {AS_DRAWN: {}, **changed}
@@ -182,9 +182,9 @@ class MechanismFile:
 
 
 def _first_driven(inputs: Iterable[str], linkage: Callable[[tuple[str, ...]], Topology]) -> tuple[str, ...]:
-    """The first inputs that hold every freedom of a linkage, which has some.
+    """The first inputs that together hold every freedom of a linkage with freedoms.
 
-    One is passed over that drives, however the car is drawn, what those before it hold.
+    An input is skipped if, in every drawing, it drives what the inputs before it already hold.
     """
     taken: tuple[str, ...] = ()
     for name in inputs:
@@ -198,7 +198,7 @@ def _first_driven(inputs: Iterable[str], linkage: Callable[[tuple[str, ...]], To
 
 
 def _closed(tables: Mapping[str, Any], parts: Mapping[str, _Part], closure: str) -> Structure:
-    """The tables joined with those of the parts, closed alike where they can be, and checked."""
+    """The tables joined with those of the parts (each in this closure if it has it), and checked."""
     if "bodies" not in tables and not parts:
         raise TableFault(("bodies",), "this table is missing", "bodies with their points")
     whole = Structure({CHASSIS: ()}, sides={part: one.side for part, one in parts.items()})
@@ -216,7 +216,7 @@ def mechanism_file(name: str) -> MechanismFile:
     """A shipped mechanism by name.
 
     Raises:
-        TableFault: there is none.
+        TableFault: there is no such mechanism.
     """
     if name not in shipped():
         raise no_such("mechanism", name, (*shipped(), "or a path that ends in .toml"))
@@ -225,10 +225,10 @@ def mechanism_file(name: str) -> MechanismFile:
 
 
 def read_tables(path: Path) -> dict[str, Any]:
-    """The checked tables of a mechanism file, with those of its parts' files in place of their names.
+    """The checked tables of a mechanism file, with the tables of parts in place of their files.
 
     Raises:
-        SceneError: it cannot be read, or something in it is wrong.
+        SceneError: the file cannot be read, or something in it is wrong.
     """
     allowed = f"a path to a mechanism file, or one of {', '.join(shipped())}"
     tables = whole_tables(parsed(read_file(path, allowed), str(path)), path.parent)
@@ -241,7 +241,7 @@ def read_tables(path: Path) -> dict[str, Any]:
 
 
 def whole_tables(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Tables with those of its parts' files in place of their paths."""
+    """The tables with the tables of parts in place of the paths of their files."""
     parts = tables.get("parts")
     if not isinstance(parts, Mapping):
         return dict(tables)
@@ -254,5 +254,5 @@ def whole_tables(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def is_path(name: object) -> bool:
-    """Whether a mechanism's name is that of a file of the user's."""
+    """Whether a mechanism is named by the path of a user's file."""
     return isinstance(name, str) and name.endswith(ENDING)

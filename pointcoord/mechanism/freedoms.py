@@ -1,8 +1,8 @@
-r"""Counts the freedoms of a drawing, names what is free, and leaves out rows that follow from the others.
+r"""Counts the freedoms of a drawing, names the free coordinates, and leaves out redundant rows.
 
-A planar mechanism of hinges, or Bricard's, has more rows than its motion needs: at the closed drawing some
-depend on the others. Those are left out of the map and looked at again at every answer (`locked`); where
-one is violated there, the mechanism is locked, and no compromise between its rows is an answer.
+A planar mechanism of hinges, or a Bricard linkage, has more rows than unknowns: in the closed drawing some
+rows depend on the others. These are left out of the map and checked again at every solution (`locked`). If
+one is violated there, the mechanism is locked; a compromise between its rows is not accepted as a solution.
 """
 
 from __future__ import annotations
@@ -24,29 +24,29 @@ from pointcoord.numerics.rounding import EPS
 Array = NDArray[np.float64]
 Place = tuple[float, float, float]
 
-# Newton's method doubles the digits in a step; a drawing that is not closed after so many does not close.
+# Newton's method doubles the digits in each step: a drawing not closed after this many steps does not close.
 STEPS = 12
-# Of a row of a closed drawing, in its own size: coordinates of size 1 round by EPS, and rows have some tens
-# of products.
+# Residual of a closed drawing's row, relative to its size: coordinates of size 1 round by EPS, and a row has
+# some tens of products.
 CLOSED = 1e3 * EPS
-# Of a row at an answer, in the size of its coordinates: it has at most 24 products, each rounded with the
-# differences in it three times, and their sum.
+# Residual of a row at a solution, relative to the size of its coordinates: the row has at most 24 products,
+# each rounded three times with the differences in it, and their sum.
 ROUNDED = 64.0 * EPS
-# Of symmetric mechanisms many rows are as far from those before: the first one is taken, not the one that
-# rounding makes the farthest, which differs by processor.
+# In symmetric mechanisms many rows are equally far from those before. The first of these is taken, since
+# rounding, which differs by processor, would otherwise choose.
 NEARLY = 1.0 - 1e-6
-# Sines of the angle of two hinges. Directions of points that are drawn in doubles are rounded to EPS or so.
+# Sines of the angle between two hinges. Directions between points given as doubles are rounded by about EPS.
 PARALLEL, NEARLY_PARALLEL = 16.0 * EPS, 0.05
 
 
 @dataclass(frozen=True)
 class Freedoms:
-    """What a mechanism can do at its closed drawing.
+    """The freedoms of a mechanism in its closed drawing.
 
     Attributes:
-        count: freedoms with its inputs held, of coordinates less independent rows.
-        free: the coordinates that move then. redundant: the rows that depend on others.
-        kept: numbers of independent rows, as many as there can be.
+        count: freedoms with the inputs held: coordinates less independent rows.
+        free: the coordinates that can still move. redundant: the rows that depend on others.
+        kept: row numbers of a largest set of independent rows.
     """
 
     count: int
@@ -56,12 +56,12 @@ class Freedoms:
 
     @classmethod
     def of(cls, topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]) -> Freedoms:
-        """Of a drawing.
+        """The freedoms of a drawing.
 
         Args:
             axes: `up` and `right` of the car.
         Raises:
-            MechanismError: it does not close.
+            MechanismError: the drawing does not close.
         """
         mechanism = drawn_mechanism(topology, dict(points), dict(axes))
         system = mechanism.map
@@ -77,7 +77,7 @@ class Freedoms:
 
 
 def _rows_of_inputs(topology: Topology) -> list[int]:
-    """Numbers of the rows that only an input makes; a driven line of the chassis also holds its point."""
+    """Numbers of the rows that only inputs add; a driven slide's row also holds its point on the line."""
     driven = set(topology.driven)
     return [
         row
@@ -88,10 +88,11 @@ def _rows_of_inputs(topology: Topology) -> list[int]:
 
 
 def _independent(matrix: Array, last: Iterable[int]) -> list[int]:
-    """Numbers of independent rows, those of `last` after others; of each the farthest from those before.
+    """Numbers of independent rows; rows of `last` are tried after all others. Each time the row farthest from
+    the span of the rows before is taken.
 
-    A row depends on others where what they leave of it is below the rounding of coordinates that its numbers
-    are made of, n EPS of the largest, 64 times.
+    A row is dependent if its part outside that span is below 64 n EPS of the largest row, the rounding of the
+    coordinates that its numbers are made of.
     """
     count, n = matrix.shape
     rest, kept = matrix.copy(), list[int]()
@@ -107,15 +108,15 @@ def _independent(matrix: Array, last: Iterable[int]) -> list[int]:
             row = waiting.pop(best)
             kept.append(row)
             unit = rest[row] / lengths[best]
-            for _ in range(2):  # once more for what rounding leaves
+            for _ in range(2):  # the second pass removes what rounding left in the first
                 rest -= np.outer(rest @ unit, unit)
     return kept
 
 
 def _closed(mechanism: Mechanism) -> Array:
-    """The drawing closed by its own inputs, by the shortest steps.
+    """Close the drawing with its inputs held, by least-squares Newton steps.
 
-    What does not close so is taken as drawn where there are no more equations than coordinates.
+    If that fails, the drawn coordinates are returned if there are no more equations than coordinates.
     """
     y, system = mechanism.drawn.copy(), mechanism.map
     n = system.unknowns
@@ -129,7 +130,7 @@ def _closed(mechanism: Mechanism) -> Array:
     worst = mechanism.topology.labels[int(np.argmax(np.abs(system.residual(y))))]
     raise MechanismError(
         f"the drawing of {mechanism.topology.name} has more equations than coordinates and does not close: "
-        f"{worst} cannot be kept with the others; draw its points where they belong, or leave an input out",
+        f"{worst} does not fit the others; correct its points, or leave an input out",
         [worst],
     )
 
@@ -137,18 +138,18 @@ def _closed(mechanism: Mechanism) -> Array:
 def free_directions(
     topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]
 ) -> tuple[str, ...]:
-    """The coordinates of a drawing that its equations do not hold."""
+    """The coordinates of a drawing that its equations leave free."""
     try:
         return Freedoms.of(topology, points, axes).free
     except MechanismError:
-        return ("what a drawing that does not close cannot tell",)
+        return ("unknown, since the drawing does not close",)
 
 
 def settled(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]) -> Topology:
-    """A topology whose rows are as many as its unknowns: those that follow from the others are left out.
+    """A topology with as many rows as unknowns: redundant rows are left out.
 
     Raises:
-        MechanismError: something is free, or inputs fight.
+        MechanismError: a freedom is left, or two inputs drive the same freedom.
     """
     found = Freedoms.of(topology, points, axes)
     lost = [row for row in range(len(topology.labels)) if row not in found.kept]
@@ -162,20 +163,20 @@ def _words(topology: Topology, found: Freedoms, fighting: bool) -> str:
     driven, count = ", ".join(topology.holding_inputs) or "none", len(topology.holding_inputs)
     words = []
     if fighting:
-        words.append(f"has inputs that fight at the drawing: {', '.join(found.redundant)}")
+        words.append(f"has inputs that drive the same freedom in the drawing: {', '.join(found.redundant)}")
     if found.count:
         more = "freedom" if found.count == 1 else "freedoms"
-        words.append(f"has {found.count} {more} left; free at the drawing: {', '.join(found.free)}")
+        words.append(f"has {found.count} {more} left; free in the drawing: {', '.join(found.free)}")
     inputs = f"{count} driven input{'' if count == 1 else 's'} ({driven})"
     return f"{topology.name} with {inputs} {'; it '.join(words)}"
 
 
 def locked(mechanism: Mechanism, y: Array, off: Array) -> dict[int, MechanismError]:
-    """Answers at which a row that was left out is violated, by number, with what that means.
+    """Solutions that violate a row that was left out, by number, with the error.
 
     Args:
-        y: coordinates, shape (N, size). off: how far each unknown may be off, (N,), in units; a row is
-            violated where it is farther from zero than that explains.
+        y: coordinates, shape (N, size). off: error bound of the unknowns, (N,), in units of the mechanism; a
+            row is violated if its residual is larger than this bound and rounding explain.
     """
     topology = mechanism.topology
     if not topology.left_out or not len(y):
@@ -190,16 +191,16 @@ def locked(mechanism: Mechanism, y: Array, off: Array) -> dict[int, MechanismErr
     for number in np.flatnonzero(share.any(axis=-1)).tolist():
         row = int(np.argmax(share[number]))
         found[number] = MechanismError(
-            f"{topology.name} is locked: {labels[row]} follows from the other equations at the "
-            f"drawing only and is violated by {float(residual[number, row]):.3g} away from it; draw hinges "
-            "that are meant to be parallel or to meet in a point exactly so",
+            f"{topology.name} is locked: {labels[row]} follows from the other equations in the drawing only, "
+            f"and is violated by {float(residual[number, row]):.3g} away from it; draw hinges that are meant "
+            "to be parallel, or to meet in a point, exactly so",
             [labels[row]],
         )
     return found
 
 
 def askew_hinges(structure: Structure, points: Mapping[str, Place]) -> list[str]:
-    """The hinges, each by its two points, that are drawn nearly parallel to others but not exactly."""
+    """The hinges, named by their two points, that are drawn nearly but not exactly parallel to others."""
     pairs = (structure.shared(one, other) for one, other in combinations(structure.bodies, 2))
     ends = [pair for pair in pairs if len(pair) == 2]
     lines = np.array([np.subtract(points[q], points[p]) for p, q in ends]).reshape(-1, 3)

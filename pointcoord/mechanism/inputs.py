@@ -1,6 +1,6 @@
-"""What can be driven: a kind of input knows its keys and what they may name.
+"""The kinds of inputs, each with its keys and what the keys may name.
 
-Its rows and drives are made in `compiled`.
+Rows and drives of inputs are made in `compiled`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ LENGTHS = {
     "wheel_radius": ("the height of the wheel's contact point", 300.0),
     "rack_per_turn": ("the turn of a steering wheel", 50.0),
 }
-"""The lengths that inputs may need beside the points: what such an input is, and a usual one, mm."""
+"""Further lengths that inputs may need: the kind of input, for messages, and a typical value, mm."""
 CHASSIS: Literal["chassis"] = "chassis"
 
 
@@ -48,7 +48,7 @@ Ends = tuple[Name, Name]
 Role = Name | Ends
 Distinct = Annotated[tuple[Name, ...], AfterValidator(_once)]
 Names = Annotated[tuple[Name, ...], Field(min_length=1), AfterValidator(_once)]
-# The word at the end says what a name is the name of.
+# The last word says what kind of object the name belongs to.
 Point = Annotated[Name, "point"]
 Pair = Annotated[Ends, BeforeValidator(_pair), "point"]
 Body = Annotated[Name, "body"]
@@ -60,17 +60,17 @@ Bodies = Mapping[str, Sequence[str]]
 
 
 class Entry(BaseModel):
-    """An entry of a table; its types say which values are names of points, bodies, slides, directions."""
+    """An entry of a table; its field types say which values name points, bodies, slides or directions."""
 
     model_config = ConfigDict(frozen=True, defer_build=True)
 
     def named(self, what: str) -> tuple[str, ...]:
-        """The names of points, bodies, slides or directions that it mentions."""
+        """The names of points, bodies, slides or directions in the entry."""
         values = [getattr(self, key) for key in self._naming(what)]
         return tuple(n for value in values for n in (value if isinstance(value, tuple) else (value,)))
 
     def renamed(self, rename: Mapping[str, Mapping[str, str]]) -> Self:
-        """With other names of points, bodies or slides."""
+        """The entry with other names for points, bodies or slides."""
         keys = ((key, names) for what, names in rename.items() for key in self._naming(what))
         return self.model_copy(update={key: renamed(getattr(self, key), names) for key, names in keys})
 
@@ -80,11 +80,11 @@ class Entry(BaseModel):
 
 
 class Input(Entry):
-    """Something that can be driven, as its table says.
+    """An input that can be driven, as its table describes it.
 
     Attributes:
-        unit: of its values.
-        length: of those that the scene says beside its points, the name of the one that it needs.
+        unit: unit of its values.
+        length: name of the further length that it needs from the scene; empty if none.
         moves_the_chassis: whether it moves the whole car, so that it holds no freedom of the mechanism.
     """
 
@@ -94,24 +94,24 @@ class Input(Entry):
 
     @property
     def kind(self) -> str:
-        """arm, turn, travel, steers, height, contact, distance, moves or turns."""
+        """The kind by name: arm, turn, travel, steers, height, contact, distance, moves or turns."""
         return type(self).__name__.lower()
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Directions of the car that it needs, as the chassis carries them."""
+        """Directions of the car that the input needs, fixed to the chassis."""
         return self.named("direction")
 
     def check(self, bodies: Bodies) -> None:
-        """Check what its names, which are known, mean together.
+        """Check that the names, which exist, fit together.
 
         Raises:
-            TableFault: they make no input; its place is below the input's own.
+            TableFault: the names make no input; its place is relative to the input's place.
         """
 
 
 class Arm(Input):
-    """The angle of an arm of a body from a direction."""
+    """The angle between an arm of a body and a direction of the car, rad."""
 
     unit = "rad"
     angle: Body
@@ -121,15 +121,15 @@ class Arm(Input):
 
     def check(self, bodies: Bodies) -> None:
         if self.of == self.about:
-            raise TableFault(("of",), f"is {self.of!r} as about is", "two different points")
+            raise TableFault(("of",), f"is {self.of!r}, the same point as about", "two different points")
         if self.angle == CHASSIS:
-            raise TableFault(("angle",), "is the chassis, which has no angle from itself", "a moving body")
+            raise TableFault(("angle",), "is the chassis, which does not turn", "a moving body")
         for key, point in (("of", self.of), ("about", self.about)):
             known_name(f"point of {self.angle}", point, bodies[self.angle], (key,))
 
 
 class Turn(Input):
-    """The turn of a body about a hinge from the drawing."""
+    """The rotation of a body about a hinge, from the drawing, rad."""
 
     unit = "rad"
     angle: Body
@@ -140,18 +140,18 @@ class Turn(Input):
         shared = [point for point in bodies[self.angle] if point in bodies[self.on]]
         if self.angle in (CHASSIS, self.on) or len(shared) != 2:
             points = ", ".join(shared if self.angle != self.on else ()) or "no point"
-            problem = f"{self.angle} and {self.on} share {points}, which is no hinge"
+            problem = f"{self.angle} and {self.on} share {points}, which is not a hinge"
             raise TableFault((), problem, "two bodies that share two points")
 
 
 class Travel(Input):
-    """The travel of slides."""
+    """The travel of slides, mm."""
 
     travel: SlideNames
 
 
 class Steers(Input):
-    """The turn of a steering wheel, whose pinion makes the travel of slides."""
+    """The rotation of a steering wheel, whose pinion moves slides, rad."""
 
     unit = "rad"
     length = "rack_per_turn"
@@ -159,14 +159,14 @@ class Steers(Input):
 
 
 class Height(Input):
-    """The height of a point."""
+    """The height of a point, mm."""
 
     height: Point
     along: Direction = "up"
 
 
 class Contact(Input):
-    """The height of a wheel's contact point, in the chassis' frame or over the ground."""
+    """The height of a wheel's contact point, in the chassis' frame or over the ground, mm."""
 
     length = "wheel_radius"
     contact: Pair
@@ -178,18 +178,18 @@ class Contact(Input):
 
     def check(self, bodies: Bodies) -> None:
         if not any({*self.contact} <= {*points} for points in bodies.values()):
-            problem = f"{' and '.join(self.contact)} are of no one body, so they are not the axis of a wheel"
+            problem = f"{' and '.join(self.contact)} do not belong to one body, so they are no wheel axis"
             raise TableFault((), problem, "two points of one body")
 
 
 class Distance(Input):
-    """The distance of two points."""
+    """The distance between two points, mm."""
 
     distance: Pair
 
 
 class Moves(Input):
-    """A displacement of the whole car."""
+    """A displacement of the whole car, mm."""
 
     moves_the_chassis = True
     moves: Chassis
@@ -197,7 +197,7 @@ class Moves(Input):
 
 
 class Turns(Input):
-    """A turn of the whole car."""
+    """A rotation of the whole car, rad."""
 
     unit = "rad"
     moves_the_chassis = True
@@ -218,10 +218,10 @@ TELLING = ("angle", "travel", "steers", "height", "contact", "distance", "moves"
 
 
 def input_of(table: object) -> object:
-    """An input as its kind has it, which one of its keys tells.
+    """A table as an input of the kind that one of its keys indicates.
 
     Raises:
-        TableFault: no key does, several do, or one is none of that kind's.
+        TableFault: no key or several keys indicate a kind, or a key does not belong to that kind.
     """
     if not isinstance(table, Mapping):
         raise TableFault((), f"is {shown(table)}", 'a table, such as { height = "a" }')
@@ -238,5 +238,5 @@ def input_of(table: object) -> object:
 
 
 def renamed(value: Any, names: Mapping[str, str]) -> Any:
-    """A name or some, changed where there is another for it."""
+    """A name, or a tuple of names, with those in `names` replaced."""
     return tuple(names.get(n, n) for n in value) if isinstance(value, tuple) else names.get(value, value)

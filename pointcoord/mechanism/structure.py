@@ -1,8 +1,8 @@
-"""What a mechanism is made of, flat and by name: bodies, rods, slides, inputs and roles; no coordinates.
+"""Structure of a mechanism by names, without coordinates: bodies, rods, slides, inputs and roles.
 
-The types here say how the tables of a mechanism file look, and pydantic reads them so. A
-closure is applied and parts are put in with their prefix before names are looked at (`checks`; see
-`mechanisms/README.md` for what the tables mean).
+The types here describe the tables of a mechanism file, and pydantic reads the tables by them. A closure is
+applied, and parts are included with their prefix, before names are checked (`checks`). See
+`mechanisms/README.md` for the meaning of the tables.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from pointcoord.mechanism.inputs import (
 )
 
 CLOSING = ("bodies", "rods", "slides", "inputs", "roles", "stand_ins")
-"""Tables with entries by name, which a closure may put others in place of."""
+"""Tables of named entries, which a closure may replace."""
 TABLES = (*CLOSING, "closures", "parts")
 PAIR_ROLES = ("wheel_axis", "steering_axis", "front_and_rear", "damper")
 ROLES = ("knuckle", *PAIR_ROLES, "inboard")
@@ -48,15 +48,15 @@ ROLES = ("knuckle", *PAIR_ROLES, "inboard")
 
 @cache
 def _reader(kind: Any) -> TypeAdapter[Any]:
-    """What reads a type, built when the first table is read."""
+    """The reader of a type, built at first use."""
     return TypeAdapter(kind)
 
 
 def read(kind: Any, value: object, *key: str) -> Any:
-    """A value of a type; the key of a table that holds it, where no type says so.
+    """A value read as a type; `key` is the key of the table that holds the value, for messages.
 
     Raises:
-        TableFault: it is not of this type.
+        TableFault: the value is not of this type.
     """
     try:
         return _reader(kind).validate_python(value)
@@ -65,7 +65,7 @@ def read(kind: Any, value: object, *key: str) -> Any:
 
 
 class Slide(Entry):
-    """Points on a line of a body, through one of its points and along a direction or towards a point."""
+    """Points on a line of a body, through one of the body's points, along a direction or towards a point."""
 
     points: Annotated[Names, "point"]
     through: Point
@@ -100,10 +100,10 @@ class Structure:
 
     Attributes:
         bodies: points of each body, the chassis among them.
-        rods: the two ends of each. slides, inputs: by name.
-        roles: a name or two of each role that the mechanism has.
-        stand_ins: points that a drawing may leave out, each with the one that then stands in for it.
-        sides: the side of the car that each part is on, left or right.
+        rods: name -> its two ends. slides, inputs: by name.
+        roles: role -> the name or the two names that have it.
+        stand_ins: point that a drawing may omit -> the point that then stands in for it.
+        sides: part -> the side of the car, left or right.
     """
 
     bodies: dict[Name, Distinct] = field(default_factory=dict)
@@ -130,20 +130,21 @@ class Structure:
         return tuple(body for body, points in self.bodies.items() if point in points)
 
     def shared(self, body: str, other: str) -> tuple[str, ...]:
-        """Points of two bodies, as the first lists them."""
+        """Points that both bodies have, in the order of the first."""
         return tuple(point for point in self.bodies[body] if point in self.bodies[other])
 
     @property
     def knuckles(self) -> dict[str, str]:
-        """By role, of the whole or of a part, the body that carries a wheel."""
+        """Role of a knuckle, with the part's prefix -> the body that carries the wheel."""
         return {role: str(who) for role, who in self.roles.items() if role.rpartition(".")[2] == "knuckle"}
 
     def joints(self, driven: Collection[str]) -> dict[tuple[str, ...], tuple[str, ...]]:
-        """The point of each ball joint, or both of each hinge, with the other points of the body that holds.
+        """Points of joints whose force is reported -> the other points of the body that holds the joint.
 
-        What is held is the knuckle, or the moving body that comes first, and points are as it lists them; of
-        the chassis none are named. Where a rod, a slide or an input takes hold of a point too, nothing says
-        of which of the two halves, nor at which point an input turns a hinge.
+        A ball joint has one point, a hinge two. The held body, on which the force acts, is the knuckle, or
+        the moving body that comes first; points are in its order. For the chassis no other points are named.
+        Joints are left out where a rod, a slide or an input acts on the point too, or an input turns the
+        hinge: how the force is shared is not determined there.
         """
         others = {end for ends in self.rods.values() for end in ends}
         others |= {point for one in self.slides.values() for point in (*one.points, one.through, one.along)}
@@ -163,11 +164,12 @@ class Structure:
 
     @cached_property
     def sliding(self) -> dict[str, tuple[str, bool]]:
-        """The points on one turning slide, each with the slide and whether the line's body is held.
+        """Points on one turning slide -> the slide, and whether the body of its line is the held one.
 
-        What is held is the knuckle, or the moving body that comes first; a point of no body is held itself.
-        Nothing pulls those that hang on other points of the slide alone. What keeps a body from turning holds
-        it by a couple, of which each formulation has its own share in forces.
+        The held body is the knuckle, or the moving body that comes first; a point of no body is held itself.
+        Points of no body are left out if rods join them to points of that slide only, since nothing loads
+        them. Slides that keep a body from turning are left out: they add a couple, which every formulation
+        distributes over the points differently.
         """
         found = {}
         for name, slide in self.slides.items():
@@ -181,14 +183,12 @@ class Structure:
         return found
 
     def _held(self, bodies: Collection[str]) -> str:
-        """The body of two whose force at a joint is given: the knuckle, or the first that moves."""
+        """The one of two bodies on which a joint's force is given: the knuckle, or the first that moves."""
         knuckle = next((body for body in bodies if body in self.knuckles.values()), "")
         return knuckle or next(body for body in bodies if body != CHASSIS)
 
     def drawn_with(self, given: Collection[str]) -> Structure:
-        """The mechanism of a drawing that gives these points: of moving bodies, those that others do the
-        work of are gone.
-        """
+        """The structure of a drawing with these points: stand-ins replace omitted points of moving bodies."""
         gone = {
             name: other
             for name, other in self.stand_ins.items()
@@ -203,12 +203,12 @@ class Structure:
         slides: Mapping[str, str] | None = None,
         prefix: str = "",
     ) -> Structure:
-        """With other names; a name that comes twice in a body comes once then.
+        """The structure with other names; a name that then occurs twice in a body is listed once.
 
-        What a drawing may leave out stays known: messages say what stands in for what.
+        `stand_ins` keeps its entries, since messages name them.
 
         Args:
-            prefix: before the names of rods, inputs and roles.
+            prefix: put before the names of rods, inputs and roles.
         """
         p, b, s = points or {}, bodies or {}, slides or {}
         rename = {"point": p, "body": b, "slide": s}
@@ -226,7 +226,7 @@ class Structure:
         )
 
     def prefixed(self, prefix: str) -> Structure:
-        """With a prefix before every name but the chassis'."""
+        """The structure with a prefix before every name except the chassis'."""
         return self.renamed(
             {n: prefix + n for n in self.points},
             {n: prefix + n for n in self.bodies if n != CHASSIS},
@@ -235,7 +235,7 @@ class Structure:
         )
 
     def joined(self, other: Structure) -> Structure:
-        """With another's tables beside its own, on one chassis."""
+        """The structure with the tables of another added, on one chassis."""
         tables: dict[str, Any] = {
             table: {**getattr(self, table), **getattr(other, table)} for table in CLOSING
         }
@@ -248,7 +248,7 @@ class Structure:
         return {body: points for body, points in self.bodies.items() if body != CHASSIS}
 
     def plain(self, driven: Collection[str]) -> dict[str, Any]:
-        """Bodies, rods, slides, driven inputs, roles and the sides of parts as plain data."""
+        """Bodies, rods, slides, driven inputs, roles and sides of parts as plain data."""
         inputs = {name: one for name, one in self.inputs.items() if name in driven}
         plain: dict[str, Any] = _reader(Structure).dump_python(
             replace(self, inputs=inputs),
@@ -261,7 +261,7 @@ class Structure:
 
 
 def joints_in_words(structure: Structure) -> Iterator[str]:
-    """Every ball joint, hinge, slide and rod, one a line."""
+    """Describe every ball joint, hinge, slide and rod, one per line."""
     for one, other in combinations(structure.bodies, 2):
         shared = structure.shared(one, other)
         if len(shared) == 1:

@@ -1,7 +1,7 @@
-"""What looks wrong with a drawing although it can be solved: units, signs and sides mistaken, in words.
+"""Finds what looks wrong in a drawing although it can be solved: mistaken units, signs and sides.
 
-No rule here refuses anything: a car may be odd. Each says what is odd, with its value, and what it may mean,
-of one drawing or of many designs of a car at once.
+No rule here refuses a scene: a car may be odd. Each rule reports what is odd, with its value, and what it may
+mean, for one drawing or for many designs of a car at once.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ from pointcoord.linkage.topology import Topology
 Array = NDArray[np.float64]
 
 SMALLEST, LARGEST = 50.0, 20_000.0  # mm: no suspension is smaller, and no car longer
-# Of how far out a wheel's points reach: a rack may end a little across the middle of the car.
+# Share of the largest outboard distance of a wheel's points: a rack may end a little beyond the car's middle.
 ACROSS = 0.1
 
 
 def drawing_doubts(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> tuple[str, ...]:
-    """What looks wrong with one drawing, in the order of how much it changes.
+    """Warnings about one drawing, the one with the largest consequences first.
 
     Args:
-        topology: of a car that gives these points.
+        topology: linkage of a car with these points.
         points: hardpoints, each (3,), mm.
     """
     return tuple(doubt.words(()) for doubt in doubts_of_drawings(topology, points, axes) if doubt.where)
 
 
 def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> tuple[Doubt, ...]:
-    """What is looked at in drawings, in the order of how much it changes, and those in which it looks wrong.
+    """Every check of drawings, and the drawings that fail it, the one with the largest consequences first.
 
     Args:
         points: hardpoints, each (..., 3), mm, with the same leading dimensions.
@@ -46,8 +46,8 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
         Doubt(
             ~((size >= SMALLEST) & (size <= LARGEST)),
             lambda one: (
-                f"the car is {float(size[one]):.3g} mm long: points are in mm; are these in another unit, "
-                'which units = "m" or "in" at the top of the scene would say?'
+                f"the car is {float(size[one]):.3g} mm long; points are in mm: if these are in another unit, "
+                'write units = "m" or "in" at the top of the scene'
             ),
         ),
         *_front_behind_rear(topology, points, axes),
@@ -61,7 +61,7 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
 
 
 def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
-    """A front that lies behind a rear: axes that are not right-handed, or names mistaken."""
+    """A front that lies behind a rear: left-handed axes, or names swapped."""
     if not topology.role("front_and_rear"):
         return
     front, rear = topology.role("front_and_rear")
@@ -70,18 +70,18 @@ def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: Ca
     def words(one: tuple[int, ...]) -> str:
         forward = np.round(np.cross(axes.up, axes.right), 6) + 0.0
         return (
-            f"{front} is drawn {-float(ahead[one]):.4g} mm behind {rear}: by up and right the car's front "
-            f"lies towards {forward.tolist()}, as in right-handed axes; are these two swapped, is right "
-            "turned round, or are your axes left-handed? Angles along the car may have the wrong sign"
+            f"{front} is drawn {-float(ahead[one]):.4g} mm behind {rear}: by up and right, in right-handed "
+            f"axes, the car's front lies towards {forward.tolist()}; are the two points swapped, is right "
+            "reversed, or are your axes left-handed? Angles along the car may have the wrong sign"
         )
 
     yield Doubt(ahead < 0.0, words)
 
 
 def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
-    """What is driven by a travel and lies farther out than what it pushes: two ends mistaken.
+    """A point driven by a travel that lies farther out than the point it pushes: the two ends are swapped.
 
-    Both across the middle of the car, they are another wheel's.
+    If both lie beyond the car's middle, they belong to the other wheel.
     """
     pushed = {drive.pushed for drive in topology.drives}
     links = (ends for constraint in topology.constraints for ends in constraint.squared_lengths)
@@ -98,10 +98,10 @@ def _farther_out(inner: str, outer: str, out: Array, across: NDArray[np.bool_]) 
 
 
 def _alone_across(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Doubt:
-    """One point clearly on the other side of the car's middle than all the others: a sign mistaken.
+    """One point clearly beyond the car's middle, all others on the wheel's side: a wrong sign.
 
-    Where a pivot lies at 0 the drawing is not counted from the middle. A point that another may stand in for
-    need not be one of this wheel: the rack's own lies anywhere along it.
+    Nothing is reported where a pivot lies at 0: then coordinates are not measured from the car's middle.
+    Points with a stand-in are not checked, since they may lie beyond it: a rack's centre lies anywhere.
     """
     names = [name for name in topology.required_points if name in points]
     out = np.stack([axes.component(points[name], "outboard") for name in names], axis=-1)
@@ -111,7 +111,7 @@ def _alone_across(topology: Topology, points: Mapping[str, Array], axes: CarAxes
     def words(one: tuple[int, ...]) -> str:
         at = int(out[one].argmin())
         return (
-            f"{names[at]} lies {-float(out[one][at]):.4g} mm across the middle of the car, and no other "
+            f"{names[at]} lies {-float(out[one][at]):.4g} mm beyond the middle of the car, and no other "
             "point of this wheel does: has its coordinate to the right the wrong sign?"
         )
 

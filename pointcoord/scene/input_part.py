@@ -1,4 +1,4 @@
-"""An input over time: its law, as a scene writes it, and tables that stand in files of their own."""
+"""Inputs over time: their laws as a scene gives them, and tables read from separate files."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from pointcoord.wording import meant, shown
 
 SUM, SWEEP, TABLE = "sum", "sweep", "table"
 LAWS = ("constant", "polynomial", "sine", TABLE, SUM)
-"""The kinds of an input over time; a sweep is written as a polynomial before it is one."""
+"""The kinds of an input over time; a sweep is converted to a polynomial before checking."""
 DRAWN = "drawn"
 SPAN = ("start", "stop")
 
 
 def _no_word(value: object) -> object:
-    """Anything but text: "drawn" has become a number before."""
+    """Refuses text: "drawn" has been replaced by a number before."""
     if isinstance(value, str):
         raise ValueError(f'is {shown(value)}{meant(value, (DRAWN,))}; allowed: a number, or "{DRAWN}"')
     return value
@@ -63,9 +63,9 @@ class TablePart(Part):
 
 
 class InputPart(Part):
-    """One input over time: exactly one of constant, polynomial (from t^0 up), sine, table, or sum of such.
+    """One input over time: one of constant, polynomial (coefficients from t^0 up), sine, table and sum.
 
-    A sweep is written as a polynomial before it is one.
+    A sweep is converted to a polynomial before checking.
     """
 
     short_forms = (SWEEP,)
@@ -94,7 +94,7 @@ class InputPart(Part):
             return Sine(self.sine.amplitude, self.sine.angular_frequency, self.sine.phase, self.sine.offset)
         if self.table is not None:
             return Table(self.table.times, self.table.values)
-        assert self.sum is not None  # the validator has seen that one is given
+        assert self.sum is not None  # the validator has checked that exactly one is given
         return Sum(tuple(term.function for term in self.sum))
 
     @property
@@ -104,10 +104,10 @@ class InputPart(Part):
 
 
 def changed(law: Any, change: Callable[[Mapping[str, Any], Place], Any], place: Place = ()) -> Any:
-    """A law as plain data with something else for it or, if it is a sum, for each of its terms.
+    """A law as plain data, changed by a function; a sum is changed term by term.
 
     Args:
-        change: of a law that is no sum, and its place. place: of the law in the scene.
+        change: (law that is not a sum, its place in the scene) -> the changed law. place: of the law.
     """
     if not isinstance(law, Mapping):
         return law
@@ -118,14 +118,14 @@ def changed(law: Any, change: Callable[[Mapping[str, Any], Place], Any], place: 
 
 
 def kinds_of(law: Any) -> set[str]:
-    """The kinds of laws that one as plain data is made of."""
+    """The kinds of laws that a law as plain data consists of."""
     found: set[str] = set()
     changed(law, lambda one, place: found.update(one))
     return found
 
 
 def with_values(law: Any, change: Callable[[Any], Any], keys: Collection[str]) -> Any:
-    """A law as plain data with something else for each of its values: of a table, those under some keys."""
+    """A law as plain data with each of its values changed; in a table, only the values of some keys."""
 
     def of_some(part: Any) -> Any:
         part = own_list(part)
@@ -143,20 +143,20 @@ def with_values(law: Any, change: Callable[[Any], Any], keys: Collection[str]) -
 
 
 def with_drawn(law: Any, value: float) -> Any:
-    """A law as plain data with a number where it says "drawn": the value at which the input is drawn."""
+    """A law as plain data with "drawn" replaced by the input's value in the drawing."""
     return with_values(
         law, lambda own: value if isinstance(own, str) and own == DRAWN else own, ("offset", "values")
     )
 
 
 def swept(law: Any, time: Any, place: Place) -> Any:
-    """A law as plain data with polynomials for its sweeps: from the first number at the start to the second
-    at the stop, evenly.
+    """A law as plain data with its sweeps as polynomials: linear from the first number at the start to the
+    second at the stop.
 
     Args:
-        time: of the scene, as plain data. place: of the law in the scene.
+        time: the scene's time, as plain data. place: of the law in the scene.
     Raises:
-        TableFault: a sweep is no pair of numbers, or has no time to go through.
+        TableFault: a sweep is not a pair of numbers, or the scene has no time span for it.
     """
     return changed(law, lambda one, place: _swept(one, time, (*place, SWEEP)), place)
 
@@ -167,14 +167,14 @@ def _swept(law: Mapping[str, Any], time: Any, place: Place) -> Mapping[str, Any]
     ends = law[SWEEP]
     if len(law) > 1:
         others = " and ".join(key for key in law if key != SWEEP)
-        raise TableFault(place, f"stands beside {others}", "one law alone")
+        raise TableFault(place, f"is given together with {others}", "exactly one law")
     if not (_numbers(ends) and len(ends) == 2):
         raise TableFault(place, f"is {shown(ends)}", "two numbers, such as [-50.0, 50.0]")
     span: list[Any] = [
         time.get(key) if isinstance(time, Mapping) else getattr(time, key, None) for key in SPAN
     ]
     if not _numbers(span) or span[0] == span[1]:
-        raise TableFault(place, "has no time to go through", "time from a start to a later stop, or no time")
+        raise TableFault(place, "has no time span", "time from a start to a later stop, or no time")
     (first, last), (start, stop) = (float(end) for end in ends), span
     slope = (last - first) / (stop - start)
     return {"polynomial": [first - slope * start, slope]}
@@ -187,7 +187,7 @@ def _numbers(value: object) -> bool:
 
 
 def read_in(part: Any, folder: Path = Path()) -> Any:
-    """A scene's inputs, or a law or terms of one, with tables in place of their paths, counted from a folder.
+    """A scene's inputs, a law or its terms, with tables read from their paths, which start from a folder.
 
     Raises:
         SceneError: a file cannot be read, or is not two columns of numbers.
@@ -204,7 +204,7 @@ def _table_of(path: str) -> dict[str, list[float]]:
     try:
         text = read_file(path, "the path of a file of two columns").decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise SceneError(path, "", "is no text in UTF-8", allowed) from None
+        raise SceneError(path, "", "is not text in UTF-8", allowed) from None
     rows: list[list[Any]] = []
     for number, cells in enumerate(csv.reader(text.splitlines()), start=1):
         numbers = [_number(cell) for cell in cells]

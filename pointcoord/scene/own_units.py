@@ -1,6 +1,6 @@
-"""A scene that is written in other units or axes than the project's: turned into mm and directions once.
+"""Converts a scene in other units or axes to mm and directions.
 
-What comes of it is a plain scene in mm; every result is in mm. Angles and times have one unit.
+The result is a plain scene in mm; all results are in mm. Angles and times have one unit only.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ AXES = {
     "iso": {"up": (0.0, 0.0, 1.0), "right": (0.0, -1.0, 0.0)},
     "sae": {"up": (0.0, 0.0, -1.0), "right": (0.0, 1.0, 0.0)},
 }
-"""Axes by name: ours; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
+"""Named axes: the default; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
 
 OF_A_LAW = ("amplitude", "offset", "values")
-# By what power of the unit of length the numbers under a key go.
+# Exponent of the unit of length in the numbers under a key.
 POWERS = {
     "tolerance": 1,
     "points": 1,
@@ -43,13 +43,14 @@ def in_directions(mechanism: dict[str, Any]) -> dict[str, Any]:
     """A mechanism's content with `up` and `right` in place of `axes`.
 
     Raises:
-        TableFault: no axes have that name, or they stand beside a direction.
+        TableFault: no axes have that name, or `up` or `right` is given as well.
     """
     if "axes" not in mechanism:
         return mechanism
     axes, given = mechanism.pop("axes"), [name for name in ("up", "right") if name in mechanism]
     if given:
-        raise TableFault(("axes",), f"stands beside {given[0]}", "axes by their name, or up and right")
+        problem = f"is given together with {given[0]}"
+        raise TableFault(("axes",), problem, "axes by their name, or up and right")
     if not isinstance(axes, str) or axes not in AXES:
         raise TableFault(("axes",), f"is {shown(axes)}", ", ".join(AXES))
     return mechanism | AXES[axes]
@@ -58,7 +59,7 @@ def in_directions(mechanism: dict[str, Any]) -> dict[str, Any]:
 def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
     """A scene's content with every length in mm, in place of `units`.
 
-    What is no number stays as it is, to be told as in any scene.
+    Values that are not numbers stay as they are; the scene's checks report them.
 
     Args:
         lengths: names of the inputs that are lengths.
@@ -80,7 +81,7 @@ def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
 
 
 def _scaled(value: Any, factor: float, power: int) -> Any:
-    """Numbers, lists and tables of them times a power of a factor, which a key may say."""
+    """Numbers, lists and tables of them, times factor**power; in a table a key may give the power."""
     if isinstance(value, Mapping):
         return {name: _scaled(each, factor, power or POWERS.get(name, 0)) for name, each in value.items()}
     if not power:

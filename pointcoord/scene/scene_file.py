@@ -1,6 +1,6 @@
-"""The scene file: which mechanism, which inputs, which instants, which effects, how accurate.
+"""The scene file: mechanism, inputs, instants, effects and tolerance.
 
-A scene is checked when it is read. Every fault names the file, the key, the value and what is allowed.
+A scene is checked when it is read. Every error names the file, the key, the value and what is allowed.
 """
 
 from __future__ import annotations
@@ -57,32 +57,32 @@ from pointcoord.time_functions import TimeFunction
 from pointcoord.toml_text import parsed, read_file, read_stream
 from pointcoord.wording import meant, shown
 
-# The built-in ones. (importlib.resources takes as long to import as a fifth of numpy.)
+# The built-in scenes. (Importing importlib.resources would take a fifth of numpy's import time.)
 SCENES = Path(__file__).parents[1] / "scenes"
 
-# The instants of a scene that says nothing of time, if it stands still and if it sweeps; s.
+# Time of a scene that gives none, for a single pose and for a sweep; s.
 ONE_POSE = {"start": 0.0, "stop": 0.0, "samples": 1}
 PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
-# Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
-# power, the order of its series, it stays below the largest number, 2^1024.
+# Seconds. The unit of time of a motion is at most 2^51, the power of two above 2e15 s. Its 20th power (the
+# order of the series) stays below the largest double, 2^1024.
 FARTHEST = 1e15
 Instant = Annotated[Number, Field(ge=-FARTHEST, le=FARTHEST)]
-# What products of directions may be off: a few roundings where they are turned in doubles, and 1e-12 where
-# they are printed with 12 digits; more is a slip.
+# Largest error in products of directions: ROUNDED for directions that were rotated in doubles, SLIP for those
+# printed with 12 digits. A larger error is a mistake.
 ROUNDED, SLIP = 16.0 * EPS, 1e-12
 NO_DIRECTION = (0.0, 0.0, 0.0)
-# Where an axle lies, seen from the car's middle.
+# Position of an axle along the car, seen from the middle.
 AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
-# Along what the chassis turns in inputs that many ask for, and a mechanism's file may have.
+# The axes of common chassis inputs that a mechanism file may define.
 TURNS = {"roll": "forward", "pitch": "left"}
-# Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
+# Most instants of a scene: at this number, positions, velocities and accelerations of ten points take 7 GB.
 MOST_SAMPLES = 10_000_000
 
 
 def _of_every_part(
     points: dict[str, Vector], file: MechanismFile, structure: Structure, right: Vector
 ) -> dict[str, Vector]:
-    """Points with a name for every part in place of those that are given without a prefix."""
+    """Points by their full names: a name without a prefix is expanded to every part that has the point."""
     found: dict[str, Vector] = {}
     for name, place in points.items():
         of_parts = {
@@ -97,14 +97,14 @@ def _of_every_part(
 
 
 def _mirrored(place: Vector, right: Vector) -> Vector:
-    """At the other side of the car's middle plane."""
+    """The mirror image at the car's middle plane."""
     out = 2.0 * sum(p * r for p, r in zip(place, right, strict=True))
     x, y, z = (p - out * r for p, r in zip(place, right, strict=True))
     return x, y, z
 
 
 def _file_of(keys: Mapping[str, Any]) -> MechanismFile | None:
-    """The mechanism of a part as far as its keys are right."""
+    """The mechanism described by a part's keys; None if they do not describe one."""
     if "type" not in keys or any(name not in keys for name in TABLES):
         return None
     if keys["type"] is not None:
@@ -119,7 +119,7 @@ def _inline(tables: str) -> MechanismFile:
 
 
 def _by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -> object:
-    """A table whose names of parts are tables, as TOML reads left.wheel_centre, with dots in its names."""
+    """A nested table with dotted names: TOML reads left.wheel_centre as a table within a table."""
     if not isinstance(table, Mapping):
         return table
     found: dict[Any, Any] = {}
@@ -133,10 +133,10 @@ def _by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -
 
 
 class CarPart(Part):
-    """What the whole car is like, for the effects that ask for it.
+    """Data of the whole car, for the effects that need them.
 
-    `axle` says which one the wheel is of. Lengths are in mm, the height of the centre of gravity above the
-    drawn ground. Of all that brakes or drives the car, the shares are those of this axle. The spring stands
+    `axle` is the axle of the wheel. Lengths are in mm; the height of the centre of gravity is above the drawn
+    ground. The shares are this axle's parts of the car's whole braking and driving force. The spring acts
     between the damper's ends; its rate is in N/mm.
     """
 
@@ -150,13 +150,13 @@ class CarPart(Part):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """What is given, by name; of the axle -1 at the front and +1 at the rear."""
+        """The given values by name; `axle` is -1 for the front and +1 for the rear."""
         given = self.model_dump(exclude_none=True)
         return {name: AXLES.get(value, value) for name, value in given.items()}
 
 
 class LoadPart(Part):
-    """What acts on a wheel at its contact point, along the scene's axes: a force, N, and a moment, N mm."""
+    """The load on a wheel at its contact point, along the scene's axes: force, N, and moment, N mm."""
 
     force: Vector
     moment: Vector = (0.0, 0.0, 0.0)
@@ -165,11 +165,10 @@ class LoadPart(Part):
 class MechanismPart(Part):
     """The mechanism, its side of the car, its drawn points in mm and the car's axes.
 
-    The mechanism is a shipped one by its `type`, or given by its tables; a `type` that is the path of a
+    The mechanism is a shipped one, named by `type`, or is given by its tables. A `type` that is the path of a
     mechanism file is replaced by that file's tables, so that a scene does not depend on the file. `closure`
-    says what becomes of a drawing that does not close: `drawn` takes it as it stands, others put points in
-    place. `points` has an entry also for those points of the chassis that the file leaves to others that
-    stand in for them.
+    says how a drawing that does not close is corrected: `drawn` keeps the points, other closures move some.
+    `points` also contains the chassis points that the scene omits, at the places of their stand-ins.
     """
 
     type: Text | None = None
@@ -198,16 +197,16 @@ class MechanismPart(Part):
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
-        """The content with a mechanism file read in place of its path, and points by their dotted names.
+        """The content with mechanism files in place of their paths, and points by their dotted names.
 
         Raises:
             SceneError: a mechanism file cannot be read, or something in it is wrong.
-            TableFault: the tables are wrong, or stand beside a type.
+            TableFault: the tables are wrong, or are given together with a type.
         """
         content = in_directions(content)
         given = [name for name in TABLES if content.get(name) is not None]
         if content.get("type") is not None and given:
-            problem = f"there are {given[0]} beside type = {shown(content['type'])}"
+            problem = f"{given[0]} is given together with type = {shown(content['type'])}"
             raise TableFault((given[0],), problem, "a type, or the mechanism's tables and then no type")
         if is_path(content.get("type")):
             content |= read_tables(Path(content.pop("type")))
@@ -231,9 +230,9 @@ class MechanismPart(Part):
     @field_validator("up", "right")
     @classmethod
     def _to_rounding(cls, direction: Vector, others: ValidationInfo) -> Vector:
-        """The direction to the last digit: printed with fewer, each model would take another one for it.
+        """The direction, corrected to full digits: models would each complete a printed one differently.
 
-        What is off by more than that is told in `agree`.
+        `agree` refuses larger errors.
         """
         given, up = np.array(direction), np.array(others.data.get("up", NO_DIRECTION))
         with np.errstate(over="ignore", invalid="ignore"):
@@ -289,7 +288,7 @@ class MechanismPart(Part):
             raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
 
     def _wheels(self) -> Iterator[tuple[str, str]]:
-        """What stands before the roles of the whole and of each part, and the side that it is on."""
+        """Prefix of the roles of the whole mechanism and of each part, and the side of the car."""
         yield "", self.side
         yield from ((f"{part}.", side) for part, side in self._whole.sides.items())
 
@@ -321,7 +320,7 @@ class MechanismPart(Part):
         for part in self.loads:
             if part not in sides and (part or sides):
                 known = f"a table for one of its parts, {', '.join(sides)}" if sides else "force and moment"
-                raise TableFault(("loads", part) if part else ("loads",), "is of no wheel", known)
+                raise TableFault(("loads", part) if part else ("loads",), "names no wheel", known)
 
     def _spin_axis(self) -> None:
         roles = self.structure.roles
@@ -331,43 +330,43 @@ class MechanismPart(Part):
                 own = self._whole.roles[f"{prefix}wheel_axis"][0]
                 raise ValueError(
                     f"{axis[0]} and {axis[1]} are at the same place, so that the wheel's spin axis has "
-                    f"no direction; allowed: a place of {own} that is apart from {axis[1]}"
+                    f"no direction; allowed: a place of {own} away from {axis[1]}"
                 )
 
     @property
     def driven(self) -> tuple[str, ...] | None:
-        """The inputs that its scene drives; None for a part that belongs to no scene."""
+        """The inputs that the scene drives; None for a part outside a scene."""
         return self._driven
 
     @property
     def name(self) -> str:
-        """What messages call the mechanism: its type, or the title of its tables."""
+        """The mechanism's name in messages: its type, or the title of its tables."""
         return self.file.name
 
     @cached_property
     def file(self) -> MechanismFile:
         found = _file_of(self.__dict__)
-        assert found is not None  # a part without one is not made
+        assert found is not None  # such a part fails its checks
         return found
 
     @property
     def structure(self) -> Structure:
-        """What its bodies, rods, slides and inputs are, of a car that gives these points."""
+        """Bodies, rods, slides and inputs of a car with these points, stand-ins applied."""
         return self._whole.drawn_with(self.points)
 
     @property
     def _whole(self) -> Structure:
-        """The same with every point that a car may give."""
+        """The structure with every point that a car may give, without stand-ins."""
         return self.file.structures[self.closure]
 
     def plain(self, driven: Collection[str]) -> dict[str, Any]:
-        """The mechanism as plain data, for models that compile it on their own.
+        """The mechanism as plain data, for models that compile it themselves.
 
         Args:
-            driven: names of the inputs that are driven, chassis motions among them; only these are given.
+            driven: names of the driven inputs, chassis inputs included; only these are returned.
         Returns:
             Bodies, rods, slides, inputs and roles by name, every point as drawn (mm), the car's axes, its
-            side, the wheel's radius and the rack's travel per turn (mm, or None), what is given of the
+            side, the wheel's radius and the rack's travel per turn (mm, or None), the given data of the
             whole car, and the loads (N, N mm).
         """
         structure = self.structure
@@ -390,7 +389,7 @@ class MechanismPart(Part):
 
     @property
     def directions(self) -> dict[str, Vector]:
-        """The car's axes as the scene gives them."""
+        """The scene's directions up and right."""
         return {"up": self.up, "right": self.right}
 
     @property
@@ -399,9 +398,9 @@ class MechanismPart(Part):
         return {name: length for name, length in given.items() if length is not None}
 
     def drawn_inputs(self, driven: Collection[str]) -> dict[str, float]:
-        """The values at which inputs are drawn, if these are driven; rad or mm.
+        """The drawn values of inputs, if these inputs are driven; rad or mm.
 
-        Empty if the hardpoints make no mechanism that these drive, which is told when the scene is checked.
+        Empty if the hardpoints make no mechanism that these inputs drive; the scene's checks report that.
         """
         known = [name for name in self.structure.inputs if name in driven]
         try:
@@ -416,22 +415,22 @@ class MechanismPart(Part):
 
     @cached_property
     def freedoms(self) -> int:
-        """How many inputs hold the mechanism.
+        """Number of freedoms, which is the number of inputs needed.
 
         Raises:
-            MechanismError: it has more equations than coordinates, and the drawing does not close.
+            MechanismError: the mechanism has more equations than coordinates, and the drawing does not close.
         """
         return self.file.freedoms(self.closure, self.points, self.directions)
 
     @property
     def axis_point(self) -> str:
-        """The point by which a car can give its spin axis an inner end of its own; empty without an axis."""
+        """The optional point for the inner end of the spin axis; empty without a wheel axis."""
         axis = self._whole.roles.get("wheel_axis")
         return axis[0] if axis else ""
 
     @property
     def defaults_taken(self) -> tuple[str, ...]:
-        """What the scene leaves to us and what is seen in the results, in words."""
+        """Notes on defaults that affect the results."""
         axis = self.structure.roles.get("wheel_axis")
         if not axis or axis[0] == self.axis_point:
             return ()
@@ -439,21 +438,21 @@ class MechanismPart(Part):
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """What looks wrong with the drawing although it can be solved, in words."""
+        """Warnings about what looks wrong in the drawing although it can be solved."""
         points = {name: np.array(place) for name, place in self.points.items()}
         return drawing_doubts(self.topology, points, self.axes)
 
     @property
     def axes(self) -> CarAxes:
-        """The car's directions, and its wheel."""
+        """The car's directions, wheel radius, car data and loads."""
         car = {} if self.car is None else self.car.numbers
         loads = {part: (np.array(load.force), np.array(load.moment)) for part, load in self.loads.items()}
         return CarAxes(np.array(self.up), np.array(self.right), self.outboard, self.wheel_radius, car, loads)
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """The names of the effects that this car has, without derivatives of points that have only a number,
-        which every car has."""
+        """Names of the effects that this car has. Derivatives of points that have no name but a number are
+        left out, since every car has them."""
         return tuple(
             name
             for name, effect in EFFECTS.items()
@@ -461,17 +460,17 @@ class MechanismPart(Part):
         )
 
     def refusal(self, effect: Effect) -> str:
-        """Why this car does not have an effect and what to do, in words; empty if it does."""
+        """Why this car does not have an effect, and what to do; empty if it has."""
         return effect.refusal(self.topology, self.points, self.axes)
 
     @property
     def outboard(self) -> NDArray[np.float64]:
-        """Unit vector away from the car's middle."""
+        """Unit vector away from the car's middle, on the wheel's side."""
         return np.array(self.right) * (-1.0 if self.side == "left" else 1.0)
 
 
 class TimePart(Part):
-    """The instants: `samples` of them evenly from start to stop, both included; s."""
+    """The instants: `samples` evenly spaced instants from start to stop, both included; s."""
 
     start: Instant
     stop: Instant
@@ -489,9 +488,9 @@ class TimePart(Part):
 class Scene(Part):
     """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`.
 
-    `points` names the points that are reported, all of them if it is not given; what neither they nor the
-    effects hang on is not solved for. `convention` says whose numbers are meant where tables, pictures and
-    files of results are asked for one by its name; what is solved and compared keeps one meaning.
+    `points` names the points that are reported; all points by default. What neither these points nor the
+    effects depend on is not solved for. `convention` chooses the convention in which tables, plots and result
+    files give an angle asked for by its name; solving and comparing always use one definition.
     """
 
     title: Text = ""
@@ -507,12 +506,12 @@ class Scene(Part):
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
-        """The content in mm, with inputs by their dotted names, which may be in a table for each part, and
-        sweeps as the polynomials that they stand for.
+        """The content in mm, with inputs by dotted names (they may be in a table for each part), and sweeps
+        as polynomials.
 
         Raises:
             SceneError: a table's file cannot be read.
-            TableFault: a sweep is no pair of numbers, or has no time to go through; no unit has that name.
+            TableFault: a sweep is not a pair of numbers or has no time span; a unit is unknown.
         """
         if "inputs" not in content:
             return in_mm(content, ())
@@ -587,7 +586,7 @@ class Scene(Part):
                 fault = no_such("input", name, known, ("inputs",))
                 if name in TURNS:
                     turn = f'{name} = {{ turns = "chassis", about = "POINT", along = "{TURNS[name]}" }}'
-                    fault.allowed += f"; to have it, {turn} under [inputs] of a mechanism file of your own"
+                    fault.allowed += f"; to define it, write {turn} under [inputs] of your own mechanism file"
                 raise fault
         self.mechanism._driven = tuple(name for name in known if name in self.inputs)
         self._inputs_hold_the_mechanism()
@@ -602,10 +601,10 @@ class Scene(Part):
                 )
 
     def _inputs_hold_the_mechanism(self) -> None:
-        """As many inputs are driven as there are freedoms; whether they hold these is seen when it is built.
+        """Check that as many inputs are driven as there are freedoms; building checks that they hold them.
 
         Raises:
-            TableFault: there are too few or too many, or the points make no mechanism.
+            TableFault: too few or too many inputs, or points that make no mechanism.
         """
         part = self.mechanism
         try:
@@ -617,36 +616,35 @@ class Scene(Part):
         if not missing and not fighting and topology.required_inputs:
             return
         names = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
-        told = [name for name in names if name in self.inputs]
+        given = [name for name in names if name in self.inputs]
         if not part.freedoms:
             askew = askew_hinges(part.structure, part.points)
             exact = f"; if the hinges {', '.join(askew)} are meant to be parallel, draw them exactly so"
-            driven = f"{', '.join(told)} {'is' if len(told) == 1 else 'are'} driven"
+            driven = f"{', '.join(given)} {'is' if len(given) == 1 else 'are'} driven"
             raise TableFault(
                 ("mechanism",),
                 f"the {part.name} is locked: it has no freedom as drawn, "
-                f"{f'and {driven}' if told else 'a structure that nothing moves'}",
-                f"one freedom or more, so leave a rod or a slide out{exact if askew else ''}",
+                f"{f'and {driven}' if given else 'a structure that nothing moves'}",
+                f"at least one freedom: leave out a rod or a slide{exact if askew else ''}",
             )
-        others = ", ".join(name for name in names if name not in told) or "new ones in [mechanism.inputs]"
+        others = ", ".join(name for name in names if name not in given) or "new ones in [mechanism.inputs]"
         words = f"the {part.name} has {part.freedoms} freedom{'' if part.freedoms == 1 else 's'}, and "
-        words += (
-            f"{len(told)} {'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
-        )
-        more = part.freedoms - len(told)
+        listed = f": {', '.join(given)}" if given else ""
+        words += f"{len(given)} {'is' if len(given) == 1 else 'are'} driven{listed}"
+        more = part.freedoms - len(given)
         if more < 0:
-            raise TableFault(("inputs",), words, f"as many inputs as freedoms, so leave {-more} out")
+            raise TableFault(("inputs",), words, f"as many inputs as freedoms: leave out {-more}")
         free = ", ".join(free_directions(topology, part.points, part.directions))
         if not missing:
-            words = f"the inputs {', '.join(fighting)} drive more of the {part.name} than it lets them"
-            allowed = f"one of them less, and instead one of {others}"
-            raise TableFault(("inputs",), f"{words}, and leave free {free}", allowed)
-        allowed = f"as many inputs as freedoms, so drive {more} more of {others}"
-        raise TableFault(("inputs",), f"{words}; free are {free}", allowed)
+            words = f"the inputs {', '.join(fighting)} drive the same freedoms of the {part.name}"
+            allowed = f"one of them less, and one of {others} instead"
+            raise TableFault(("inputs",), f"{words}, so that others stay free: {free}", allowed)
+        allowed = f"as many inputs as freedoms: drive {more} more of {others}"
+        raise TableFault(("inputs",), f"{words}; free: {free}", allowed)
 
     @property
     def reported_points(self) -> tuple[str, ...]:
-        """The points that are reported, in the order of the mechanism's."""
+        """The points that are reported, in the mechanism's order."""
         every = self.mechanism.topology.points
         return tuple(name for name in every if self.points is None or name in self.points)
 
@@ -679,12 +677,12 @@ class Scene(Part):
         """Read a built-in scene by name, or a scene file by path.
 
         Raises:
-            SceneError: there is no such scene, it is not written as it must be, or it is no regular file of
-                at most 64 MB.
+            SceneError: there is no such scene, its content is wrong, or the path is not a regular file of at
+                most 64 MB.
         """
         if not isinstance(name, str | os.PathLike):
             allowed = f"a path, or one of {', '.join(built_in_scenes())}"
-            raise SceneError(shown(name), "", f"is a {type(name).__name__}, and names no scene", allowed)
+            raise SceneError(shown(name), "", f"is a {type(name).__name__}, not the name of a scene", allowed)
         if str(name) in built_in_scenes():
             written = (SCENES / f"{name}.toml").read_bytes()
         else:
@@ -697,13 +695,13 @@ class Scene(Part):
         """Read a scene from an open binary stream, such as `sys.stdin.buffer`.
 
         Raises:
-            SceneError: it is not written as it must be, or has no end within 64 MB.
+            SceneError: the content is wrong, or has no end within 64 MB.
         """
         return cls.from_mapping(parsed(read_stream(stream, source), source), source)
 
 
 def _part_of(mechanism: object) -> MechanismPart | None:
-    """A scene's mechanism; None for what is none, which is told when it is read."""
+    """A scene's mechanism; None if it is invalid, which the scene's checks report."""
     try:
         return MechanismPart.checked(mechanism, "scene")
     except SceneError:
@@ -711,14 +709,14 @@ def _part_of(mechanism: object) -> MechanismPart | None:
 
 
 def _is_no_part(table: Mapping[str, Any]) -> bool:
-    """Whether a table of inputs is no table of a part's: one of its entries is no input."""
+    """Whether a table of inputs is not a part's table: one of its entries is not an input."""
     return not all(
         isinstance(law, Mapping) and not law.keys().isdisjoint((*LAWS, SWEEP)) for law in table.values()
     )
 
 
 def _found_beside(content: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """A scene's content with the paths of its mechanism files counted from a folder, and its tables read."""
+    """A scene's content with paths of mechanism files counted from a folder, and its tables read."""
     content = {**content, "inputs": read_in(content["inputs"], folder)} if "inputs" in content else content
     mechanism = content.get("mechanism")
     if not isinstance(mechanism, dict):

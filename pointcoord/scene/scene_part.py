@@ -1,7 +1,7 @@
-"""What every part of a scene is: a frozen pydantic model, whose faults end as one line that names the key.
+"""Base of every part of a scene: a frozen pydantic model, whose errors become one line that names the key.
 
-The models say what values are allowed, and pydantic checks them. A validator raises ValueError with what does
-not agree, or TableFault to name the place in it.
+The models state which values are allowed, and pydantic checks them. A validator raises ValueError with what
+does not agree, or TableFault to name the place of the fault as well.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ Place = tuple[int | str, ...]
 
 
 def own_number(value: object) -> object:
-    """A number of numpy's, or a fraction, as one of Python's own; a truth or an array is left as it is."""
-    # By its exact type: a float of numpy's is one of Python's too, and would stay what it is.
+    """A numpy number or a fraction as a Python number; booleans and arrays are left as they are."""
+    # Compares the exact type: a numpy float is an instance of `float` as well.
     if type(value) in (float, int) or isinstance(value, bool | np.ndarray | np.complexfloating):
         return value
     if isinstance(value, np.bool_):
@@ -46,7 +46,7 @@ def _own_whole(value: object) -> object:
 
 
 def own_list(value: object) -> object:
-    """What counts as a list, as a tuple: no text and no table."""
+    """Any iterable as a tuple; text and tables are left as they are."""
     if isinstance(value, str | bytes | bytearray | Mapping) or not hasattr(value, "__iter__"):
         return value
     return tuple(value)
@@ -77,18 +77,18 @@ PlainTable = Annotated[dict[str, Any], BeforeValidator(_own_table)]
 
 
 class Part(BaseModel):
-    """A part of a scene, frozen, and checked in whatever way it is made."""
+    """A part of a scene: frozen, and checked however it is made."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     short_forms: ClassVar[tuple[str, ...]] = ()
-    """Keys that `completed` puts others in place of."""
+    """Keys of short forms, which `completed` replaces."""
 
     _checked: dict[str, Any] | None = PrivateAttr(None)
 
     @classmethod
     def checked(cls, content: object, source: str) -> Self:
-        """The part as plain data or as an object, checked.
+        """A checked part, from plain data or from an object.
 
         Raises:
             SceneError: the first fault, with its key; further ones are counted.
@@ -103,13 +103,13 @@ class Part(BaseModel):
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
-        """The content of a part with what short ways of writing stand for, before it is checked."""
+        """The content of a part with its short forms written out, before it is checked."""
         return content
 
     @model_validator(mode="wrap")
     @classmethod
     def _in_whole(cls, content: object, by_keys: ModelWrapValidatorHandler[Self]) -> Self:
-        # Objects are checked again wherever they are put: their dictionaries can be written, for one.
+        # Objects are checked again wherever they are used: their dictionaries may have been changed.
         if isinstance(content, cls):
             content = content._as_given()
         if isinstance(content, Mapping):
@@ -121,7 +121,7 @@ class Part(BaseModel):
         return part
 
     def agree(self) -> None:
-        """Check what the keys make together.
+        """Check that the values of the keys agree with each other.
 
         Raises:
             ValueError: what is wrong.
@@ -129,14 +129,14 @@ class Part(BaseModel):
 
     @property
     def unchanged(self) -> bool:
-        """Whether it is as it was when it was checked: its dictionaries can be written afterwards."""
+        """Whether the part is as it was when checked: its dictionaries can be changed afterwards."""
         return self._checked is not None and self._checked == self.model_dump()
 
     def _as_given(self) -> dict[str, Any]:
         return {name: value for name, value in self if name in self.model_fields_set}
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy with other values, which are checked.
+        """A copy with changed values, which are checked.
 
         Raises:
             SceneError: a value is not allowed, or there is no such key.

@@ -1,1 +1,1 @@
-"""The kinds of constraint; each knows everything about itself."""
+"""The kinds of constraints, one per module."""

@@ -1,8 +1,8 @@
 r"""A constraint: named equations between points, directions and coordinates of y, as data.
 
-Its equations hold no numbers of a particular car; those are in y. What it needs in y beside points, and how
-that is read off a drawing, it has with it: nobody else asks what kind it is. Each kind is a function in a
-file of its own beside this one, which makes a `Constraint`.
+The equations contain no dimensions of a particular car; these are in y. A constraint names the coordinates of
+y that it needs beside points, and computes them from a drawing, so no other code depends on its kind. Each
+kind is a function that makes a `Constraint`, in a module of this package.
 
 An equation is a sum of terms that is zero. A term is a product of two numbers, of a number and a vector, or
 the scalar or vector product of two vectors; a vector is an edge, p_head - p_tail.
@@ -27,11 +27,11 @@ ONE = ""
 
 
 class Term(NamedTuple):
-    """A product of two factors, each the name of a number or an edge.
+    """A product of two factors; each is the name of a number, or an edge.
 
     Attributes:
         coefficient: 1 or -1. cross: whether it is the vector product of two edges.
-        less: a number that is taken off the first factor, which is a number too.
+        less: a number subtracted from the first factor, which is a number too.
     """
 
     coefficient: float
@@ -41,7 +41,7 @@ class Term(NamedTuple):
     less: str = ""
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """The products of its components: one row of a number, three of a vector."""
+        """The products by component: one row for a number, three rows for a vector."""
         c = self.coefficient
         (a, b), (d, e) = _components(layout, self.one, self.less), _components(layout, self.other)
         if self.cross:
@@ -58,7 +58,7 @@ class Term(NamedTuple):
 
 
 def _components(layout: Layout, factor: Factor, less: str = "") -> tuple[Triple, Triple]:
-    """The coordinates whose differences are a vector's components; a number is that of each."""
+    """The coordinates whose differences are a vector's components; for a number, the same for all three."""
     if isinstance(factor, tuple):
         return layout.vector(factor[0]), layout.vector(factor[1])
     place = layout.scalar(factor) if factor else layout.one
@@ -70,7 +70,7 @@ class Equation(NamedTuple):
     """A sum of terms that is zero.
 
     Attributes:
-        label: what messages call it; of a vector with its components behind.
+        label: name in messages; vector equations append the component.
     """
 
     label: str
@@ -89,28 +89,28 @@ class Equation(NamedTuple):
 
 
 def nothing(drawing: Drawing) -> Mapping[str, Placed]:
-    """What a constraint without coordinates of its own reads off a drawing."""
+    """Reads nothing off a drawing: for constraints without coordinates of their own."""
     return {}
 
 
 @dataclass(frozen=True)
 class Constraint:
-    """Equations with a name, and the coordinates of y that belong to them alone.
+    """Named equations, and the coordinates of y that belong to them alone.
 
     Attributes:
-        name: what messages call it.
-        placed: its own coordinates as drawn, by name; a MechanismError where the drawing gives them no value.
-        vectors, slides: unknown vectors and unknown numbers that it brings along.
+        name: name in messages.
+        placed: drawing -> its own coordinates by name; raises MechanismError if the drawing defines no value.
+        vectors, slides: unknown vectors and unknown numbers that the constraint adds.
         constants: numbers of the drawing that its equations need.
         squared_lengths: pairs of points that it keeps at their drawn distance.
-        aligned: points that it puts on one line although they may be drawn beside it: two of the line and a
-            third.
-        segments: pairs of points that a picture of the linkage joins.
-        pivots: points that it reads as what the chassis turns about, and not as joined to anything.
-        may_lock: whether it can be what a motion ends at.
-        holds_a_body: whether it only says how a body is made, and joins it to nothing.
-        slide: the one that it puts a point on the line of; its rows at the drawing are the components of the
-            point's distance from there, which the drawing misses.
+        aligned: three points that it puts on one line, two of the line and a third, though the third may be
+            drawn off the line.
+        segments: pairs of points to be joined in a picture of the linkage.
+        pivots: points that it reads only as centres of rotation of the chassis, without joining them.
+        may_lock: whether a motion can end at this constraint.
+        holds_a_body: whether it only holds a body together.
+        slide: the slide whose line it puts a point on. In the drawing, its rows are the components of the
+            point's distance from the line, the slide's closure error.
     """
 
     name: str
@@ -133,5 +133,5 @@ class Constraint:
         return tuple(label for equation in self.equations for label in equation.labels)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """The rows, in the order of the labels."""
+        """The rows of the map, in the order of the labels."""
         return tuple(row for equation in self.equations for row in equation.rows(layout))

@@ -1,11 +1,11 @@
-"""The driven height of a wheel over the ground, which a moved chassis sees: where up is, how far it has gone.
+"""The driven height of a wheel over the ground, seen from a moved chassis.
 
-The mechanism is solved in the chassis' own frame (see `chassis`). There a turn of the chassis by a about k
-through P turns what is up the other way, and the height of a place x over the ground is
+The mechanism is solved in the chassis' own frame (see `chassis`). There a rotation of the chassis by a about
+k through P rotates the direction up by -a, and the height of a place x over the ground is
 
     x . u_0 + sum_i P_i . (u_i - u_(i-1)) + up . d,      u_m = up,   u_(i-1) = u_i turned by -a_i about k_i
 
-after the turns 1 to m and a displacement d.
+after the rotations 1 to m and a displacement d.
 """
 
 from __future__ import annotations
@@ -36,12 +36,13 @@ UP: Edge = ("up", "")
 
 
 class Ground(NamedTuple):
-    """What heights over the ground are made of; of a chassis that stands still there is none.
+    """Terms of heights over the ground; without terms for a chassis that stands still.
 
     Attributes:
-        up: the direction that is up, in the chassis' frame.
-        lifts: by how much places are higher over the ground than along its up from the mechanism's origin.
-        pivots: what the chassis turns about. constraints: what makes these vectors.
+        up: name of the upward direction in the chassis' frame.
+        lifts: terms to add to a height along `up` from the mechanism's origin, for the height over the
+            ground.
+        pivots: centres of rotation of the chassis. constraints: constraints that define these vectors.
     """
 
     up: str = "up"
@@ -50,13 +51,12 @@ class Ground(NamedTuple):
     constraints: tuple[Constraint, ...] = ()
 
     def turned_back(self, turn: str, axis: str, about: str, cosine: str, sine: str) -> Ground:
-        r"""The ground before a turn of the chassis by the angle a about the unit vector k. Nine rows.
+        r"""The ground before a rotation of the chassis by the angle a about the unit vector k. Nine rows.
 
             t - e x k = 0,    w - k x t = 0,    u - e - sin(a) t + (1 - cos(a)) w = 0,
 
-        with the direction e that is up after it, and u before it, since w is the part of e square to k.
-        Cosine and sine are driven. Bilinear in the direction and the axis, and in the driven pair and what
-        they make.
+        with the upward direction e after the rotation and u before it; w is the part of e normal to k. Cosine
+        and sine are driven. The rows are bilinear: in direction and axis, and in cosine or sine and t or w.
 
         Args:
             about: P, a point of the chassis.
@@ -77,10 +77,10 @@ class Ground(NamedTuple):
         return Ground(before, (*self.lifts, lift), (*self.pivots, about), (*self.constraints, made))
 
     def displaced(self, along: tuple[tuple[str, str], ...]) -> Ground:
-        """With the displacement of the chassis, d - sum_i h_i e_i = 0. Three rows; it lifts by up . d.
+        """The ground with a displacement d of the chassis, d - sum_i h_i e_i = 0; it adds up . d. Three rows.
 
         Args:
-            along: the driven coordinates, each with its direction.
+            along: pairs of a driven coordinate h_i and its direction e_i.
         """
         name = "displacement of the chassis"
         ways = (Term(-1.0, value, (direction, "")) for value, direction in along)
@@ -93,16 +93,16 @@ class Ground(NamedTuple):
 def contact_height(inner: str, centre: str, rise: str, radius: float, ground: Ground) -> Constraint:
     r"""The lowest point of a thin disc of radius r about the axis from `inner` to `centre`. Three rows.
 
-    With the axis w = p_centre - p_inner of drawn length L, a = w . e and q the part of w square to e,
+    With the axis w = p_centre - p_inner of drawn length L, a = w . e and q the part of w normal to e,
 
         a - w . e = 0,    q^2 + a^2 - L^2 = 0,    p_centre . e - (r / L) q - k - rise = 0,
 
-    since the lowest point lies r q / L below the centre. k is the height of the drawing's. Over the ground e
-    is its up, and the last row has what lifts the chassis besides.
+    since the lowest point lies r q / L below the centre. k is the height in the drawing. For heights over the
+    ground, e is the ground's `up`, and the last row also has the ground's `lifts`.
 
     Args:
         rise: the driven coordinate. radius: mm.
-        ground: that the height is over; of a chassis that stands still the chassis' own up.
+        ground: the ground from which the height is measured; by default along the chassis' own up.
     """
     lean, reach = f"rise of the axis to {centre}", f"reach of the axis to {centre}"
     what = ("squared length of the axis", "radius by the length of the axis", "drawn contact height")
@@ -128,7 +128,7 @@ def contact_height(inner: str, centre: str, rise: str, radius: float, ground: Gr
 
 
 def _turned_back(names: Names, axis: str, drawing: Drawing) -> Mapping[str, Placed]:
-    """As drawn, before any turn."""
+    """The drawn vectors, before any rotation."""
     up, k = drawing.vectors["up"], drawing.vectors[axis]
     across = cross(up, k)
     vectors = across, cross(k, across), up
@@ -140,7 +140,7 @@ def _displaced(name: str, drawing: Drawing) -> Mapping[str, Placed]:
 
 
 def _contact(inner: str, centre: str, radius: float, names: Names, drawing: Drawing) -> Mapping[str, Placed]:
-    """The drawn lean and the constants, with what they lack by rounding.
+    """The drawn lean and the constants, with their rounding errors.
 
     Raises:
         MechanismError: the axis has no length, or is drawn upright.
@@ -160,8 +160,8 @@ def _contact(inner: str, centre: str, radius: float, names: Names, drawing: Draw
     share = pair_quotient(size, pair_root(square))
     drop = pair_product(share, reach)
     drawn = pair_sum(pair_dot((place, np.zeros_like(place)), e), minus_pair(drop))
-    # The root loses what the difference under it cancels to; roots, quotients and products round a few
-    # times as often as one product of pairs.
+    # The square root loses the digits that cancel in the difference under it. Roots, quotients and products
+    # of pairs round a few times as much as one product of pairs.
     lost = 8.0 * PAIRS * (1.0 + square[0] / reach2[0])
     sum_of = np.sum(np.abs(place * e[0]), axis=-1) + np.abs(drop[0])
     numbers = (

@@ -1,14 +1,14 @@
 r"""Vectors and points that are fixed in a body.
 
-The body is known by three points with the edges e1 and e2 and the normal n, an unknown of its own:
+A body is known by three points, with the edges e1 and e2 between them and the normal n, an unknown vector:
 
     n - e1 x e2 = 0,      v - a e1 - b e2 - c n = 0,
 
-with constants a, b, c of the drawing for a further point of the body, v = p - p_base, or for the direction d
-of an axis, an unknown too. All rows are quadratic, and they keep their rank as long as the three points are
-not in one line: wherever an axis passes, also along an edge of the triangle, where links to a fourth point of
-the body would lose it. The length of d is between 1/2 and 1 of the mechanism's size, however close the points
-that it is drawn by.
+with constants a, b, c of the drawing. Here v = p - p_base for a further point of the body, or v = d for the
+direction d of an axis, an unknown vector too. All rows are quadratic, and keep their rank as long as the
+three points are not in one line, for any place of the axis. Links to a fourth point would lose their rank for
+an axis along an edge of the triangle. The length of d is between 1/2 and 1 of the mechanism's size, however
+close the two points that define the axis are.
 """
 
 from __future__ import annotations
@@ -38,14 +38,15 @@ from pointcoord.numerics.vectors import cross, lengths
 Array = NDArray[np.float64]
 Triangle = tuple[str, str, str]
 
-# A product with the inverse of a 3 x 3 matrix, and that inverse, round some twenty times relative.
+# Relative rounding: a product with the inverse of a 3 x 3 matrix, and the inverse itself, round about 20
+# times.
 SOLVED = 32.0 * UNIT_ROUNDOFF
 
 
 class Axis(NamedTuple):
-    """An axis that a body carries, drawn from `tail` to `head`.
+    """An axis fixed to a body, drawn from `tail` to `head`.
 
-    Without a tail it is drawn along the direction of the car that the head names.
+    Without a tail, `head` names the direction of the car along which it is drawn.
     """
 
     name: str
@@ -55,7 +56,7 @@ class Axis(NamedTuple):
 
 
 def normal_name(body: str) -> str:
-    """What the normal of a body is called."""
+    """Name of a body's normal vector."""
     return f"normal of the {body}"
 
 
@@ -68,7 +69,7 @@ def normal_of(body: str, triangle: Triangle) -> Constraint:
 
 
 def axis_in_body(axis: Axis, triangle: Triangle) -> Constraint:
-    """An axis that the body of a triangle carries. Three rows; unknown is its direction."""
+    """An axis fixed to the body of a triangle; its direction is unknown. Three rows."""
     name = axis.name
     equation, constants = held_in_body(name, (name, ""), axis.body, triangle)
     read = partial(_axis, axis, triangle, constants)
@@ -76,7 +77,7 @@ def axis_in_body(axis: Axis, triangle: Triangle) -> Constraint:
 
 
 def point_in_body(point: str, body: str, triangle: Triangle) -> Constraint:
-    """A further point of a body, held in its triangle. Three rows."""
+    """A further point of a body, fixed to its triangle. Three rows."""
     name, edge = f"{point} in {body}", (point, triangle[0])
     equation, constants = held_in_body(name, edge, body, triangle)
     read, segment = partial(_point, point, triangle, constants), (triangle[0], point)
@@ -84,7 +85,7 @@ def point_in_body(point: str, body: str, triangle: Triangle) -> Constraint:
 
 
 def held_in_body(label: str, vector: Edge, body: str, triangle: Triangle) -> tuple[Equation, Names]:
-    """v - a e1 - b e2 - c n = 0, bilinear in the constants and edges; and what a, b and c are called."""
+    """v - a e1 - b e2 - c n = 0, bilinear in the constants and edges; and the names of a, b and c."""
     base, first, second = triangle
     edges = (first, base), (second, base), (normal_name(body), "")
     weights = tuple(f"{label} along {head}" for head, _ in edges)
@@ -93,13 +94,13 @@ def held_in_body(label: str, vector: Edge, body: str, triangle: Triangle) -> tup
 
 
 def by_component(names: Names, vector: Placed) -> dict[str, Placed]:
-    """The components of vectors (..., 3) as numbers with names of their own."""
+    """The components of vectors (..., 3) as numbers by name."""
     values, lacks, doubt = (np.asarray(part) for part in vector)
     return {name: Placed(values[..., i], lacks[..., i], doubt[..., i]) for i, name in enumerate(names)}
 
 
 def weights_in_body(drawing: Drawing, vector: Pair, triangle: Triangle, what: str) -> Placed:
-    """(a, b, c) of a drawn vector in a body, what they lack by rounding, and their doubt, each (..., 3).
+    """(a, b, c) of a drawn vector in a body, their rounding error, and their uncertainty, each (..., 3).
 
     Raises:
         MechanismError: the body's triangle is flat.
@@ -127,7 +128,7 @@ def weights_in_body(drawing: Drawing, vector: Pair, triangle: Triangle, what: st
 
 
 def carrier_weights(drawing: Drawing, point: str, triangle: Triangle) -> Placed:
-    """The same of a drawn point from the base of the body."""
+    """(a, b, c) of a drawn point, measured from the base of the body's triangle."""
     return weights_in_body(drawing, drawing.edge(point, triangle[0]), triangle, point)
 
 
@@ -137,7 +138,7 @@ def _normal(name: str, triangle: Triangle, drawing: Drawing) -> Mapping[str, Pla
 
 
 def _axis(axis: Axis, triangle: Triangle, constants: Names, drawing: Drawing) -> Mapping[str, Placed]:
-    """The drawn direction and its constants, with what they lack by rounding.
+    """The drawn direction and its constants, with their rounding errors.
 
     Raises:
         MechanismError: the axis has no direction, or the triangle is flat.
@@ -156,12 +157,12 @@ def _applied(matrix: Array, vector: Array) -> Array:
 
 
 def _unexplained(vector: Pair, columns: tuple[Pair, Pair, Pair], weights: Array) -> tuple[Array, Array]:
-    """vector - sum weights columns, rounded once, and the sum of the magnitudes it is made of; (..., 3)."""
+    """vector - sum weights columns, rounded once, and the sum of the magnitudes of its terms; (..., 3)."""
     total, size = vector, np.abs(vector[0])
     for i, column in enumerate(columns):
         weight = weights[..., i, None]
         part = pair_product((weight, np.zeros_like(weight)), column)
         total, size = pair_sum(total, minus_pair(part)), size + np.abs(part[0])
-    # Both products of a component of e1 x e2 are together no larger than |e1| |e2|.
+    # The two products in a component of e1 x e2 are together at most |e1| |e2|.
     crossed = lengths(columns[0][0]) * lengths(columns[1][0])
     return total[0] + total[1], size + np.abs(weights[..., 2] * crossed)[..., None]

@@ -1,4 +1,4 @@
-"""A point on a line of a body or of the chassis, where it slides, is driven or is held."""
+"""A point on a line of a body or of the chassis: free to slide, driven along the line, or held at a place."""
 
 from __future__ import annotations
 
@@ -17,23 +17,24 @@ from pointcoord.numerics.double_double import PAIRS, Pair, exact_square, pair_do
 
 Array = NDArray[np.float64]
 
-# How many lengths of its line a point may stand along it. With R of them, p_end turns by 1 / R of what the
-# point goes, and R itself takes up the rest: X = C_u^-1 grows as R^2, X C_u bends as R^3 and the tangent as
-# R, so that a proven step, 1 / sqrt(2 omega q) of `assembly`, shrinks as 1 / R^2. A turn of the paper's arm
-# by 1 rad takes 0.036 R^2 steps; that is all of the 2000 that a path may have at R = 235.
+# How many lengths of its line a point may stand from the line's origin. With R lengths, p_end moves by 1 / R
+# of the point's movement, and R itself must take up the rest: X = C_u^-1 grows as R^2, the curvature X C_u as
+# R^3 and the tangent as R. So a proven step, 1 / sqrt(2 omega q) of `assembly`, shrinks as 1 / R^2. A
+# rotation of the paper's arm by 1 rad takes 0.036 R^2 steps, which reaches the limit of 2000 steps at R =
+# 235.
 FARTHEST = 235.0
 
 
 class Line(NamedTuple):
     """A line through the point `origin`, along d.
 
-    Of a line through two points that move, d = p_head - p_origin: no preferred axis, and place |d| is the
-    distance along the line (replaces the paper's eqs. 8-11). Elsewhere d is a vector by the name of `head`,
-    an axis that a body carries or a direction of the chassis.
+    If the line runs through two moving points, d = p_head - p_origin: no preferred axis, and place |d| is the
+    distance along the line (replaces the paper's eqs. 8-11). Otherwise d is the vector named `head`: an axis
+    of a body or a direction of the chassis.
 
     Attributes:
         name: in messages. between: whether it runs through the points `origin` and `head`.
-        axis: the body's axis, if it is one. slide: whose line it is.
+        axis: the body's axis, if it is one. slide: name of the slide it belongs to.
     """
 
     name: str
@@ -45,11 +46,11 @@ class Line(NamedTuple):
 
     @property
     def along(self) -> Edge:
-        """D."""
+        """The vector d along the line, as an edge."""
         return self.head, self.origin if self.between else ""
 
     def drawn(self, drawing: Drawing) -> Pair:
-        """d of the drawing as high and low, (..., 3).
+        """The drawn d as high and low part, (..., 3).
 
         Raises:
             MechanismError: the line has no direction.
@@ -62,12 +63,12 @@ class Line(NamedTuple):
         return line
 
     def length(self, drawing: Drawing) -> Pair:
-        """|d| as high and low, (...,)."""
+        """|d| as high and low part, (...,)."""
         d = self.drawn(drawing)
         return pair_root(pair_dot(d, d))
 
     def foot(self, point: str, drawing: Drawing) -> Array:
-        """The place at which the drawn foot of a point on the line is, in lengths of d, shape (...,)."""
+        """Place of the foot of a drawn point on the line, in lengths of d, shape (...,)."""
         high, _ = self.drawn(drawing)
         line = drawing.vectors[point] - drawing.vectors[self.origin]
         return np.asarray(np.sum(line * high, axis=-1) / np.sum(high * high, axis=-1))
@@ -77,8 +78,8 @@ def on_line(point: str, line: Line, place: str, at: Literal["free", "driven", "h
     r"""p - p_origin - place d = 0, d along the line. Three rows (paper eqs. 13-15, for any direction).
 
     Args:
-        place: where along it the point is, in lengths of d.
-        at: whether the place is free, an unknown; driven; or held as drawn, a constant.
+        place: name of the point's place along the line, in lengths of d.
+        at: whether the place is "free", an unknown; "driven"; or "held" as drawn, a constant.
     """
     name = f"{point} on the {line.name}"
     terms = Term(1.0, (point, line.origin), ONE), Term(-1.0, place, line.along)
@@ -90,7 +91,7 @@ def on_line(point: str, line: Line, place: str, at: Literal["free", "driven", "h
         constants=(place,) if at == "held" else (),
         aligned=(line.origin, line.head, point) if line.between else (),
         segments=((line.origin, point),) if line.between or line.axis else (),
-        # Where what it holds lies square to the line, and nothing drives it.
+        # A motion ends where what the point holds lies normal to the line and nothing drives the point.
         may_lock=at == "free" and not line.between,
         slide=line.slide,
     )
@@ -100,7 +101,7 @@ def _placed(point: str, line: Line, place: str, at: str, drawing: Drawing) -> Ma
     """The place of the point, if it is not driven.
 
     Raises:
-        MechanismError: the drawing does not tell the line, or not well enough for where the point is.
+        MechanismError: the line has no direction, or too uncertain a direction at the point's distance.
     """
     if at == "driven":
         return {}
@@ -113,7 +114,7 @@ def _placed(point: str, line: Line, place: str, at: str, drawing: Drawing) -> Ma
 
 
 def _held(point: str, line: Line, drawing: Drawing) -> Placed:
-    """r with r^2 = |p - p_origin|^2 / |d|^2, to the side of the origin on which the point is drawn."""
+    """r with r^2 = |p - p_origin|^2 / |d|^2, with the sign of the side on which the point is drawn."""
     far, near = drawing.vectors[point], drawing.vectors[line.origin]
     reach, reach_rest = exact_square(far, near)
     if not (reach > 0.0).all():
@@ -129,15 +130,15 @@ def _held(point: str, line: Line, drawing: Drawing) -> Placed:
 
 
 def _require_near(point: str, line: Line, drawing: Drawing, ratio: Array) -> None:
-    """Refuse a point that is too many lengths of its line away."""
+    """Refuse a point that is too many lengths of its line away from the origin."""
     if not (ratio > FARTHEST).any():
         return
     times = float(ratio.max())
     apart = float((drawing.distance(line.origin, line.head) * drawing.unit).flat[int(np.argmax(ratio))])
     raise MechanismError(
         f"{line.origin} and {line.head} are {apart:.3g} mm apart, and {point} is "
-        f"{apart * times:.3g} mm along the line through them, {times:.3g} times as far, so that they do "
-        f"not tell its direction well enough; allowed: at most {FARTHEST:g} times; draw {line.head} at "
+        f"{apart * times:.3g} mm along the line through them, {times:.3g} times as far, so the line's "
+        f"direction is too uncertain there; allowed: at most {FARTHEST:g} times; draw {line.head} at "
         f"least {apart * times / FARTHEST:.2g} mm from {line.origin}",
         [line.origin, line.head, point],
     )

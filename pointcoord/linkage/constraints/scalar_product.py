@@ -34,16 +34,16 @@ WHOLE: Pair = np.array(1.0), np.array(0.0)
 
 
 def scalar_product(name: str, one: Edge, other: Edge, drawn: str = "", driven: str = "") -> Constraint:
-    r"""u . v - k - x = 0, with k as drawn and x driven, where the row has such; or u . u - x^2 = 0. One row.
+    r"""u . v - k - x = 0, with drawn k and driven x, where the row has these; or u . u - x^2 = 0. One row.
 
     An edge runs from its second point to its first; with an empty second name it is a direction of the car
-    or the place of a point. So x is the height of a point over another, with d cos(theta) the paper's arm
-    angle, eq. (12), or over where it is drawn, with k. Of an edge with itself it is a distance, and k the
-    square of one that is kept.
+    or the place of a point. So x is the height of a point over another, as d cos(theta) of the paper's arm
+    angle, eq. (12), or with k the height over its own drawn place. For an edge with itself the row is a
+    distance: x is a driven one, and k the square of a fixed one.
 
     Args:
-        drawn: the name of k; empty for a row without.
-        driven: the driven coordinate x; empty for a row without.
+        drawn: the name of k; empty for a row without k.
+        driven: the driven coordinate x; empty for a row without x.
     """
     read = partial(_square, drawn, one) if one == other else partial(_product, drawn, one, other)
     return _kept(name, one, other, drawn, driven, read if drawn else nothing)
@@ -58,16 +58,16 @@ def link(start: str, end: str) -> Constraint:
 def kept_turn(name: str, one: Edge, other: Edge, drawn: str, line: Edge, own: Edge) -> Constraint:
     r"""u . v = k of an edge u of the one body and v of the other. One row.
 
-    Where the second body's line is drawn off the first one's, closing the drawing turns it onto that, and by
-    nothing about it: by the smallest rotation T of its unit vector m into that of the line l. With
+    If the second body's line is drawn at an angle to the first one's, closing the drawing turns it onto that
+    line, without rotation about it: by the smallest rotation T of its unit vector m into the line's l. With
     c = l . m and w = m x l,
 
         k = u . T v = c u . v + u . (w x v) + (u . w) (w . v) / (1 + c).
 
-    About l the product changes as l . (v x u), so the three may not lie in one plane.
+    With rotation about l the product changes at the rate l . (v x u), so the three must not be coplanar.
 
     Args:
-        line: of the first body, l. own: of the second one, m, in either sense.
+        line: of the first body, l. own: of the second body, m, in either sense.
     """
     return _kept(name, one, other, drawn, "", partial(_turned, drawn, one, other, line, own))
 
@@ -95,10 +95,10 @@ def _product(k: str, one: Edge, other: Edge, drawing: Drawing) -> Mapping[str, P
 
 
 def _square(k: str, edge: Edge, drawing: Drawing) -> Mapping[str, Placed]:
-    """The square of a drawn length lacks five units of rounding at most, which are measured.
+    """The drawn square of a length and its rounding error, which is at most five units.
 
     Raises:
-        MechanismError: both points of a kept distance are in one place.
+        MechanismError: both points of a fixed distance are at one place.
     """
     start, end = (drawing.vectors[name] for name in edge)
     square = np.sum((start - end) ** 2, axis=-1)
@@ -117,6 +117,6 @@ def _turned(k: str, one: Edge, other: Edge, line: Edge, own: Edge, drawing: Draw
     along, across = pair_product(cosine, pair_dot(u, v)), pair_dot(u, pair_cross(w, v))
     more = pair_quotient(pair_product(pair_dot(u, w), pair_dot(w, v)), pair_sum(WHOLE, cosine))
     high, low = pair_sum(along, pair_sum(across, more))
-    # Each of the three is at most |u| |v|, and so is what each of some ten steps rounds.
+    # Each of the three terms is at most |u| |v|; some ten steps each round by at most that.
     size = np.linalg.norm(u[0], axis=-1) * np.linalg.norm(v[0], axis=-1)
     return {k: Placed(high, low, 10.0 * PAIRS * size)}

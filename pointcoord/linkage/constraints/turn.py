@@ -1,4 +1,4 @@
-"""The driven turn of a body about a hinge, from the drawing on."""
+"""The driven rotation of a body about a hinge, measured from the drawing."""
 
 from __future__ import annotations
 
@@ -27,15 +27,16 @@ def turn(
     driven: tuple[str, str],
     carrier: tuple[str, Triangle] | None = None,
 ) -> Constraint:
-    r"""A body turned by an angle about a hinge from its tail to its head, right-handed, with v = p - p_tail.
+    r"""A body rotated about a hinge from its tail to its head, right-handed, with v = p - p_tail.
 
-    Two vectors of the other body are square to the hinge: N = d x v and M = N x d / |d| ... of the drawing,
-    both of one length, M along v's part square to the hinge. Then
+    Two vectors fixed to the other body are normal to the hinge. In the drawing, with d along the hinge, they
+    are N = d x v and M = N x d / |d|. Both have one length, and M is along v's part normal to the hinge. Then
 
         alpha - v . N = 0,    beta - v . M = 0,    cosine alpha - sine beta = 0,
 
-    so that (beta, alpha) points along (cosine, sine), which are driven. Three rows where the other body is
-    the chassis, whose N and M are constants. Another carries them in its triangle: six rows more.
+    so that (beta, alpha) points along (cosine, sine), which are driven. There are three rows if the other
+    body is the chassis, since N and M are constants then. Another body holds N and M in its triangle, with
+    six more rows.
 
     Args:
         hinge: tail and head. driven: cosine and sine.
@@ -80,8 +81,8 @@ def _placed(
     across = pair_cross(axis, v)
     if not (np.sum(across[0] ** 2, axis=-1) > 1e-24).all():
         raise MechanismError(
-            f"{point} is drawn on the hinge {tail} - {head}, so it does not tell how far "
-            "its body has turned; draw it off the hinge",
+            f"{point} is drawn on the hinge {tail} - {head}, so the rotation of its body cannot be measured "
+            "at it; draw it off the hinge",
             (point, tail, head),
         )
     length = pair_root(pair_dot(axis, axis))
@@ -89,7 +90,7 @@ def _placed(
     found: dict[str, Placed] = {}
     for (vector, part, constants), pair in zip(own, (across, along), strict=True):
         found[part] = Placed(np.sum(v[0] * pair[0], axis=-1))
-        # Products of vectors that are at most 1 long, and a quotient of one by another.
+        # Products of vectors of length at most 1, and a quotient.
         numbers = Placed(*pair, np.full_like(pair[0], 8.0 * PAIRS))
         if carrier:
             found[vector] = Placed(pair[0])

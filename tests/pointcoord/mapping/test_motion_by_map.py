@@ -106,7 +106,7 @@ def test_near_a_fold_what_no_patch_covers_is_refused_with_its_place(
     monkeypatch.setattr(way_map, "HALVINGS", {1: 3})
     far = standing(make_scene([1.6])).reach["rack"][1].value
     scene = make_scene([1.6], [0.0, 0.99 * far], stop=1.0, samples=41, effects=RATES)
-    with pytest.raises(MotionNotMapped, match=r"does not cover their way after t = .*a fold") as caught:
+    with pytest.raises(MotionNotMapped, match=r"does not cover their path after t = .*a fold") as caught:
         simulate(scene, "map")
     error = caught.value
     assert set(error.inputs) == {"arm_angle", "rack"}

@@ -45,7 +45,7 @@ def test_a_drawing_too_crooked_to_close_is_refused_as_a_drawing(
     # The strut's lower point 200 mm in front of its line: no input is to blame, the drawing is.
     x, y, z = table["strut_lower"]
     with pytest.raises(
-        AssemblyError, match=r"the drawing cannot be assembled.*; draw these nearer to closing"
+        AssemblyError, match=r"the drawing cannot be assembled.*; draw the points of these closer"
     ) as caught:
         simulate(make_scene(points={**table, "strut_lower": (x - 200.0, y, z)}))
     assert caught.value.reduce == ""

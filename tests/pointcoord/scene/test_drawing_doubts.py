@@ -65,14 +65,14 @@ def test_a_misdrawn_or_swapped_point_is_doubted_with_its_value(
 
 def test_a_point_with_the_wrong_sign_to_the_right_is_doubted_and_a_rack_near_the_middle_is_not() -> None:
     part = Scene.load(WISHBONE).mechanism
-    # A wheel centre across the middle is refused.
+    # A wheel centre beyond the middle is refused.
     for point in {*part.topology.required_points} - {"wheel_centre"}:
         x, y, z = part.points[point]
         for place, wrong in (((x, -y, z), True), ((x, -0.05 * y, z), False)):
             doubts = part.model_copy(update={"points": {**part.points, point: place}}).doubts
-            told = [doubt for doubt in doubts if "across the middle of the car" in doubt]
+            told = [doubt for doubt in doubts if "beyond the middle of the car" in doubt]
             assert [doubt.split(" lies ")[0] for doubt in told] == [point] * wrong
-            assert all(f"{abs(y):.4g} mm across" in doubt for doubt in told)
+            assert all(f"{abs(y):.4g} mm beyond" in doubt for doubt in told)
 
 
 def test_a_car_drawn_forwards_is_doubted_whatever_side_it_is_said_to_be() -> None:

@@ -105,7 +105,7 @@ def test_a_tie_rod_through_the_middle_of_the_car_is_warned_of(
     x, y, z = CAR["tie_rod_inner"]
     (tmp_path / "car.csv").write_text(table({**CAR, "tie_rod_inner": (x, -y, z)}))
     assert main(["import", str(tmp_path / "car.csv")]) == 0
-    assert f"tie_rod_inner lies {y:.4g} mm across the middle of the car" in capsys.readouterr().err
+    assert f"tie_rod_inner lies {y:.4g} mm beyond the middle of the car" in capsys.readouterr().err
 
 
 LEFT_STRUT = chrono("macpherson", STRUT.mechanism.points, -1)

@@ -112,7 +112,7 @@ def test_one(scene):
         (mark("suspension_scenes", "arm-highest-held", near=0.0), "near=0.0 is no number above 0"),
         (
             mark("suspension_scenes", "steer", suspension="double_wishbone"),
-            "no scene is as the mark says; leave `suspension` out",
+            "no scene fits the mark; leave `suspension` out",
         ),
         (
             mark("impossible_scenes", "steer"),
