@@ -1,9 +1,9 @@
-"""Runs the formulations on the same scenes and says how far they agree.
+"""Runs the formulations on the same scenes and reports how far they agree.
 
 from validate import compare
 outcome = compare(Scene.load("bounce"), "pointcoord", "absolute")
 
-Names are imported when they are first used, so that a part of the package costs no more than itself.
+Each name is imported at its first use, so that importing one part of the package does not load the others.
 """
 
 from importlib import import_module
@@ -31,7 +31,7 @@ __all__ = [
 
 DISTRIBUTION = "pointcoord"  # tells this package from others of its name
 
-# Where names are that are no part of the protocol of formulations.
+# The modules of the names that are not in `formulations.protocol`.
 _MODULES = {
     "Comparison": "comparison.compare",
     "NotTested": "testing.assertion",

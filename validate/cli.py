@@ -1,4 +1,4 @@
-"""The program `pointcoord`: its commands, and every way out: what an error means to whoever called it."""
+"""The program `pointcoord`: parses the command line, runs the command, and maps exceptions to exit codes."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ from validate.output.document import program_version, schema_text
 
 DESCRIPTION = """\
 Cross-validation of suspension kinematics: one mechanism is solved by two formulations that
-share no code, and everything that they compute is compared. A mechanism and its motion are a
-scene: `pointcoord scenes` lists those that are built in, and a file of your own has the same
-form."""
+share no code, and all their results are compared. A scene is a mechanism and its motion:
+`pointcoord scenes` lists the built-in scenes, and a file of your own has the same format."""
 
 COMMANDS: Mapping[str, str] = {
     "validate": "comparison",
@@ -42,13 +41,13 @@ COMMANDS: Mapping[str, str] = {
     "study": "study",
     "help": "topics",
 }
-"""Every command: the module of `validate.commands` that it is in."""
+"""Every command, with its module in `validate.commands`."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the program; whatever ends it, one line on standard error says so, and its status is documented.
+    """Run the program and return its exit status. Any error is reported in one line on standard error.
 
-    A defect is told in one line too; `python -X dev` shows where it came from.
+    A defect of the program is reported in one line too; `python -X dev` shows its traceback.
     """
     console = Console()
     try:
@@ -60,20 +59,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if ending is None or (ending[0] is ExitStatus.NOT_FINISHED and sys.flags.dev_mode):
             raise
         status, message = ending
-    # Outside of the handler: memory that the error held on to is free here.
+    # After the except block: memory that the exception kept alive is free here.
     console.complain(message)
     return status
 
 
 def _ending(error: BaseException, console: Console) -> tuple[ExitStatus, str] | None:
-    """Status and message of an error; None for the end that the interpreter itself was asked for."""
+    """Status and message of an exception; None for one that only ends the interpreter, such as SystemExit."""
     for one in _chain(error):
         if isinstance(one, KeyboardInterrupt):
             status = of_interruption(one)
             return status, f"{status.verdict}; {console.left or 'nothing is written'}"
     if not isinstance(error, Exception):
         return None
-    # Imported here: most runs end without an error, and need not have all that can raise one.
+    # Imported here: most runs end without an error and do not need these modules.
     from pointcoord import PointcoordError
     from validate.comparison.examined import told_failure
     from validate.formulations.protocol import FormulationError
@@ -89,7 +88,7 @@ def _ending(error: BaseException, console: Console) -> tuple[ExitStatus, str] | 
 
 
 def _chain(error: BaseException) -> Iterator[BaseException]:
-    """An error and those that it came from: Ctrl-C in the import of a library may end as another error."""
+    """An error and its causes: Ctrl-C during the import of a library may surface as another error."""
     one: BaseException | None = error
     while one is not None:
         yield one
@@ -107,11 +106,11 @@ def _run(words: list[str], console: Console) -> ExitStatus:
 
 
 class Answer(Exception):
-    """The help, the version or the schema was asked for, and nothing else is to be done."""
+    """Raised with the text to print if only the help, the version or the schema is asked for."""
 
 
 class Parser(argparse.ArgumentParser):
-    """Says nothing itself and ends nothing itself: raises UsageError, or Answer of its help."""
+    """A parser that neither prints nor exits: it raises UsageError, or Answer with its help text."""
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message}; see {self.prog} --help")
@@ -146,7 +145,7 @@ ANSWERS: Mapping[str, Callable[[], str]] = {
 
 
 def _parsed(words: Sequence[str]) -> argparse.Namespace:
-    """The options of a command line, whatever order they and the names of scenes stand in."""
+    """The options of a command line; options and scene names may be in any order."""
     name = next(iter(words), "")
     if name in ANSWERS:
         raise Answer(ANSWERS[name]())
@@ -159,26 +158,26 @@ def _parsed(words: Sequence[str]) -> argparse.Namespace:
     try:
         return one.parse_args(words[1:])
     except UsageError:
-        # argparse has a second way for options between names, which knows no commands of commands.
+        # For options between names argparse needs its second method, which does not support subcommands.
         with suppress(UsageError, TypeError):
             return one.parse_intermixed_args(words[1:])
         raise
 
 
 def _scene_instead(name: str) -> str:
-    """What to write where a word that is no command names a scene or some; empty if it does not."""
+    """Advice if the word given as a command names a scene file or built-in scenes; empty if it does not."""
     from pointcoord import built_in_scenes
 
     plain = name.lower().replace("_", "-")
     if name.endswith(".toml"):
-        return f" (a scene's file stands after a command: pointcoord simulate {shown(name)})"
+        return f" (give a command before the scene file: pointcoord simulate {shown(name)})"
     if named := [scene for scene in built_in_scenes() if f"-{plain}-" in f"-{scene}-"]:
-        return f" (there is {' and '.join(named)} among the scenes: pointcoord simulate {named[0]})"
+        return f" (did you mean the scene {' or '.join(named)}? pointcoord simulate {named[0]})"
     return ""
 
 
 def parser(name: str) -> Parser:
-    """The parser of a command. No other one's module is imported: that takes longer than to solve a scene."""
+    """The parser of a command. Only its module is imported: importing all takes longer than a scene."""
     one = Parser(prog=f"pointcoord {name}")
     import_module(f"validate.commands.{COMMANDS[name]}").COMMANDS[name].declare(one, name)
     return one

@@ -1,6 +1,6 @@
-"""A scene's drawing put together: where its points are then, and how far that is from where they are drawn.
+"""Closes the drawing of a scene: moves its points to their positions in the assembled mechanism.
 
-A car that was drawn is another one than the car that is solved, by as much as its points move to close.
+Drawn points often miss the joints a little. The solved car differs from the drawn car by this movement.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ClosedDrawing:
-    """A drawing, solved at its own inputs.
+    """A drawing, solved at the drawn values of its inputs.
 
     Attributes:
-        places: where its points are then, (3,), mm; empty if it cannot be closed.
-        closing: how far they move; None if it cannot be closed.
-        words: what closing does, or why it cannot be done.
+        places: position of each point in the closed drawing, (3,), mm; empty if the drawing cannot be closed.
+        closing: how far the points move; None if the drawing cannot be closed.
+        words: the movement in words, or why the drawing cannot be closed.
     """
 
     scene: Scene
@@ -56,12 +56,12 @@ def closed_drawing(scene: Scene) -> ClosedDrawing:
 
 
 def closed_mechanism(drawing: ClosedDrawing) -> dict[str, Any]:
-    """The flat mechanism with its points where they are when the drawing is closed.
+    """The flat mechanism with its points at their positions in the closed drawing.
 
-    A slide along a direction of the car that is fixed in a moving body turns with it as the drawing closes;
-    so it runs towards a further point of that body.
+    A slide along a fixed direction in a moving body turns with the body as the drawing closes. Such a slide
+    is given a new point of the body to define its direction.
     """
-    # Imported here: a plan and a picture do without it.
+    # Imported here: a plan and a picture do not need it.
     from scipy.spatial.transform import Rotation
 
     plain = drawing.scene.mechanism.plain(tuple(drawing.scene.inputs))
@@ -82,7 +82,7 @@ def closed_mechanism(drawing: ClosedDrawing) -> dict[str, Any]:
 
 
 def closing_of(scene: Scene) -> Closing | None:
-    """How far the drawing's points move; None for one that makes no mechanism or does not close at all."""
+    """How far the points move as the drawing closes; None if it makes no mechanism or cannot be closed."""
     try:
         return closed_drawing(scene).closing
     except PointcoordError:
@@ -90,13 +90,13 @@ def closing_of(scene: Scene) -> Closing | None:
 
 
 def warnings_of(scene: Scene, moved: Closing | None) -> tuple[str, ...]:
-    """What the user should know of a drawing: a car that closing changes, and what looks odd in it."""
+    """Warnings about a drawing: a noticeable movement as it closes, and points that look wrong."""
     changed = (moved.words,) if moved is not None and moved.noticeable else ()
     return (*changed, *scene.mechanism.doubts)
 
 
 def closing_data(moved: Closing | None) -> dict[str, Any] | None:
-    """The movement as plain data, mm."""
+    """The movement of the points as plain data, mm."""
     if moved is None:
         return None
     return {"largest": moved.largest, "point": moved.point, "movements": dict(moved.movements)}

@@ -1,4 +1,4 @@
-"""What can be wrong with what the program is asked for, or with what it asks others."""
+"""Errors of the program: a wrong command line, work that cannot be finished, a solver without an answer."""
 
 from __future__ import annotations
 
@@ -8,22 +8,23 @@ from typing import Any
 
 
 class UsageError(Exception):
-    """The command line is wrong, or a name, a file or a cluster that it gives cannot be used.
+    """The command line is wrong, or it names a scene, file or cluster that cannot be used.
 
-    The message says which, what is wrong with it, and what is allowed.
+    The message names the option or file, and says what is wrong and what is allowed.
     """
 
 
 class NotFinished(Exception):
-    """What was begun cannot be finished: a result cannot be written, a task fails, a cluster is gone.
+    """The program cannot finish: a result cannot be written, a task fails, the cluster is lost.
 
     Args:
-        what: the file, `standard output`, the task or the cluster. problem: why not, and what to try.
+        what: the file, `standard output`, the task or the cluster.
+        problem: what is wrong with it, and what to try.
     """
 
     def __init__(self, what: str, problem: str) -> None:
         self.what, self.problem = what, problem
-        # Both, so that it comes back from another process.
+        # Both arguments, so that the error can be pickled and raised in another process.
         super().__init__(what, problem)
 
     def __str__(self) -> str:
@@ -31,22 +32,22 @@ class NotFinished(Exception):
 
 
 class NoAnswer(Exception):
-    """A tree of joints, a program or another way to solve does not answer for a mechanism.
+    """A spanning tree, a peer program or another solver has no answer for a mechanism.
 
     Args:
         what: the hardpoint, body, input, instant or number at fault.
         problem: what is wrong with it, with the value.
         allowed: what would be right, or what to try.
-        name: of what is at fault; as `what` unless given, and empty if a pose is.
-        value: of an input that is at fault.
-        instant: number of the instant that it is about, None if it is the drawing.
-        wanted, reached: inputs of a pose that is not reached, rad and mm: those asked for, and the last that
-            could be solved.
-        condition: condition number of the rows' Jacobian there.
-        links: what holds each other there, the strongest first.
+        name: name of the part at fault; `what` if not given, empty if a pose is at fault.
+        value: value of the input at fault.
+        instant: index of the instant; None for the drawing.
+        wanted, reached: inputs of a pose that cannot be reached, rad and mm: the requested values, and the
+            last values that could be solved.
+        condition: condition number of the Jacobian of the constraints there.
+        links: the links that lock the mechanism there, the strongest first.
 
     Attributes:
-        partial: the poses that were solved before; None if there are none.
+        partial: the poses solved before the error; None if there are none.
     """
 
     partial: Any = None

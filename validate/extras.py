@@ -1,4 +1,4 @@
-"""What the program needs besides the solver, and what to say where it is not there."""
+"""Optional packages: imports them, and reports one that is missing or does not load."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from pointcoord.errors import MissingLibrary
 
 
 def not_there(part: str, error: ImportError, extra: str = "validate") -> MissingLibrary:
-    """The error of a part of the program that needs a package that is not installed, or does not load.
+    """The error for a part of the program whose package is not installed or does not load.
 
     Args:
         part: the part, such as a formulation's name.
         error: what the import of the package raised.
-        extra: of this distribution, that brings the package.
+        extra: the extra of this distribution that installs the package.
     """
     package = (error.name or part,)
     if isinstance(error, ModuleNotFoundError):
         return MissingLibrary(repr(part), package, extra=extra)
-    # Its cause, where whoever imports the package has already said what to do.
+    # The cause, if the importing module has already replaced the message.
     why = " ".join(str(error.__cause__ or error).split())
-    advice = "install the system's package with the library that is named, or the package itself anew"
-    return MissingLibrary(repr(part), package, f"is there and does not load ({why})", advice=advice)
+    advice = "install the system package of the library named here, or reinstall the Python package"
+    return MissingLibrary(repr(part), package, f"is installed but does not load ({why})", advice=advice)
 
 
 def needed(part: str, module: str, extra: str = "validate") -> Any:
-    """A module that needs packages that the solvers do without.
+    """Import a module that needs packages that the solvers do not need.
 
     Raises:
-        MissingLibrary: they are not there.
+        MissingLibrary: a package is not installed, or does not load.
     """
     try:
         return import_module(module)

@@ -1,4 +1,4 @@
-"""Text that stays text wherever it is shown."""
+"""Makes text safe and short enough to print."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from pointcoord.errors import visible
 
 
 def shown(text: str) -> str:
-    """Text on one line in which nothing acts on a terminal: control characters are shown as escapes."""
+    """Text on one line, with control characters as escapes, so that none acts on the terminal."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def some_of(words: Sequence[str], most: int) -> str:
-    """The first of many, and how many more there are."""
+    """The first `most` words, and the number of the others."""
     more = f" and {len(words) - most} more" if len(words) > most else ""
     return ", ".join(words[:most]) + more
 
 
 def gathered(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
-    """Second words under the first ones that they stand with, both in their order."""
+    """Group pairs by their first word; keys and values keep their order."""
     found: dict[str, list[str]] = {}
     for key, word in pairs:
         found.setdefault(key, []).append(word)
@@ -27,5 +27,5 @@ def gathered(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
 
 
 def one_line(message: str) -> str:
-    """A message without its line breaks, and with no word that is longer than a line."""
+    """A message without line breaks, with any word longer than a line shortened."""
     return visible(" ".join(message.split()))

@@ -16,16 +16,16 @@
 | `scenes()` | a scene of a car with such inputs |
 | `near_singular()` | one instant of a car close to where it locks |
 
-`suspension`, `closure` and `turns` say which cars a solver can be asked.
+`suspension`, `closure` and `turns` restrict the cars to those that a solver can handle.
 
-Numbers are whole where they can be: places in mm, steps of the inputs in hundredths of a radian and in mm. A
-car is a base car with its points moved; the least example is the base car at rest at its drawing, and a
-failing one is made of as few and as small moves as hypothesis finds.
+Numbers are whole where possible: positions in mm, steps of the inputs in hundredths of a radian or in mm.
+A car is a base car with its points moved. The simplest example is the base car at rest at its drawing;
+hypothesis shrinks a failing example to as few and as small moves as possible.
 
-Nothing is drawn and thrown away. What pointcoord refuses is drawn back instead, by halves, towards what it
-accepts: the moves of a car's points towards the base car, a motion towards the drawing at rest, a way to an
-end of an input towards another end, and at last that of the base car. So every draw is an example, and the
-same draws are the same example.
+No example is rejected. If pointcoord refuses one, its moves are halved until pointcoord accepts it: moves of
+a car's points towards the base car, a motion towards rest at the drawing. If an end of an input cannot be
+approached, another end is taken, and finally an end of the base car. So every draw gives an example, and
+equal draws give equal examples.
 """
 
 from __future__ import annotations
@@ -64,10 +64,10 @@ except ModuleNotFoundError as error:
 __all__ = ["inputs", "mechanisms", "near_singular", "scenes"]
 
 STEP = 0.01  # rad
-# Whole coefficients of laws by unit, in steps: offset, and rates; of the mechanism and of the chassis.
+# Limits of the whole coefficients of laws by unit, in steps: offset, rates; of the mechanism and the chassis.
 WITHIN = {"rad": (25, 60), "mm": (20, 60)}
 CHASSIS = {"rad": (10, 40), "mm": (30, 200)}
-# Turns that permute axes and so keep whole numbers: none, then half and quarter turns about each axis.
+# Rotations that permute the axes and keep whole numbers: none, then half and quarter turns about each axis.
 TURNS: tuple[tuple[int, int, int], ...] = (
     (0, 1, 0),
     *((axis, cosine, sine) for axis in range(3) for cosine, sine in ((-1, 0), (0, 1), (0, -1))),
@@ -86,12 +86,13 @@ def mechanisms(
     """Random cars as the `mechanism` of a scene's content: type, closure, side, axes and points, mm.
 
     Args:
-        suspension: such as "double_wishbone", or the path of a scene file (.toml) whose car others are made
-            from; any shipped mechanism if not given.
-        closure: such as "drawn"; any that the mechanism has if not given.
-        reach: how far points lie from the base car's in each coordinate, mm; a fifth of its size if none.
-        turns: whether x, y and z may be other directions of the car than rearward, right and up, as `up` and
-            `right` then say.
+        suspension: such as "double_wishbone", or the path of a scene file (.toml) whose car is the base car;
+            any shipped mechanism if not given.
+        closure: such as "drawn"; any closure of the mechanism if not given.
+        reach: largest move of a point from the base car in each coordinate, mm; a fifth of the car's size if
+            not given.
+        turns: whether the axes may be turned, so that x, y and z are not rearward, right and up; `up` and
+            `right` of the content then give the directions.
     """
     return draw(cars(suspension, closure, reach, turns))[0].mechanism
 
@@ -100,11 +101,11 @@ def mechanisms(
 def inputs(draw: st.DrawFn, mechanism: Mechanism, stop: float = 0.5) -> dict[str, Any]:
     """Random laws for inputs of a car, as the `inputs` of a scene's content; rad, mm and s.
 
-    Any inputs that can drive the car do so, by polynomials or sines about the drawing's own values, and the
-    chassis may move. The car can follow from time 0 to `stop`.
+    Any set of inputs that can drive the car is used, with polynomials or sines about the drawn values. The
+    chassis may move too. The car can follow the laws from time 0 to `stop`.
 
     Args:
-        mechanism: of a scene's content, such as `mechanisms` draws.
+        mechanism: the `mechanism` of a scene's content, such as `mechanisms` draws.
     """
     car = Car.of(mechanism)
     return draw(_laws(car, draw(_driven(car, input_sets(car))), stop))
@@ -119,11 +120,11 @@ def scenes(
     turns: bool = True,
     samples: int = 5,
 ) -> Scene:
-    """Random cars with random inputs about their own drawing, from time 0 on.
+    """Random cars with random motions of the inputs about their drawn values, from time 0 on.
 
     Args:
         suspension, closure, reach, turns: see `mechanisms`.
-        samples: instants.
+        samples: number of instants.
     """
     car, variant = draw(cars(suspension, closure, reach, turns))
     stop = draw(st.sampled_from([0.5, 0.25, 0.0625]))
@@ -141,15 +142,15 @@ def near_singular(
     nearest: float = 1e-6,
     farthest: float = 0.1,
 ) -> Scene:
-    """One instant of a random car, close to where one of its inputs has an end and the mechanism locks.
+    """One instant of a random car, close to the end of an input's range, where the mechanism locks.
 
-    The way from the drawing is open. All inputs move. The nearer, the harder: rates grow as the inverse root
-    of the distance.
+    The pose can be reached from the drawing. All inputs move. The case gets harder towards the end: rates
+    grow as the inverse square root of the distance from it.
 
     Args:
         suspension, closure, reach, turns: see `mechanisms`.
-        nearest, farthest: limits of the distance from the end, in parts of the input's range; 1e-12 < nearest
-            <= farthest <= 0.1.
+        nearest, farthest: limits of the distance from the end, as a fraction of the input's range; 1e-12 <
+            nearest <= farthest <= 0.1.
     """
     known = variants_of(suspension, closure)
     first_of = draw(st.integers(0, len(known) - 1))
@@ -164,18 +165,18 @@ def near_singular(
     steps = {name: draw(st.integers(-50, 50)) for name in names}
     distance = farthest * 10.0**-decades
     others = ((driven, ahead) for driven in reversed(names) for ahead in (False, True))
-    # Near the end that is asked for, then near others of the car, then of its base car.
+    # Try the requested end first, then other ends of the car, then the ends of its base car.
     ways = product((car, variant.base), dict.fromkeys((first, *others)), dict.fromkeys((aside, 0.0)))
     for there, (driven, ahead), beside in ways:
         for share in (distance, 0.1):
             pose = approach(there, variant, names, driven=driven, forward=ahead, aside=beside, distance=share)
             if pose is None:
-                break  # there is no such end, at whatever distance
+                break  # this end does not exist, so another distance does not help
             laws = {n: [pose.inputs[n], steps[n] * _step(there, n)] for n in pose.home if n in names}
             scene = Scene.from_mapping(content_of(there, laws))
             if _is_solved(scene):
                 return scene
-    raise AssertionError("the base car has no open way to an end of an input")  # it has, see the tests
+    raise AssertionError("no end of an input of the base car can be reached")  # the tests show that one can
 
 
 @st.composite
@@ -186,7 +187,7 @@ def cars(
     reach: int | None = None,
     turns: bool = True,
 ) -> tuple[Car, Variant]:
-    """Random cars, see `mechanisms`, each with its variant."""
+    """Random cars, see `mechanisms`, each with the variant of its base car."""
     return draw(_cars_of(draw(st.sampled_from(variants_of(suspension, closure))), reach, turns))
 
 
@@ -221,7 +222,7 @@ def _is_solved(scene: Scene) -> bool:
 
 @st.composite
 def _driven(draw: st.DrawFn, car: Car, sets: Sequence[Sequence[str]]) -> Sequence[str]:
-    """One of the sets of inputs; the first, which the car is accepted by, where that one locks as drawn."""
+    """A random set of inputs; if the car locks with it as drawn, the first set, with which it is accepted."""
     names = draw(st.sampled_from(sets))
     return names if is_accepted(car, names) else sets[0]
 
@@ -231,17 +232,17 @@ def _laws(draw: st.DrawFn, car: Car, names: Sequence[str], stop: float) -> dict[
     home, known = drawn_inputs(car, names), car.structure.inputs
     shapes = {name: draw(_shapes(*WITHIN[known[name].unit])) for name in names}
     for name, one in known.items():
-        # A wheel on the ground may not reach as far as the chassis goes.
+        # The chassis may move farther than a wheel on the ground can follow, so its motion may be left out.
         if one.moves_the_chassis and (shape := draw(st.none() | _shapes(*CHASSIS[one.unit]))) is not None:
             shapes[name], home[name] = shape, 0.0
     for halved in range(HALVED + 1):
         share = 0.5**halved if halved < HALVED else 0.0
-        # The least digits that can be read, but for the drawing itself.
+        # Few digits, so that an example is easy to read; but the exact values for rest at the drawing.
         at = {name: round(value, 6) if share else value for name, value in home.items()}
         laws = {n: _law(shape, at[n], share * _step(car, n)) for n, shape in shapes.items()}
         if _is_solved(Scene.from_mapping(content_of(car, laws, stop=stop, samples=5))):
             return laws
-    raise AssertionError("an accepted car cannot rest at its drawing")  # it is accepted because it can
+    raise AssertionError("an accepted car cannot rest at its drawing")  # the car was accepted because it can
 
 
 def _step(car: Car, name: str) -> float:
@@ -250,13 +251,16 @@ def _step(car: Car, name: str) -> float:
 
 @st.composite
 def _shapes(draw: st.DrawFn, reach: int, rate: int) -> tuple[Sequence[int], int]:
-    """Whole coefficients of a polynomial from t^0 up, or amplitude, phase and offset; and the frequency."""
+    """Three whole numbers and a frequency: polynomial coefficients from t^0 up if the frequency is 0.
+
+    For a sine the three numbers are its offset, its amplitude times the frequency, and its phase.
+    """
     offset, first, second = (draw(st.integers(-size, size)) for size in (reach, rate, rate))
     return (offset, first, second), draw(st.integers(0, 8))
 
 
 def _law(shape: tuple[Sequence[int], int], middle: float, unit: float) -> dict[str, Any]:
-    """The law of a shape in multiples of a unit, about a value; without a frequency a polynomial."""
+    """The law of a shape about `middle`, in multiples of `unit`: at frequency 0 a polynomial, else a sine."""
     (offset, first, second), frequency = shape
     if not frequency:
         return {"polynomial": [middle + unit * offset, unit * first, unit * second]}

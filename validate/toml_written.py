@@ -1,4 +1,4 @@
-"""Plain data as TOML."""
+"""Writes plain data as TOML."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 
 def written(table: Mapping[str, object], place: tuple[str, ...] = ()) -> list[str]:
-    """The lines of a table: its values, then the tables in it."""
+    """The lines of a table: its values first, then its subtables."""
     inner = {key: value for key, value in table.items() if isinstance(value, Mapping)}
     plain = [f"{key_of(key)} = {value_of(value)}" for key, value in table.items() if key not in inner]
     lines = (["", f"[{'.'.join(map(key_of, place))}]"] if place and plain else []) + plain
@@ -21,7 +21,7 @@ def key_of(key: str) -> str:
 
 
 def value_of(value: object) -> str:
-    """A value on one line; of text that prints, JSON's string is one of TOML."""
+    """A value on one line. A JSON string of printable text is also a valid TOML string."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, bool):

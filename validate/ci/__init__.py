@@ -1,1 +1,1 @@
-"""What a run of comparisons leaves for services that decide on it: test results, summaries, baselines."""
+"""Results of a run of comparisons for continuous integration: test results, summaries, baselines."""

@@ -1,17 +1,17 @@
-r"""Baselines: the solved numbers of a run with what was claimed of them, and what moved since.
+r"""Baselines: the solved numbers of a run with their error bounds, and the numbers that have moved since.
 
-A number that was x0 and is x now, with claimed errors e0 and e, was right both times only if
+A number x0 with error bound e0 in the baseline and x with error bound e now can both be right only if
 
     |x - x0| <= e0 + e + eps^2 M        (see `comparison.tolerance`).
 
-Beyond that bound it has moved: one of the claims is broken. Below it both may be right, and bits may differ.
+Beyond this bound the number has moved: one of the error bounds is wrong. Within the bound both may be right,
+although their bits may differ.
 
-The file is an npz: `format`, `version`, and `head`, a text of JSON, beside arrays `a0`, `a1`, ...; nothing in
-it runs when it is read. The head has `program`, the version that wrote it, and `scenes`. Each of these has
-`scene`, the name that it was run under; `mechanism`, the car's type, axes and points; `motion`, a SHA-256 of
-its inputs and time; and `solutions`. Each of these has `formulation`, and the numbers of its arrays: of
-`times` (s) and `condition`, (N,), and by quantity and name of the `numbers`, (N, 3) or (N,), in the units of
-pointcoord's quantities, and of the `claims` about them.
+The file is an npz with `format`, `version`, `head` (a JSON text), and arrays `a0`, `a1`, ...; reading it runs
+no code. The head has `program`, the version that wrote the file, and `scenes`. A scene has `scene`, its name;
+`mechanism`, the car's type, axes and points; `motion`, a SHA-256 of its inputs and time; and `solutions`. A
+solution has `formulation`, and the indices of its arrays: `times` (s) and `condition`, (N,); `numbers` and
+`claims`, their error bounds, by quantity and name, (N, 3) or (N,), in the units of pointcoord's quantities.
 """
 
 from __future__ import annotations
@@ -40,16 +40,16 @@ Array = NDArray[np.float64]
 
 FORMAT, VERSION = "pointcoord baseline", 1
 PARTS = ("times", "condition", "numbers", "claims")
-"""Of a solution, what stands in arrays of their own."""
+"""The parts of a solution that are stored as arrays."""
 ALLOWED = "a file that --save-baseline wrote"
-NEVER = np.empty(0)  # the instants at which a run gives what it does not give
+NEVER = np.empty(0)  # the instants of a formulation that a run does not have
 
 Standing = Literal["compared", "new", "gone", "not solved now", "another car", "another motion"]
 UNTOLD = ("new", "gone", "not solved now")
-"""Of these a baseline says nothing; of others that are not compared there is no verdict."""
+"""Scenes of which the baseline requires nothing; other scenes that are not compared have no verdict."""
 MoveVerdict = Literal["agrees", "moved", "not tested", "new", "gone"]
 WHY: Mapping[MoveVerdict, str] = {
-    "moved": "by more than both error bounds together",
+    "moved": "by more than the sum of both error bounds",
     "new": "not in the baseline",
     "gone": "in the baseline and not given now",
     "not tested": "one error bound is too wide to test the other",
@@ -58,12 +58,12 @@ WHY: Mapping[MoveVerdict, str] = {
 
 @dataclass(frozen=True)
 class Move:
-    """How far one quantity of one point, body or angle moved since the baseline.
+    """How far one quantity of one point, body or angle has moved since the baseline.
 
     Attributes:
-        row: the formulation's numbers then compared with its numbers now: the difference is the movement, the
-            tolerance what both claims allow; NaN of what only one of the two runs has.
-        verdict: `moved` beyond that; `new` is not in the baseline and `gone` no longer given.
+        row: the comparison of the formulation's numbers then and now: the difference is the movement, the
+            tolerance is the sum of both error bounds; NaN if only one of the two runs has the number.
+        verdict: `moved` if beyond the tolerance; `new` if not in the baseline; `gone` if no longer given.
     """
 
     row: Comparison
@@ -71,19 +71,19 @@ class Move:
 
     @property
     def formulation(self) -> str:
-        """Whose numbers they are."""
+        """The formulation that gives the numbers."""
         return self.row.first
 
 
 @dataclass(frozen=True)
 class Since:
-    """A scene against the baseline.
+    """A scene compared with the baseline.
 
     Attributes:
-        standing: whether it could be compared, and why not.
-        words: more of that, such as what of the car is another, or that a formulation is.
-        replaced: whether the run has another formulation in the place of one of the baseline's. Under another
-            name it may be another solver: whether its numbers moved cannot be said.
+        standing: whether the scene could be compared, and if not, why.
+        words: details, such as which parts of the car differ, or which formulation was replaced.
+        replaced: whether the run has a formulation that the baseline lacks in place of one of the baseline's.
+            A different name may be a different solver, so whether its numbers have moved is not known.
     """
 
     scene: str
@@ -94,37 +94,37 @@ class Since:
 
     @property
     def compared(self) -> bool:
-        """Whether any number could be held to the baseline."""
+        """Whether any number could be compared with the baseline."""
         return any(move.verdict not in ("new", "gone") for move in self.moves)
 
     @property
     def moved(self) -> tuple[Move, ...]:
-        """What moved beyond what both claims allow."""
+        """The numbers that moved by more than the sum of both error bounds."""
         return tuple(move for move in self.moves if move.verdict == "moved")
 
     @property
     def lost(self) -> tuple[Move, ...]:
-        """What a formulation gave then that is in this run too, and does not give now."""
+        """The numbers that a formulation of this run gave in the baseline and does not give now."""
         here = {move.formulation for move in self.moves if move.verdict != "gone"}
         return tuple(move for move in self.moves if move.verdict == "gone" and move.formulation in here)
 
     @property
     def status(self) -> ExitStatus:
-        """What the scene's movement alone would end the run with.
+        """The exit status of the scene's movement alone.
 
-        A scene that is new or that is refused now says nothing of movement; the latter is told of anyway. So
-        are the numbers of a formulation that this run does not ask, unless it asks another one in its place.
+        A scene that is new, or refused now, has no movement; a refusal has its own status. Numbers of a
+        formulation that this run does not use are ignored, unless another formulation replaces it.
         """
         if self.moved or self.lost:
             return ExitStatus.DISAGREE
         tested = self.compared and all(move.verdict != "not tested" for move in self.moves)
-        told = self.standing in UNTOLD or (tested and not self.replaced)
-        return ExitStatus.AGREE if told else ExitStatus.NO_VERDICT
+        decided = self.standing in UNTOLD or (tested and not self.replaced)
+        return ExitStatus.AGREE if decided else ExitStatus.NO_VERDICT
 
 
 @dataclass(frozen=True)
 class Kept:
-    """What a baseline keeps of a scene; see the file's description."""
+    """A scene in a baseline; see the description of the file at the top of this module."""
 
     mechanism: Mapping[str, Any]
     motion: str
@@ -132,7 +132,7 @@ class Kept:
 
     @classmethod
     def of(cls, scene: Scene, outcomes: Iterable[Outcome]) -> Kept:
-        """Of a scene that was compared: each formulation's solution once, as a comparison takes it."""
+        """A compared scene: the usable solution of each formulation, once."""
         solutions: dict[str, Solution] = {}
         for solution in (solution for outcome in outcomes for solution in outcome.solutions):
             solutions.setdefault(solution.formulation, solution)
@@ -146,10 +146,10 @@ class Kept:
 
 @dataclass(frozen=True)
 class Baseline:
-    """What a run solved once.
+    """The numbers of an earlier run.
 
     Attributes:
-        target: the file. program: version of the program that wrote it. scenes: by name.
+        target: the file. program: version of the program that wrote it. scenes: the scenes by name.
     """
 
     target: str
@@ -157,18 +157,20 @@ class Baseline:
     scenes: Mapping[str, Kept]
 
     def since(self, name: str, scene: Scene, outcomes: Sequence[Outcome], factor: float = 1.0) -> Since:
-        """What of a scene moved.
+        """Compare a scene with the baseline.
 
         Args:
-            outcomes: all that the scene was compared in now. factor: how many times the bound is allowed.
+            outcomes: all comparisons of the scene in this run. factor: multiple of the bound that is allowed.
         """
         then, now = self.scenes.get(name), Kept.of(scene, outcomes)
         if then is None:
             return Since(name, "new", f"{name} is not in the baseline")
         if other := ", ".join(_differing(then.mechanism, now.mechanism)):
-            return Since(name, "another car", f"{name} is another car than in the baseline: {other}")
+            return Since(
+                name, "another car", f"{name} is a different car in the baseline; differences: {other}"
+            )
         if now.motion != then.motion:
-            words = f"{name} has other inputs or another time than in the baseline"
+            words = f"{name} has different inputs or another time in the baseline"
             return Since(name, "another motion", words)
         if not outcomes:
             return Since(name, "not solved now", f"{name} is in the baseline and has no comparison now")
@@ -178,14 +180,14 @@ class Baseline:
         if not lacking or not others:
             return Since(name, "compared", "", moves)
         words = (
-            f"{name} has another formulation than in the baseline: {others} in the place of {lacking}, of "
-            "which no number could be compared with it"
+            f"{name} has another formulation than in the baseline, {others} instead of {lacking}, so their "
+            "numbers cannot be compared"
         )
         return Since(name, "compared", words, moves, replaced=True)
 
 
 def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[Since]) -> dict[str, Any]:
-    """A run against its baseline as plain data."""
+    """The comparison of a run with its baseline as plain data."""
     return {
         "file": baseline.target,
         "program": baseline.program,
@@ -213,7 +215,7 @@ def _moves(
 ) -> Iterator[Move]:
     before, after = ({one.formulation: one for one in some} for some in (then, now))
     for formulation in dict.fromkeys((*after, *before)):
-        # A run that has no such formulation has no number of it.
+        # A run without this formulation has no numbers of it.
         nothing = Solution(formulation, NEVER, {}, Accuracy(NEVER))
         one, two = before.get(formulation, nothing), after.get(formulation, nothing)
         asked = {q: tuple({**one.numbers.get(q, {}), **two.numbers.get(q, {})}) for q in QUANTITIES}
@@ -228,7 +230,7 @@ def _verdict(row: Comparison, then: Solution) -> MoveVerdict:
 
 
 def _differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
-    """The keys of a car that are other ones, and of its points those that are."""
+    """The keys and the points of a car that differ."""
     for key in sorted(then.keys() | now.keys()):
         before, after = then.get(key), now.get(key)
         if isinstance(before, Mapping) and isinstance(after, Mapping):
@@ -238,7 +240,7 @@ def _differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]
 
 
 def written(scenes: Mapping[str, Kept]) -> bytes:
-    """The file of a baseline, of scenes by name; one of 100 instants takes half a megabyte."""
+    """The file of a baseline with some scenes, by name; a scene of 100 instants takes half a megabyte."""
     arrays: dict[str, Any] = {}
 
     def number_of(array: Array) -> int:
@@ -266,7 +268,7 @@ def written(scenes: Mapping[str, Kept]) -> bytes:
 
 
 def _each(content: Any, change: Callable[[Any], Any]) -> Any:
-    """Arrays by quantity and name, or one, each changed into its number in the file or back."""
+    """Apply `change` to an array, or to each array of a mapping: from array to index in the file, or back."""
     if isinstance(content, Mapping):
         return {key: _each(value, change) for key, value in content.items()}
     return change(content)
@@ -276,26 +278,26 @@ def read_baseline(target: str) -> Baseline:
     """Read a baseline.
 
     Raises:
-        UsageError: there is none, it is damaged, or it is of another version.
+        UsageError: the file cannot be read, is damaged, or has another version.
     """
     try:
         with open(target, "rb") as stream, np.load(stream, allow_pickle=False) as file:
             found = {name: file[name] for name in file.files}
     except OSError as error:
         raise _unusable(target, f"cannot be read ({error.strerror or error})") from None
-    except Exception:  # what other bytes than those of an npz file end with is of many kinds
-        raise _unusable(target, "is no npz file, or a damaged one") from None
+    except Exception:  # a damaged npz file raises many kinds of errors
+        raise _unusable(target, "is not an npz file, or a damaged one") from None
     if str(found.get("format", "")) != FORMAT:
-        raise _unusable(target, "holds no baseline")
+        raise _unusable(target, "contains no baseline")
     if str(found.get("version", "")) != str(VERSION):
         version = shown(str(found.get("version", "none")))
-        raise _unusable(target, f"is of version {version}", f"version {VERSION}; save it again")
+        raise _unusable(target, f"has version {version}", f"version {VERSION}; save the baseline again")
     try:
         head = json.loads(str(found["head"]))
         scenes = {one["scene"]: _kept(one, found) for one in head["scenes"]}
         return Baseline(target, str(head["program"]), scenes)
-    except Exception as error:  # likewise of a head that is not ours
-        raise _unusable(target, f"does not hold a whole baseline ({shown(str(error))})") from None
+    except Exception as error:  # a foreign head raises many kinds of errors too
+        raise _unusable(target, f"contains no complete baseline ({shown(str(error))})") from None
 
 
 def _kept(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Kept:
@@ -305,7 +307,7 @@ def _kept(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Kept:
         solution = Solution(one["formulation"], times, numbers, Accuracy(condition, claims))
         given(solution, solution.times)
         if unknown := solution.numbers.keys() - QUANTITIES.keys():
-            raise ValueError(f"{sorted(unknown)[0]} is no quantity")
+            raise ValueError(f"{sorted(unknown)[0]} is not a quantity")
         solutions.append(solution)
     return Kept(head["mechanism"], head["motion"], tuple(solutions))
 

@@ -1,21 +1,20 @@
-"""A run as JUnit has it: XML that services for continuous integration show as test results.
+"""A run as JUnit XML, which services for continuous integration show as test results.
 
-A suite is a comparison of a scene, and a case of it one quantity of one point, body or angle. The
-`system-out` of a case has a line each for difference, tolerance, instant and difference / tolerance, also
-where it agrees.
+A suite is a comparison of a scene; a case is one quantity of one point, body or angle. The `system-out` of a
+case has a line each for difference, tolerance, difference / tolerance and instant, also if the case passes.
 
 | in the run | in the file |
 |---|---|
 | agrees | a case that passes |
-| disagrees, moved since the baseline, or given then and not now | `failure` |
+| disagrees, moved since the baseline, or given in the baseline and not now | `failure` |
 | not tested, not given, new since the baseline, not run | `skipped`, with the reason |
-| gone with a formulation that this run does not ask | `skipped` |
-| what is given and cannot be used, or tells nothing | `error` |
+| gone with a formulation that this run does not use | `skipped` |
+| given data that cannot be used, or that test nothing | `error` |
 | a scene that cannot be read, is refused, or fails | `error` |
 | another car or another formulation than in the baseline | `error` |
 
-The elements, attributes and their order are those of the schema `junit-10.xsd` of Jenkins' xUnit plugin. It
-asks for no time stamps and no times: the same run gives the same bytes.
+Elements, attributes and their order follow the schema `junit-10.xsd` of Jenkins' xUnit plugin. The schema
+requires no times, and none are written: equal runs give equal bytes.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ KINDS = {"failures": "failure", "errors": "error", "skipped": "skipped"}
 
 @dataclass(frozen=True)
 class _Case:
-    """A test case. `kind` is "" of one that passes; `out` is what it says, line by line."""
+    """A test case. `kind` is "" if the case passes; `out` is its output, line by line."""
 
     name: str
     kind: str = ""
@@ -108,21 +107,21 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
     if row.verdict == "not given":
         return _Case(name, "skipped", row.verdict, f"not given: {row.why}")
     out = _numbers(row, "difference", "tolerance")
-    out = (*out, f"the tolerance rests on: {row.rests_on} ({row.part:.0%} of it)")
+    out = (*out, f"tolerance limited by: {row.rests_on} ({row.part:.0%} of it)")
     if row.verdict == "not tested":
         return _Case(name, "skipped", row.verdict, f"not tested: {row.why}", out)
     if row.verdict == "agrees":
         return _Case(name, out=out)
     message = f"{row.first} and {row.second} disagree: {told_row(row)}"
-    why = tuple(f"what would explain it: {words}" for words in outcome.explained(row))
+    why = tuple(f"possible explanation: {words}" for words in outcome.explained(row))
     return _Case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
 
 
 def _unusable(outcome: Outcome) -> Iterator[_Case]:
-    """What is given of no number that is asked for; and why nothing is said, where no case says it."""
-    told = {row.why for row in outcome.rows}
-    rest = [fault for fault in outcome.faults if fault not in told]
-    yield from (_Case(f"what is given, {i}", "error", UNUSABLE, one) for i, one in enumerate(rest, 1))
+    """Cases for given data that belong to no compared number, and for a scene without a verdict."""
+    reported = {row.why for row in outcome.rows}
+    rest = [fault for fault in outcome.faults if fault not in reported]
+    yield from (_Case(f"given data, {i}", "error", UNUSABLE, one) for i, one in enumerate(rest, 1))
     if outcome.why_no_verdict and not outcome.faults:
         yield _Case("verdict", "error", "no verdict", f"no verdict: {outcome.why_no_verdict}")
 
@@ -133,15 +132,15 @@ def _numbers(row: Comparison, gap: str, bound: str) -> tuple[str, ...]:
         (bound, row.tolerance, row.unit),
         (f"{gap} / {bound}", row.share, ""),
     )
-    told = [
+    lines = [
         f"{what}: {f'{value:.6g} {unit}'.rstrip() if math.isfinite(value) else 'not a number'}"
         for what, value, unit in values
     ]
-    return (*told, f"instant: {when(row)}")
+    return (*lines, f"instant: {when(row)}")
 
 
 def _faults(examined: Examined) -> Iterator[_Case]:
-    """Why a scene has no verdict."""
+    """Cases for the reasons why a scene has no verdict."""
     if examined.problem is not None:
         yield _Case("read", "error", "SceneError", examined.problem)
     for refusal in examined.refusals:

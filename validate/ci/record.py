@@ -1,4 +1,4 @@
-"""What a run has come to so far, without the numbers: what its test results and its summary are made of."""
+"""The results of a run so far, without the solved numbers: the source of test results and summary."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from validate.paper.tables import PaperRow
 if TYPE_CHECKING:  # most runs compare no file
     from validate.measured.comparing import DataOutcome
 
-CUT_OFF = "the run did not come to its end"
+CUT_OFF = "the run did not finish"
 
 
 @dataclass
@@ -26,15 +26,16 @@ class Record:
     """A run of comparisons.
 
     Attributes:
-        names: of all scenes, as they are shown; the examined ones come first.
-        factor: how many times the derived tolerance differences are held to.
-        baseline: that the scenes are held to, if there is one.
-        examined: what came of each scene, in order. since: each against the baseline.
-        scenes: those of them that could be read, by name.
-        files: of results, by the name of the scene whose car they are held to.
-        paper: the paper's printed tables beside ours.
-        kept: what a baseline of this run is made of, by the name of the scene; None where none is asked for.
-        stopped: why the rest was not run.
+        names: names of all scenes, as shown; the examined ones come first.
+        factor: multiple of the derived tolerance that differences are compared with.
+        baseline: the baseline that the scenes are compared with, if any.
+        examined: the results of each scene, in order.
+        since: the comparison of each scene with the baseline.
+        scenes: the scenes that could be read, by name.
+        files: files of results, by the name of the scene that each is compared with.
+        paper: the paper's printed tables compared with computed numbers.
+        kept: the content of a baseline of this run, by scene name; None if no baseline is asked for.
+        stopped: why the remaining scenes were not run.
     """
 
     names: Sequence[str]
@@ -49,7 +50,7 @@ class Record:
     stopped: str = CUT_OFF
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
-        """Take in a scene; the numbers themselves are let go, but for a baseline."""
+        """Add the results of a scene. Its solved numbers are kept only for a baseline."""
         if self.kept is not None and scene is not None and examined.outcomes:
             self.kept.setdefault(examined.name, Kept.of(scene, examined.outcomes))
         printed = None if examined.printed is None else _emptied(examined.printed)
@@ -62,17 +63,17 @@ class Record:
 
     @property
     def ended(self) -> bool:
-        """Whether the run came to its end, be it before its last scene."""
+        """Whether the run ended regularly, possibly before its last scene because of --fail-fast."""
         return not self.not_run or self.stopped != CUT_OFF
 
     @property
     def not_run(self) -> tuple[str, ...]:
-        """The scenes that the run did not come to."""
+        """The scenes that were not run."""
         return tuple(self.names[len(self.examined) :])
 
     @property
     def gone(self) -> tuple[Since, ...]:
-        """The scenes of the baseline that are none of the run's."""
+        """The scenes of the baseline that are not in this run."""
         known = {} if self.baseline is None else self.baseline.scenes
         words = "is gone: it is in the baseline and not in this run"
         return tuple(Since(name, "gone", f"{name} {words}") for name in known if name not in self.names)
@@ -84,19 +85,19 @@ class Record:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What the paper's formulas as printed get wrong."""
+        """The errors of the paper's formulas as printed."""
         return findings([one.printed for one in self.examined if one.printed is not None])
 
     @property
     def status(self) -> ExitStatus:
-        """What the run ends with; one that compares nothing with its baseline tests nothing by it."""
+        """The exit status of the run; a run that compares nothing with its baseline has no verdict."""
         found = [*(one.status for one in self.examined), *(one.status for one in self.since)]
         if self.baseline is not None and not any(one.compared for one in self.since):
             found.append(ExitStatus.NO_VERDICT)
         return combined(found)
 
     def data(self) -> dict[str, Any]:
-        """All of it as plain data."""
+        """The record as plain data."""
         baseline = self.baseline
         return {
             "scenes": [examined_data(one, self.files.get(one.name)) for one in self.examined],
@@ -109,7 +110,7 @@ class Record:
 
 
 def _emptied(outcome: Outcome) -> Outcome:
-    """A comparison, and no more the numbers that it came from."""
+    """A comparison without the solved numbers that it was made from."""
     one, two = (
         replace(solution, numbers={}, accuracy=replace(solution.accuracy, claims={}, usual={}))
         for solution in outcome.solutions
@@ -118,7 +119,7 @@ def _emptied(outcome: Outcome) -> Outcome:
 
 
 def ends_the_run(examined: Examined, since: Since | None) -> bool:
-    """Whether a scene ends a run that ends at the first fault: it disagrees, has moved, or is refused."""
+    """Whether a scene ends a run with --fail-fast: it disagrees, has moved, or is refused."""
     disagrees = any(outcome.disagreements for outcome in examined.outcomes)
     moved = since is not None and since.status is ExitStatus.DISAGREE
     return disagrees or moved or bool(examined.complaint)

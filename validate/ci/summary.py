@@ -1,7 +1,6 @@
-"""A run in Markdown, as services for continuous integration show beside it.
+"""The summary of a run in Markdown, which services for continuous integration show with the run.
 
-Names and messages are text: what could act in Markdown or HTML is written as a character reference, which is
-never part of the markup.
+Names and messages are escaped: characters that could be Markdown or HTML become character references.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from validate.comparison.examined import Examined
 from validate.exit_status import MEANINGS, ExitStatus
 from validate.output.table import Cell, Table, markdown
 
-# A service shows no more than a megabyte of it (GitHub: 1 MiB a step); a line has some 200 characters.
+# Services limit the size of a summary (GitHub: 1 MiB a step); a line has some 200 characters.
 LISTED = 200
 ROWS = 500
 
@@ -39,7 +38,7 @@ def summary(record: Record, status: ExitStatus) -> str:
     more = len(record.examined) - len(rows)
     blocks += [
         Table(HEAD, tuple(rows)).markdown,
-        *([f"and {more} scenes more: --json has them all"] if more else ()),
+        *([f"and {more} more scenes: --json has them all"] if more else ()),
     ]
     for title, of in (
         ("What disagrees", disagreements),
@@ -55,12 +54,12 @@ def summary(record: Record, status: ExitStatus) -> str:
 
 
 def _row(examined: Examined) -> tuple[str, Cell, str]:
-    name, verdict, told = scene_row(examined)
-    return name, Cell(verdict, verdict=verdict), told.strip()
+    name, verdict, share = scene_row(examined)
+    return name, Cell(verdict, verdict=verdict), share.strip()
 
 
 def _list(title: str, lines: Sequence[str]) -> list[str]:
-    """The first lines of many, as a list; nothing of none."""
+    """The first lines as a list with a title; nothing if there are no lines."""
     if not lines:
         return []
     more = [f"- and {len(lines) - LISTED} more"] if len(lines) > LISTED else []

@@ -1,4 +1,4 @@
-"""The verdict of a run in words, for a terminal, for Markdown and for a page."""
+"""The verdict of a run in words, for the terminal, the Markdown summary and the HTML page."""
 
 from __future__ import annotations
 
@@ -27,26 +27,29 @@ from validate.output.report import (
 from validate.plain_text import gathered, shown, some_of
 from validate.solvers.plain import SolverFailed
 
-NAMED = 10  # scenes that a sentence names of each verdict
-NUMBERS = 8  # numbers in a sentence: the table's notes have them all
+NAMED = 10  # largest number of scenes that a sentence names for each verdict
+NUMBERS = 8  # largest number of numbers in a sentence: the notes of the table have them all
 NOT_TESTED = "not tested"
 NEXT = {
-    "refused": "pointcoord plan {} says how far each input can go and what holds it there",
-    ExitStatus.WRONG_INPUT.verdict: "mend {} as the message about it says",
-    "failed": "report what failed on {}, with its file",
+    "refused": "pointcoord plan {} shows how far each input can go and what stops it",
+    ExitStatus.WRONG_INPUT.verdict: "correct {} as its message says",
+    "failed": "report the failure on {}, with its file",
 }
 """What to do about a scene that was not tested, by the reason."""
-# The line of a scene tells of the last verdict that any of its numbers has.
+# The line of a scene shows the number whose verdict is last in this order.
 OF_THE_LINE = ("not given", NOT_TESTED, "agrees", "disagrees")
 
 
 def word(status: ExitStatus) -> str:
-    """The verdict of a status on what was compared."""
+    """The verdict that belongs to an exit status."""
     return {ExitStatus.AGREE: "agrees", ExitStatus.DISAGREE: "disagrees"}.get(status, NOT_TESTED)
 
 
 def standing(examined: Examined) -> tuple[str, str]:
-    """The verdict on a scene, and why there is none, in a word or two; empty where claims are too wide."""
+    """The verdict on a scene, and the reason if it was not tested: wrong input, failed or refused.
+
+    The reason is empty if the scene was solved, but error bounds are too wide to test it.
+    """
     status = examined.status
     if word(status) != NOT_TESTED or not examined.complaint:
         return word(status), ""
@@ -56,7 +59,7 @@ def standing(examined: Examined) -> tuple[str, str]:
 
 
 def sentence(record: Record) -> str:
-    """What a run comes to; what does not agree is named."""
+    """The verdict of a run in a sentence, which names everything that does not agree."""
     parts = [*_of_files(record)] if record.files else [*_of_scenes(record)]
     if record.factor != 1.0:
         parts.append(held_to(record.factor))
@@ -83,19 +86,17 @@ def _of_scenes(record: Record) -> Iterator[str]:
     yield from _by_verdict(by_verdict)
     if record.not_run:
         yield f"not run ({record.stopped}): {some_of(record.not_run, NAMED)}"
-    # How much of what is asked for was compared, of a solver that may give what it has.
+    # How many of the requested numbers were compared, for a solver that may give only some of them.
     stated = [outcome.counts for outcome in record.outcomes if outcome.stated]
     counts = {key: sum(one[key] for one in stated) for key in (*get_args(Verdict), "given back")}
     if count := sum(counts[verdict] for verdict in get_args(Verdict)):
         rest = "".join(f", {counts[v]} {v}" for v in ("not given", NOT_TESTED) if counts[v])
-        back = (
-            f", {counts['given back']} of them data that the solver was given" if counts["given back"] else ""
-        )
+        back = f", {counts['given back']} of them input data of the solver" if counts["given back"] else ""
         yield f"{counts['agrees'] + counts['disagrees']} of {count} numbers compared{back}{rest}"
 
 
 def _since(record: Record) -> Iterator[str]:
-    """What moved, went or could not be held to the baseline."""
+    """Numbers and scenes that moved, are gone, or could not be compared with the baseline."""
     if record.baseline is None:
         return
     held = [since for since in record.since if since.compared]
@@ -111,7 +112,7 @@ def _since(record: Record) -> Iterator[str]:
         for formulation, whats in _by_formulation(since.lost).items()
     ]
     if lost:
-        yield f"given then and not now: {'; '.join(lost)}"
+        yield f"given in the baseline and not now: {'; '.join(lost)}"
     yield from (f"no verdict: {since.words}" for since in record.since if since.replaced)
     if record.gone:
         gone = [since.scene for since in record.gone]
@@ -119,31 +120,35 @@ def _since(record: Record) -> Iterator[str]:
 
 
 HEAD = ("scene", "verdict", "largest share of a tolerance, and where")
-"""Of the table of scenes, in a terminal and in Markdown."""
+"""The header of the table of scenes, on the terminal and in Markdown."""
 
 
 def scene_row(examined: Examined) -> tuple[str, str, str]:
-    """A scene in a line: its verdict, the largest share of a tolerance and where, or why there is none."""
+    """Name, verdict, and the largest share of a tolerance with its place, or the reason why there is none."""
     verdict, why = standing(examined)
-    told = why or (silence(examined) if verdict == NOT_TESTED else "")
-    if not told and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
+    text = why or (silence(examined) if verdict == NOT_TESTED else "")
+    if not text and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
         row, outcome = max(rows, key=lambda one: severity(one[0], OF_THE_LINE))
-        told = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
+        text = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
         if outcome is not examined.outcomes[0]:
-            told += f", {outcome.solutions[0].formulation}"
-    return examined.name, verdict, told
+            text += f", {outcome.solutions[0].formulation}"
+    return examined.name, verdict, text
 
 
 def scene_line(row: Sequence[str], seconds: float | str, width: int) -> str:
-    """Such a row, or the head of all, in a terminal, where it is said as soon as the scene is done."""
-    name, verdict, told = row
+    """A row of `scene_row`, or `HEAD`, as a line on the terminal, printed as soon as the scene is done.
+
+    Args:
+        seconds: run time of the scene, or the heading of this column. width: width of the names.
+    """
+    name, verdict, text = row
     took = f"{seconds:>5.1f} s" if isinstance(seconds, float) else seconds.rjust(7)
-    said = verdict.upper() if verdict == "disagrees" else verdict
-    return f"{name.ljust(width)}  {said:<10}  {took}  {told}".rstrip()
+    verdict = verdict.upper() if verdict == "disagrees" else verdict
+    return f"{name.ljust(width)}  {verdict:<10}  {took}  {text}".rstrip()
 
 
 def scene_notes(examined: Examined) -> Iterator[str]:
-    """What stands below the line of a scene: what would explain that it does not agree."""
+    """The lines below the line of a scene: unusable data, and possible explanations of a disagreement."""
     for outcome in examined.outcomes:
         if not outcome.passed:
             yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
@@ -151,22 +156,22 @@ def scene_notes(examined: Examined) -> Iterator[str]:
 
 
 def next_step(record: Record, verbose: bool = False) -> str:
-    """What to do next where something is not as wanted; empty where all is."""
+    """What to do next if a scene does not agree; empty if all agree."""
     by_standing = {standing(one): one for one in record.examined}
     steps = []
     if record.files and record.status is not ExitStatus.AGREE:
-        steps.append("--report DIR draws the file's columns beside ours")
+        steps.append("--report DIR draws the columns of the file with the computed values")
     elif any(not why and verdict != "agrees" for verdict, why in by_standing):
         table = "" if verbose else "-v prints the table of every quantity, "
         steps.append(f"{table}--report DIR makes a page with both models in motion")
     for (_, why), one in by_standing.items():
         solvers = [r.formulation for r in one.refusals if r.error == SolverFailed.__name__]
         if solvers and why == "refused":
-            steps.append(f"mend {solvers[0]} as the message about it says")
+            steps.append(f"correct {solvers[0]} as its message says")
         elif why in NEXT:
             steps.append(NEXT[why].format(one.name))
     if any(since.status is ExitStatus.DISAGREE for since in record.since):
-        steps.append("if the new numbers are right, keep them by --save-baseline FILE")
+        steps.append("if the new numbers are right, save them with --save-baseline FILE")
     return f"Next: {'; '.join(steps)}." if steps else ""
 
 
@@ -174,7 +179,7 @@ Lines = Callable[[Examined], Iterator[str]]
 
 
 def disagreements(examined: Examined) -> Iterator[str]:
-    """What does not agree, the worst first, and what would explain it."""
+    """The numbers that disagree, the worst first, and possible explanations."""
     for outcome in examined.outcomes:
         for row in sorted(outcome.disagreements, key=lambda row: -row.share):
             yield f"{pair_of(outcome)}: {told_row(row)}"
@@ -182,14 +187,14 @@ def disagreements(examined: Examined) -> Iterator[str]:
 
 
 def complaints(examined: Examined) -> Iterator[str]:
-    """Why there is no verdict on a scene."""
+    """Why a scene was not compared."""
     if examined.complaint:
         complaint, why = examined.complaint.removeprefix(f"{examined.name}: "), standing(examined)[1]
         yield f"{why}: {complaint}" if why else complaint
 
 
 def undecided(examined: Examined) -> Iterator[str]:
-    """Of what nothing can be said, and why; what has one reason together."""
+    """The numbers without a verdict, grouped by the reason."""
     for outcome in examined.outcomes:
         yield from (f"{pair_of(outcome)}: {line.strip()}" for line in silent_lines(outcome))
         rows = sorted(outcome.undecided, key=lambda row: row.verdict == "not given")
@@ -198,30 +203,30 @@ def undecided(examined: Examined) -> Iterator[str]:
 
 
 def silence(examined: Examined) -> str:
-    """Why there is no verdict on a scene that was solved, in one line."""
+    """Why a solved scene has no verdict, in one line."""
     whys = dict.fromkeys(line.partition(": ")[2] for line in undecided(examined))
     return "; ".join(islice(whys, 2))
 
 
 def notes(examined: Examined) -> Iterator[str]:
-    """What the user should know of a scene, beside what is told already."""
+    """Warnings and notes on a scene, without those that `undecided` contains."""
     yield from (*examined.warnings, *examined.defaults)
-    told = " ".join(undecided(examined))
+    known = " ".join(undecided(examined))
     for outcome in examined.outcomes:
-        yield from (line for line in (*outcome.missing, *outcome.notes) if line not in told)
+        yield from (line for line in (*outcome.missing, *outcome.notes) if line not in known)
 
 
 def by_scene(record: Record, *lines: Lines) -> list[str]:
-    """Lines of all scenes, each once, with the scenes that it is about."""
-    told = []
+    """The lines of all scenes, equal lines once, each with the names of its scenes."""
+    found = []
     for of in lines:
         scenes = gathered((line, one.name) for one in record.examined for line in of(one))
-        told += [f"{some_of([*dict.fromkeys(names)], NAMED)}: {line}" for line, names in scenes.items()]
-    return told
+        found += [f"{some_of([*dict.fromkeys(names)], NAMED)}: {line}" for line, names in scenes.items()]
+    return found
 
 
 def since_lines(since: Since) -> Iterator[str]:
-    """What of a scene is not as it was in the baseline, the farthest moved first; and how much is."""
+    """Differences of a scene from the baseline, the largest movement first, and the count of the rest."""
     if since.words:
         yield since.words
     for move in sorted(since.moved, key=lambda move: -move.row.share):
@@ -238,5 +243,5 @@ def since_lines(since: Since) -> Iterator[str]:
 
 
 def _by_formulation(moves: Iterable[Move]) -> dict[str, list[str]]:
-    """What the numbers of each formulation are, in words."""
+    """The names of the moved numbers, by formulation."""
     return gathered((move.formulation, about(move.row.quantity, move.row.name)) for move in moves)

@@ -1,7 +1,7 @@
-"""The commands of the program: a file each, or one for those that do nearly the same.
+"""The commands of the program, one file for each command or for a few similar commands.
 
-What a command says of itself and which options it takes stands on its page in `help/`, of which its parser
-is made. `COMMANDS` has those of a file by name: what runs each, which reads the options, calls the room that
-does the work and says what came of it. What it raises is for the one who runs the program: `validate.cli`
-makes a line and a status of it.
+The description and the options of a command are on its page in `help/`; its parser is made from this page.
+`COMMANDS` of a file has its commands by name. The `run` function of a command reads the options, calls the
+package that does the work, and prints the results. If it raises an error, `validate.cli` prints one line and
+sets the exit status.
 """

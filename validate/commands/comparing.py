@@ -1,4 +1,4 @@
-"""What every run of comparisons does: the files and the page that it leaves, however it ends."""
+"""A run of comparisons: writes its result files and its HTML page, however the run ends."""
 
 from __future__ import annotations
 
@@ -21,22 +21,23 @@ from validate.output.document import Ending, Head, Journal, at_the_end
 from validate.output.report import share_of_all
 from validate.plain_text import shown
 
-# What a page is made of is imported where one is made: most runs make none.
+# The modules of the HTML page are imported only where a page is made: most runs make none.
 if TYPE_CHECKING:
     from validate.html.run import Drawings, Run
 
 
 RESULTS = ("--json", "--junit", "--summary", "--save-baseline")
-"""The files that a run of comparisons may leave."""
+"""The options that name result files of a run of comparisons."""
 
 
 @dataclass(frozen=True)
 class Page:
-    """Where the page of a run goes.
+    """The HTML page of a run.
 
     Attributes:
-        with_more: of `pointcoord report`, adds to a run what else is computed for its page; such a run says
-            nothing but the verdict in a sentence, and where the page is.
+        folder: where it is written.
+        with_more: for `pointcoord report`: adds further results to the run for its page. Such a run prints
+            only a sentence with the verdict, and the path of the page.
     """
 
     folder: str
@@ -44,12 +45,12 @@ class Page:
 
     @classmethod
     def of(cls, options: argparse.Namespace) -> Page | None:
-        """The page that `--report` asks for, if it does, found to be possible before anything is solved.
+        """The page that `--report` asks for, or None. Checked before anything is solved.
 
         Raises:
-            MissingLibrary: a page needs the extra `report`.
-            UsageError: the folder has no name, or cannot be a report's.
-            NotFinished: it cannot be written.
+            MissingLibrary: the extra `report`, which a page needs, is not installed.
+            UsageError: the folder has no name, or cannot be used for a report.
+            NotFinished: the folder cannot be written.
         """
         if options.report is None:
             return None
@@ -58,7 +59,7 @@ class Page:
         if not options.report.strip():
             option = "" if "folder" in options else "--report "
             raise UsageError(
-                f"{option}{options.report!r} names no folder; give the path of one, which is made if needed"
+                f"{option}{options.report!r} names no folder; give the path of a folder; it is made if needed"
             )
         for package in ("jinja2", "plotly.offline"):
             needed("report", package, "report")
@@ -67,11 +68,11 @@ class Page:
 
     @property
     def place(self) -> str:
-        """The page itself, for people."""
+        """The path of the page, as printed."""
         return shown(os.path.join(self.folder, "index.html"))
 
     def write(self, run: Run, console: Console) -> Run:
-        """Write the page of a run; returns it with what the page holds beside it."""
+        """Write the page of a run; returns the run with the results that `with_more` added."""
         from validate.html.page import write_report
 
         whole = run if self.with_more is None else self.with_more(run)
@@ -82,10 +83,10 @@ class Page:
 
 @dataclass(frozen=True)
 class Comparing:
-    """A run of comparisons that goes on; `ending.status` is what it ended with.
+    """A run of comparisons in progress; `ending.status` is its exit status.
 
     Attributes:
-        drawings: what a page is made of; None where none is asked for.
+        drawings: the curves and pictures for the page; None if no page is asked for.
     """
 
     record: Record
@@ -94,9 +95,9 @@ class Comparing:
     ending: Ending
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
-        """Take in what came of a scene, and write what there is so far."""
+        """Add the results of a scene, and write all results so far."""
         self.record.add(examined, since, scene)
-        # Of a file's scene no motion is solved.
+        # With --data no motion of the scene is solved.
         if self.drawings is not None and examined.name not in self.record.files:
             self.drawings.add(examined, scene)
         self.journal.keep()
@@ -106,10 +107,10 @@ class Comparing:
 def comparing(
     options: argparse.Namespace, console: Console, record: Record, noun: str = "scene"
 ) -> Iterator[Comparing]:
-    """A run of comparisons; its files are written however it ends, its page if it comes to its end.
+    """A run of comparisons. Its files are written however it ends; its page only after a whole run.
 
     Raises:
-        MissingLibrary, UsageError: there can be no page. NotFinished: a result cannot be written.
+        MissingLibrary, UsageError: the page cannot be made. NotFinished: a result cannot be written.
     """
     drawings, page = None, Page.of(options)
     if page is not None:
@@ -139,10 +140,10 @@ def comparing(
 
 
 def _leave_files(options: argparse.Namespace, record: Record, ending: Ending, console: Console) -> None:
-    """Write what services read, however the run ends, if it came to anything; a baseline of a whole run only.
+    """Write JUnit, summary and baseline if any scene was examined; the baseline only after a whole run.
 
     Raises:
-        NotFinished: one of them cannot be written; the others are tried all the same.
+        NotFinished: a file cannot be written; the others are still tried.
     """
     if not record.examined:
         return
@@ -160,7 +161,7 @@ def _leave_files(options: argparse.Namespace, record: Record, ending: Ending, co
             console.complain(f"baseline {options.save_baseline}: not written, because {why}")
         else:
             attempt(options.save_baseline, written(record.kept))
-    # Most runs leave no such files.
+    # Imported here: most runs do not write these files.
     if options.junit is not None:
         from validate.ci.junit import junit
 
@@ -168,7 +169,7 @@ def _leave_files(options: argparse.Namespace, record: Record, ending: Ending, co
     if options.summary is not None:
         from validate.ci.summary import summary
 
-        # It is the last one, so that it can say that another one is not there.
+        # The summary is last, so that its status reflects a file that could not be written.
         status = record.status if ending.complete else ending.status
         attempt(options.summary, summary(record, ExitStatus.NOT_FINISHED if problems else status))
     if problems:

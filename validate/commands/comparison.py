@@ -39,10 +39,10 @@ from validate.solvers.load import solver_at
 from validate.solvers.plain import PlainSolver
 
 FIRST = "pointcoord"
-# Without names on the command line the paper's own algorithm is compared with the other model too.
+# Without --first and --second the paper's own algorithm is compared with the second model too.
 FURTHER = "pointcoord-newton"
 
-# Kinds of runs by the option that makes one, and the kinds that an option says something of.
+# The kinds of runs, named by the option that selects each, and the kinds that each option is allowed with.
 SCENES, A_SOLVER, A_FILE, TABLES = "scenes alone", "--solver", "--data", "--tables"
 GOES_WITH: Mapping[str, tuple[str, ...]] = {
     "--first": (SCENES,),
@@ -64,11 +64,11 @@ PAGE_WORDS = {
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Compare scenes, a file or tables; each is said, and written as JSON, as soon as it is done."""
+    """Compare scenes, a file or tables. Each result is printed and written as JSON as soon as it is known."""
     kind = require_sense(options)
     if options.tolerance_factor is None:
         options.tolerance_factor = 1.0
-    # Most runs compare no file and no table.
+    # Imported here: most runs compare neither a file nor tables.
     if kind == TABLES:
         from validate.commands.tables import run as run_tables
 
@@ -84,7 +84,7 @@ def require_sense(options: argparse.Namespace) -> str:
     """The kind of a run.
 
     Raises:
-        UsageError: an option is given that says nothing of such a run.
+        UsageError: an option is given that has no effect in such a run.
     """
     kind = next(iter(given(options, TABLES, A_FILE, A_SOLVER)), SCENES)
     for name in given(options, *GOES_WITH):
@@ -99,29 +99,29 @@ def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus
     names, pairs = _names(options), _pairs(options, console)
     require_input_once(names)
     if options.save_baseline == "-":
-        raise UsageError("--save-baseline - is no file; a baseline is not text: give the path of a file")
-    # A baseline may take the place of the one that it was compared with.
+        raise UsageError("--save-baseline - is not a file; a baseline is binary: give the path of a file")
+    # A new baseline may replace the one that the run is compared with.
     kept = {None, options.save_baseline} if options.baseline == options.save_baseline else {None}
     require_results(options, console, RESULTS, [*names, *({options.baseline} - kept)])
     for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
-        formulation(name)  # found before any scene is read
+        formulation(name)  # a wrong name is reported before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
     shown_names = [*map(name_of, names)]
     record, width = Record(shown_names, options.tolerance_factor, baseline), max(map(len, shown_names))
     with (
         _solver(options) as own,
         comparing(options, console, record) as compared,
-        console.progress("scenes", total=len(names), lines="folder" in options) as told,
+        console.progress("scenes", total=len(names), lines="folder" in options) as progress,
     ):
-        # All are read before any is solved.
+        # All scenes are read before any is solved.
         loaded = [_loaded(name, console) for name in names]
-        told_pairs = "; ".join(" and ".join(pair) for pair in pairs)
-        console.say(f"{told_pairs}: {counted_as(len(names), 'scene')}\n")
+        pair_names = "; ".join(" and ".join(pair) for pair in pairs)
+        console.say(f"{pair_names}: {counted_as(len(names), 'scene')}\n")
         if not options.verbose:
             console.say(verdict.scene_line(verdict.HEAD, "time", width))
         for place, (name, scene) in enumerate(zip(names, loaded, strict=True)):
             since, began = None, time.monotonic()
-            told(shown_names[place], place)
+            progress(shown_names[place], place)
             if isinstance(scene, Scene):
                 printed = name in PAPER_SCENES and not own
                 examined = explained(scene, examine(name, scene, pairs, printed, record.factor, own))
@@ -141,10 +141,10 @@ def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus
 
 
 def explained(scene: Scene, examined: Examined) -> Examined:
-    """What came of a scene, with what would explain where it disagrees."""
+    """The results of a scene, with possible explanations of its disagreements."""
     if not any(outcome.disagreements for outcome in examined.outcomes):
         return examined
-    # Most runs have nothing to explain.
+    # Imported here: most runs have no disagreement.
     from validate.diagnosis import explain_outcome
 
     outcomes = (replace(one, explanations=explain_outcome(scene, one)) for one in examined.outcomes)
@@ -153,7 +153,7 @@ def explained(scene: Scene, examined: Examined) -> Examined:
 
 @contextmanager
 def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
-    """The solver of one's own by its name, as long as the run needs it; none if there is none."""
+    """The user's solver of --solver by its name, running until the context ends; empty without --solver."""
     if options.solver is None:
         yield {}
         return
@@ -168,10 +168,10 @@ def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
 
 
 def _names(options: argparse.Namespace) -> list[str]:
-    """The scenes that are named, then those of a folder; where neither is given, all built-in ones."""
+    """The named scenes, then the scenes of --scenes-dir; all built-in scenes if neither is given."""
     folder = [] if options.scenes_dir is None else _scenes_below(options.scenes_dir)
     named = [*options.scenes, *folder] or list(DEFAULT_SCENES)
-    # A scene that is named again would say the same again, under the same name; standard input is refused.
+    # A repeated scene is compared once. Repeated standard input stays in the list, and is refused later.
     return [name for i, name in enumerate(named) if name == STANDARD_INPUT or name not in named[:i]]
 
 
@@ -183,7 +183,7 @@ def _scenes_below(folder: str) -> list[str]:
     """
     try:
         found = sorted(path for path in Path(folder).rglob("*.toml") if path.is_file())
-        problem = "holds no scene" if Path(folder).is_dir() else "is no folder"
+        problem = "contains no scene" if Path(folder).is_dir() else "is not a folder"
     except (OSError, ValueError) as error:
         found, problem = [], f"cannot be read ({error})"
     if not found:
@@ -192,31 +192,31 @@ def _scenes_below(folder: str) -> list[str]:
 
 
 def _pairs(options: argparse.Namespace, console: Console) -> tuple[tuple[str, str], ...]:
-    """Which formulations are compared."""
+    """The pairs of formulations to compare."""
     if "" in (options.first, options.second):
-        raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")
+        raise UsageError(f"--first or --second is empty; there are: {', '.join(NAMES)}")
     if options.solver is not None:
         if options.in_process and options.solver_timeout is not None:
-            raise UsageError("--solver-timeout is no limit of --in-process; leave one of them out")
+            raise UsageError("--solver-timeout has no effect with --in-process; leave one of them out")
         return ((shown(options.solver), options.second or FIRST),)
     first, second = options.first or FIRST, options.second
     if second is None:
         second, why = second_there()
         if second != "absolute":
-            console.warn(f"absolute is missing, {second} stands in for it: {why}")
+            console.warn(f"absolute is not available, {second} is used instead: {why}")
     if options.first is None and options.second is None:
         return (FIRST, second), (FURTHER, second)
     if first == second:
         others = ", ".join(name for name in NAMES if name != first)
         raise UsageError(
-            f"{first!r} is to be compared with itself, which tells nothing; "
+            f"--first and --second are both {first!r}; a formulation compared with itself shows nothing; "
             f"give another --first or --second: {others}"
         )
     return ((first, second),)
 
 
 def _loaded(name: str, console: Console) -> Scene | Examined:
-    """A scene; of one that cannot be read, it is said at once why not."""
+    """Read a scene. If it cannot be read, the reason is printed at once and returned as its result."""
     try:
         return load_scene(name)
     except SceneError as error:
@@ -228,7 +228,7 @@ def _loaded(name: str, console: Console) -> Scene | Examined:
 def _say(
     examined: Examined, since: Since | None, seconds: float, verbose: bool, console: Console, width: int
 ) -> None:
-    """A line for a scene; its tables for who asks for them."""
+    """Print the line of a scene, or with --verbose its tables."""
     if examined.complaint and examined.problem is None:
         console.complain(examined.complaint)
     if not verbose:
@@ -243,7 +243,7 @@ def _say(
 
 
 def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
-    """What all scenes have in common, the verdict, and what to do next."""
+    """Print the warnings, the verdict of the run, and what to do next."""
     for warning in verdict.by_scene(record, lambda one: iter(() if one.complaint else one.warnings)):
         console.warn(warning)
     if verbose:
@@ -260,12 +260,12 @@ def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
         console.say(step)
     if console.quiet and record.status is ExitStatus.NO_VERDICT:
         for one in record.examined:
-            # A complaint has said it of the others.
+            # The complaint of a scene has been printed already.
             if not one.complaint and (why := verdict.silence(one)):
                 console.complain(f"{one.name}: {why}")
         for since in record.since:
             if since.status is ExitStatus.NO_VERDICT:
-                words = since.words or f"{since.scene}: not every number is tested"
+                words = since.words or f"{since.scene}: some numbers are not tested"
                 console.complain(f"no verdict since the baseline: {words}")
 
 

@@ -1,4 +1,4 @@
-"""`pointcoord cost`: what accuracy costs in time, measured and shown."""
+"""`pointcoord cost`: measures run time against accuracy, and reports it."""
 
 from __future__ import annotations
 
@@ -64,17 +64,17 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     )
     with journal.closing() as ending:
         if study is not None:
-            with console.progress("what accuracy costs") as told:
-                for rows in needed("cost", "validate.cost.study").measure(study, told):
+            with console.progress("cost") as progress:
+                for rows in needed("cost", "validate.cost.study").measure(study, progress):
                     report = replace(report, rows=(*report.rows, *rows))
                     write_content(options.rows, frame(report.rows).to_parquet())
                     console.written[options.rows] = counted_as(len(report.rows), "row")
-        ending.status = _told(report, page, options, console)
+        ending.status = _print_and_write(report, page, options, console)
     return ending.status
 
 
 def _study(options: argparse.Namespace, command: str) -> Study:
-    """What is to be measured; everything is found before anything is measured."""
+    """The study to measure. All scenes and methods are loaded before anything is measured."""
     of_study = needed("cost", "validate.cost.scenes")
     registry = needed("cost", "validate.cost.ways.registry")
     ways = registry.WAYS
@@ -96,13 +96,15 @@ def _study(options: argparse.Namespace, command: str) -> Study:
     return study
 
 
-def _told(report: Report, page: Page | None, options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Say and write the report, its JSON apart; the status is that of a run that comes to its end."""
+def _print_and_write(
+    report: Report, page: Page | None, options: argparse.Namespace, console: Console
+) -> ExitStatus:
+    """Print the report and write its files except the JSON; returns the exit status of a finished run."""
     console.show(report.parts())
     if options.csv is not None:
         console.put(options.csv, report.csv(), "the rows")
     if page is not None:
-        # Most runs write no page.
+        # Imported here: most runs write no page.
         from validate.html.page import make_folder
         from validate.html.run import Run
 
@@ -118,12 +120,12 @@ def _told(report: Report, page: Page | None, options: argparse.Namespace, consol
 
 
 def _draw_beside(rows: str, report: Report, console: Console) -> None:
-    """The picture, beside the file of rows."""
+    """Write the picture next to the file of rows."""
     place = str(Path(rows).with_suffix(".svg"))
     try:
         content = report.headline()
     except ImportError:
-        console.note("there is no picture of it: pip install 'pointcoord[plot]' brings matplotlib")
+        console.note("no picture is written: matplotlib is missing; pip install 'pointcoord[plot]'")
         return
     if content is not None:
         console.put(place, content, "the picture")

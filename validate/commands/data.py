@@ -1,4 +1,4 @@
-"""`pointcoord validate --data`: a file of results held to the car of a scene."""
+"""`pointcoord validate --data`: compares a file of results with the car of a scene."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def require_files(options: argparse.Namespace) -> None:
     """Refuse standard input as a file of results, or as the map of one.
 
     Raises:
-        UsageError: it is.
+        UsageError: --data or --map is `-`.
     """
     if STANDARD_INPUT in (options.data, options.map):
         raise UsageError("--data and --map read files; standard input (-) can be the scene only")

@@ -1,4 +1,4 @@
-"""`pointcoord export`: a car as another program's model."""
+"""`pointcoord export`: writes a car as another program's model."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Write the model.
 
     Returns:
-        NO_VERDICT if the drawing cannot be closed, so that there is no home pose.
+        NO_VERDICT if the drawing cannot be closed, since the model then has no home pose.
     """
     target = place_of_result(options, ENDINGS, console, "--mjcf")
     mjcf = needed("export", "validate.peers.mjcf", "peers")

@@ -1,4 +1,4 @@
-"""`pointcoord fit`: the hardpoints that best explain measured curves, or which few of them would."""
+"""`pointcoord fit`: corrections of hardpoints that explain measured curves, or the few that may be wrong."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Fit a scene's hardpoints to a file.
 
     Returns:
-        NO_VERDICT if least squares did not end; of suspects, if nothing explains the file and some did not.
+        NO_VERDICT if least squares did not converge; with --suspects, if nothing explains the file and some
+        fits did not converge.
     """
     require_files(options)
     if options.suspects and options.output is not None:
@@ -51,19 +52,19 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         again += ["--map", options.map]
     if options.accuracy:
         again += ["--accuracy", f"{options.accuracy:g}"]
-    with told_as(name), console.progress("designs", lines=False) as told:
+    with told_as(name), console.progress("designs", lines=False) as progress:
         measured = read_results(options.data, options.map, scene)
         limits = options.bounds, options.prior, options.accuracy
         problem = Problem.of(scene, measured, options.free, *limits)
         numbers, source = len(problem.first), measured.source
-        told_of = "suspected, of" if options.suspects else "fitted to"
-        many = f"{len(problem.free)} coordinates are {told_of} {numbers} numbers"
+        task = "tested as suspects with" if options.suspects else "fitted to"
+        many = f"{len(problem.free)} coordinates are {task} {numbers} numbers"
         console.note(f"{name}: {many}; this may take a while")
         if options.suspects:
-            suspects = suspected(problem, told)
+            suspects = suspected(problem, progress)
             said = said_of_suspects(suspects, name, source)
         else:
-            fit = fit_hardpoints(problem, told=told)
+            fit = fit_hardpoints(problem, told=progress)
             said, corrected = said_of_fit(fit, name, source), corrected_text(fit, name, source)
     console.say(said.text)
     for note in (*measured.notes, *said.notes):

@@ -1,4 +1,4 @@
-"""`pointcoord hard`: the cases that are known to be hard, held to the reference."""
+"""`pointcoord hard`: solves the cases that are known to be hard, and compares them with the reference."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from validate.output.report import counted_as, share_of_all
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Try the cases; each is said, and written as JSON, as soon as it is done."""
+    """Run the cases. Each result is printed, and written as JSON, as soon as it is known."""
     if options.assemblies:
         return count(options, console)
-    # The reference needs packages that the solvers do without.
+    # Imported here: the reference needs packages that the solvers do not need.
     from validate.hard import catalogue
     from validate.hard import report as hard_report
     from validate.hard import run as hard_run
 
     cases = catalogue.chosen(options.cases)
     if options.list and options.report is not None:
-        raise UsageError("--report is about cases that are tried; leave it out with --list")
+        raise UsageError("--report needs solved cases, and --list solves none; leave one of them out")
     require_results(options, console, ("--json",))
     head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
     if options.list:
@@ -75,11 +75,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def count(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Count assemblies; status 3 where two runs do not agree on a scene, or miss the drawing's."""
+    """Count assembly modes; status 3 if two counts of a scene differ, or do not contain the drawn mode."""
     from validate.assemblies import scenes
 
     if others := given(options, "--list", "--report"):
-        raise UsageError(f"{others[0]} is about cases; leave it out with --assemblies")
+        raise UsageError(f"{others[0]} goes with cases only; leave it out with --assemblies")
     require_results(options, console, ("--json",))
     found: list[scenes.SceneCount] = []
     head, names = Head.of("assemblies", options.command), options.cases or scenes.SHIPPED

@@ -1,4 +1,4 @@
-"""`pointcoord import`: hardpoints from another program's file, written as a scene."""
+"""`pointcoord import`: writes the hardpoints of another program's file as a scene."""
 
 from __future__ import annotations
 
@@ -21,48 +21,48 @@ from validate.tables.units import LENGTHS
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Write a scene from another program's file, and say what became of each of its points.
+    """Write a scene from another program's file, and list what each of its points was read as.
 
     Returns:
-        DISAGREE if a static angle that the file prints is not that of its points; the scene is written.
+        DISAGREE if a static angle printed in the file differs from the angle of its points. The scene is
+        written in this case too.
     """
     target = place_of_result(options, TOML, console, read="file")
     if options.names is not None and not os.path.exists(options.names):
         text = names_of(options.file, options.format, options.suspension)
         return to_be_filled_in(options.names, text, console)
-    said = {one.name: getattr(options, one.name) for one in fields(Choices)}
-    found = import_hardpoints(options.file, **said)
+    choices = {one.name: getattr(options, one.name) for one in fields(Choices)}
+    found = import_hardpoints(options.file, **choices)
     name = shown(options.file)
-    told = warnings_of(found.scene, found.stands.closing)
     console.put(target, found.text, "the scene")
     console.say("\n".join(_report(name, found)))
     console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
-    for warning in told:
+    for warning in warnings_of(found.scene, found.stands.closing):
         console.warn(f"{name}: {warning}")
     if found.others:
         others = some_of([shown(point.source) for point in found.others], NAMED)
-        console.note(f"{name}: no points of ours: {others}")
+        console.note(f"{name}: points not recognised: {others}")
     wrong = [check for check in found.angles if check.verdict == "disagrees"]
     for check in wrong:
         console.complain(
-            f"{name}: line {check.line}: {check.words} is printed as {check.printed:g} deg, but the points "
-            f"give {check.drawn:.4f}; allowed: within {check.tolerance:.2g} deg, by the printed digits; are "
-            "these the points, axes and side of this drawing?"
+            f"{name}: line {check.line}: {check.words} is printed as {check.printed:g} deg, but its points "
+            f"give {check.drawn:.4f} deg; allowed: a difference of {check.tolerance:.2g} deg, by its digits; "
+            "check the points, the axes and the side"
         )
     return ExitStatus.DISAGREE if wrong else ExitStatus.AGREE
 
 
 def _report(name: str, found: Imported) -> Iterator[str]:
-    """What the file is, and what became of each of its points and angles."""
+    """The lines of the report: the format of the file, its points and its angles."""
     part = found.scene.mechanism
     width = max(len(point.name) for point in found.points)
     wide = max(len(point.written) for point in found.points)
-    kind = f"a {part.type} of the {part.side} wheel" if part.type else "a mechanism of its own"
+    kind = f"a {part.type} of the {part.side} wheel" if part.type else "a new mechanism"
     yield f"{name}: {found.format.words}, read as {kind}"
     yield from (f"  {fact}" for fact in found.facts)
     for point in found.points:
         yield f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"
-    yield from (f"  no point of ours: {shown(point.source)}" for point in found.others)
+    yield from (f"  point not recognised: {shown(point.source)}" for point in found.others)
     for check in found.angles:
         there = f"the file prints {check.printed:g} deg, its points give {check.drawn:z.4f}"
         yield f"  {check.name}: {there}: {check.verdict}"

@@ -1,4 +1,4 @@
-"""`pointcoord new`: a scene and its mechanism file to start from."""
+"""`pointcoord new`: writes a scene and its mechanism file to start from."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ SCENE_NOTE = """\
 """
 MECHANISM_NOTE = """\
 # A mechanism: which points make a body, what joins the bodies, what can be driven.
-#   [bodies]     a point of two bodies is a ball joint, two points of the same two are a hinge;
+#   [bodies]     a point common to two bodies is a ball joint, two common points are a hinge;
 #                chassis is the ground, every other body has three points or more
-#   [rods]       two points at their drawn distance
+#   [rods]       two points, which keep their drawn distance
 #   [slides]     a point stays on a line of a body, along up, right, down, left, forward, rearward or a point
 #   [inputs]     angle, travel, steers, height, contact, distance, or what moves or turns the chassis
-#   [roles]      knuckle, wheel_axis, steering_axis, inboard, front_and_rear, damper: effects ask for them
-#   [stand_ins]  points that a drawing may leave out, and the ones that then stand in for them
-#   [closures]   entries that a scene's closure puts in the place of those of the same name
-#   [parts]      other mechanisms, with their own names after the part's, such as left.wheel_centre
-# A scene drives as many inputs as there are freedoms: pointcoord plan says how many these are.
+#   [roles]      knuckle, wheel_axis, steering_axis, inboard, front_and_rear, damper: needed by effects
+#   [stand_ins]  points that a drawing may leave out, and the points used in their place
+#   [closures]   entries that replace entries of the same name if the scene gives this closure
+#   [parts]      other mechanisms; their names are prefixed with the part's name, such as left.wheel_centre
+# A scene drives as many inputs as there are degrees of freedom; pointcoord plan prints their number.
 """
 
 
@@ -54,12 +54,12 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + tables
     for target in files:
         if os.path.exists(target):
-            raise UsageError(f"{shown(target)} is there already; allowed: a name of its own")
+            raise UsageError(f"{shown(target)} exists already; allowed: the name of a new file")
         require_writable(target)
     for target, content in files.items():
         console.put(target, content, "the scene or its mechanism")
     console.say(f"{' and '.join(map(shown, files))} written, copied from {shown(copied)}")
-    console.say(f"for another (pointcoord scenes): --from SCENE; try: pointcoord plan {shown(name)}.toml")
+    console.say(f"to copy another (pointcoord scenes): --from SCENE; try: pointcoord plan {shown(name)}.toml")
     return ExitStatus.AGREE
 
 

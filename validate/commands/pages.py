@@ -1,4 +1,4 @@
-"""Commands by their pages in `help/`, which say what each does and takes: a parser is made of them."""
+"""Makes the parser of a command from its page in `help/`, which describes the command and its options."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PAGES = Path(__file__).with_name("help")
 
 
 def summary(name: str) -> str:
-    """What a command does, in a line: the first of its page."""
+    """What a command does: the first line of its page."""
     return _read(name).partition("\n")[0]
 
 
@@ -28,7 +28,8 @@ def page(name: str, words: Mapping[str, object]) -> tuple[str, str]:
     """The description and the options of a command.
 
     Args:
-        words: stand for `$name` in its page, beside the parts of `shared.txt`, in which others may stand.
+        words: replacements of `$name` in the page, in addition to the parts of `shared.txt`; a part may
+            contain further `$name`.
     """
     names_and_parts = re.split(r"\s*^\[(\w+)\]\n", _read("shared").rstrip(), flags=re.M)[1:]
     parts = {**dict(zip(names_and_parts[::2], names_and_parts[1::2], strict=True)), **words}
@@ -44,22 +45,22 @@ def _read(name: str) -> str:
 
 
 def whole(least: int) -> Callable[[str], int]:
-    """Reads a whole number that is not below the least one."""
+    """A reader of whole numbers that are not below `least`."""
 
     def read(word: str) -> int:
         if word.isascii() and word.isdigit() and int(word) >= least:
             return int(word)
-        raise argparse.ArgumentTypeError(f"{shown(word)} is no whole number; allowed: {least} or more")
+        raise argparse.ArgumentTypeError(f"{shown(word)!r}; allowed: a whole number, {least} or more")
 
     return read
 
 
 def positive(word: str) -> float:
-    """Reads a positive, finite number."""
+    """Read a positive, finite number."""
     with suppress(ValueError):
         if 0.0 < (value := float(word)) < math.inf:
             return value
-    raise argparse.ArgumentTypeError(f"{shown(word)!r} is none; allowed: a positive, finite number")
+    raise argparse.ArgumentTypeError(f"{shown(word)!r}; allowed: a positive, finite number")
 
 
 TYPES: Mapping[str, Callable[[str], Any]] = {
@@ -68,23 +69,23 @@ TYPES: Mapping[str, Callable[[str], Any]] = {
     **dict.fromkeys(("S", "F", "MM"), positive),
     **dict.fromkeys(("A", "DEG"), float),
 }
-"""What stands for a number in the options of a command: counts, seconds, factors, accuracies, sizes."""
+"""Reader of an option's value by its placeholder: counts, seconds, factors, accuracies, sizes."""
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command of the program, whose page in `help/` says what it takes.
+    """A command of the program. Its page in `help/` describes its options.
 
-    An entry of its options begins at the beginning of a line: names and what stands for the value, as `TYPES`
-    reads it, then two blanks and what it does. `NAME ...` may be given again, `NAME = 1` has a default, and
-    `[NAME ...]` takes any number of values. An argument is `name=WORD`, one that may be left out
-    `name=[WORD]`, any number of them `name=[WORD ...]`.
+    An entry of an option begins at the start of a line: its names and the placeholder of its value (see
+    `TYPES`), then two blanks and the help text. `NAME ...` may be given again, `NAME = 1` has a default, and
+    `[NAME ...]` takes any number of values. A positional argument is `name=WORD`, an optional one
+    `name=[WORD]`, and any number of them `name=[WORD ...]`.
 
     Attributes:
-        run: does it.
-        words: by name what stands for `$name` in its page.
-        more: what an entry cannot say of an option, as `argparse` takes it.
-        inner: commands of the command; it has no options itself then.
+        run: the function that runs the command.
+        words: the replacement of each `$name` in the page.
+        more: further settings of an option for `argparse`, which an entry cannot express.
+        inner: subcommands; the command then has no options itself.
     """
 
     run: Callable[[argparse.Namespace, Console], ExitStatus]
@@ -93,7 +94,7 @@ class Command:
     inner: Mapping[str, Command] = field(default_factory=dict)
 
     def declare(self, parser: ArgumentParser, name: str) -> None:
-        """Declare what it takes."""
+        """Add the description and the options of the command to a parser."""
         description, options = page(name, self.words)
         parser.description, parser.epilog = description, HELP
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
@@ -109,7 +110,7 @@ class Command:
 
 
 def _argument(entry: str) -> tuple[list[str], dict[str, Any]]:
-    """The names of an option or an argument, and what `argparse` is told of it."""
+    """The names of an option or an argument, and its settings for `argparse`."""
     head, words = re.split(r"\s{2,}", entry, maxsplit=1)
     about: dict[str, Any] = {"help": " ".join(words.replace("%", "%%").split())}
     if not head.startswith("-"):

@@ -1,4 +1,4 @@
-"""`pointcoord report`: scenes validated, and what came of it as a page with its data."""
+"""`pointcoord report`: validates scenes, and writes the results as an HTML page with its data."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from validate.output.console import Console
 from validate.plain_text import shown
 from validate.published.tables import compare_published
 
-# What a report of all built-in scenes tries itself: of each kind of singular place one, and few ways on one
-# scene; some five seconds.
+# Hard cases and cost measurements that a report of all built-in scenes runs: one case of each kind of
+# singular pose, and few methods on one scene. They take about five seconds.
 HARD = ("arm-highest-held-wishbone", "upper-arm-locks-held", "knuckle-in-line-wishbone")
 SCENE, WAYS = "bounce", ("series", "absolute", "relative")
 
@@ -31,11 +31,12 @@ SCENE, WAYS = "bounce", ("series", "absolute", "relative")
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Compare the scenes and write the report."""
     folder = options.folder
-    # A scene in the place of the folder would make a folder of its name.
+    # If the folder is forgotten, the first scene would be taken for it.
     if folder in built_in_scenes() or (folder.endswith(".toml") and not Path(folder).is_dir()):
         raise UsageError(
-            f"{shown(folder)!r} is a scene, and the folder of the report comes first: pointcoord report DIR "
-            f"{shown(folder)}; a folder of that name is given as {shown(os.path.join(os.curdir, folder, ''))}"
+            f"{shown(folder)!r} is a scene, and the first argument is the folder of the report: pointcoord "
+            f"report DIR {shown(folder)}; for a folder of that name, give "
+            f"{shown(os.path.join(os.curdir, folder, ''))}"
         )
     require_sense(options)
     hard = None if options.hard is None else read_hard_cases(options.hard)
@@ -45,7 +46,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def _with_more(hard: HardCases | None, cost: Report | None, console: Console, run: Run) -> Run:
-    """A run with the rest of a report; a run of all that is built in tries some of it itself."""
+    """The run with hard cases and cost added; a run of all built-in scenes also has printed tables."""
     if not run.record.paper:
         return replace(run, hard=hard, cost=cost)
     hard, cost = hard or _some_hard_cases(run, console), cost or _first_look_at_cost(run, console)
@@ -53,7 +54,7 @@ def _with_more(hard: HardCases | None, cost: Report | None, console: Console, ru
 
 
 def _some_hard_cases(run: Run, console: Console) -> HardCases:
-    # The reference and its cases need packages that most commands do without.
+    # Imported here: the reference and its cases need packages that most commands do not need.
     from validate.hard import report as hard_report
     from validate.hard import run as hard_run
     from validate.hard.catalogue import chosen
@@ -66,7 +67,7 @@ def _some_hard_cases(run: Run, console: Console) -> HardCases:
 
 
 def _first_look_at_cost(run: Run, console: Console) -> Report:
-    # So does the study of cost.
+    # Imported here: the study of cost needs packages that most commands do not need.
     from validate.cost.scenes import own_scene, study_scene
     from validate.cost.study import Study, measure
     from validate.cost.table import measured_here
@@ -75,8 +76,8 @@ def _first_look_at_cost(run: Run, console: Console) -> Report:
     command = shlex.join(run.head.command)
     scenes = (study_scene(SCENE, own_scene(SCENE)),)
     study = Study(scenes, ways_named(WAYS), measured_here(command), quick=True)
-    with console.progress("a first look at cost") as told:
-        (rows,) = measure(study, told)
+    with console.progress("a first look at cost") as progress:
+        (rows,) = measure(study, progress)
     return Report("in this run", command, tuple(rows))
 
 

@@ -1,4 +1,4 @@
-"""`pointcoord plan`, `draw` and `scenes`: what is known of a scene before it is solved."""
+"""`pointcoord plan`, `draw` and `scenes`: what is known about a scene before its motion is solved."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from validate.output.picture import svg
 from validate.plain_text import gathered, shown
 
 PICTURES = (".svg",)
-# Positions, velocities and so on, by time derivative.
+# Names of the quantities by order of time derivative: positions, velocities and so on.
 STATES = tuple(
     f"{effect.quantities[0].words}s".replace("ys", "ies")
     for effect in (*ALWAYS, *EFFECTS.values())
@@ -52,7 +52,7 @@ def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Say what a scene would compute, and where its drawing stands."""
+    """Print what a scene computes, its drawn inputs and their ranges."""
     scene, name = load_scene(options.scene), name_of(options.scene)
     with told_as(name):
         scene_mechanism(scene)
@@ -68,8 +68,8 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     if stands.closing.changes_the_car and not scene.mechanism.topology.puts_in_place:
         limit = f"{ALLOWED:.0%} of the car's size, {ALLOWED * stands.closing.size:.3g} mm"
         console.complain(
-            f"{name}: mechanism.points: {stands.closing.words}: that is another car, which is refused; "
-            f"allowed: {limit}; draw the points that miss where they belong"
+            f"{name}: mechanism.points: {stands.closing.words}: this drawing is refused, because the closed "
+            f"car differs too much from it; allowed: {limit}; correct the points that miss"
         )
         return ExitStatus.WRONG_INPUT
     for warning in (*warnings_of(scene, stands.closing), *_out_of_reach(scene, stands)):
@@ -78,7 +78,7 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def _mechanism(scene: Scene, name: str) -> Iterator[str]:
-    """Bodies, joints, freedoms and what can be driven."""
+    """Bodies, joints, degrees of freedom and possible inputs."""
     part, structure, topology = scene.mechanism, scene.mechanism.structure, scene.mechanism.topology
     side = f", {part.side} side" if structure.knuckles.get("knuckle") else ""
     yield f"{name}: {shown(scene.title)}" if scene.title else name
@@ -90,26 +90,26 @@ def _mechanism(scene: Scene, name: str) -> Iterator[str]:
     others = [n for n, one in inputs if n not in (part.driven or ()) and not one.moves_the_chassis]
     could = f"; could be driven as well: {', '.join(others)}" if others else ""
     held = ", ".join(topology.holding_inputs) or "no input"
-    yield f"freedoms: {part.freedoms}, held by {held}{could}"
+    yield f"degrees of freedom: {part.freedoms}, driven by {held}{could}"
     if topology.left_labels:
-        labels, why = ", ".join(topology.left_labels), "each follows from the other equations as drawn"
-        yield f"redundant: {labels}; {why} and is held to at every answer"
+        labels, why = ", ".join(topology.left_labels), "as drawn, each follows from the other equations"
+        yield f"redundant: {labels}; {why}; each is checked at every solution"
 
 
 def _computed(scene: Scene, plan: Plan) -> Iterator[str]:
-    """What is computed, what is left out, and to which time derivative points are solved for that."""
+    """What is computed, what is left out, and up to which time derivative the points are solved."""
     silent, topology = scene.unreported_points, scene.mechanism.topology
     yield f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s"
     yield from (f"computed: {effect.gives}" for effect in ALWAYS)
     if silent:
         points, more = ", ".join(scene.reported_points), ", ".join(silent)
-        yield f"of the points: {points}; add {more} to points to have them"
+        yield f"points reported: {points}; to report {more}, add them to points"
     yield from (f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects)
     if plan.left_out:
         plain = [effect for effect in plan.left_out if not EFFECTS[effect].base]
         made = [effect for effect in plan.left_out if EFFECTS[effect].base]
-        more = f"; derivatives of these, such as {made[0]} and {made[-1]}, {len(made)} in all" if made else ""
-        how = "name one under effects to have it (pointcoord help effects)"
+        more = f"; {len(made)} derivatives, such as {made[0]} and {made[-1]}" if made else ""
+        how = "to compute one, name it under effects (pointcoord help effects)"
         yield f"left out: {', '.join(plain)}{more}; {how}"
     derivatives = sorted(plan.derivatives(topology).items(), key=lambda item: -item[1])
     groups = gathered((_up_to(order), name) for name, order in derivatives)
@@ -120,34 +120,34 @@ def _computed(scene: Scene, plan: Plan) -> Iterator[str]:
 
 
 def _up_to(order: int) -> str:
-    """Positions and their time derivatives up to an order, in words."""
+    """Names of the position and its time derivatives up to an order, such as `positions and velocities`."""
     *first, last = STATES[: order + 1]
     return " and ".join(filter(None, (", ".join(first), last)))
 
 
 def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
-    """What the accuracy that is asked for makes the solver do."""
+    """The method, the accuracy and the number of terms that the solver needs."""
     try:
         found = effort(scene)
     except PointcoordError as error:
-        yield f"takes: not known, because it cannot be solved: {error}"
+        yield f"effort: not known, because the scene cannot be solved: {error}"
         return
     by_map = found.method == "map"
-    yield found.why or "solved by series in time, which are few enough; a map of the inputs is not needed"
+    yield found.why or "solved by series in time: few are needed, so no map of the inputs is built"
     rates = f", rates to {found.part:.2g} of their size" if plan.derivative else ""
     yield f"accuracy: positions to {found.tolerance:.3g} mm{rates}"
     if found.orders:
         few, many = min(found.orders), max(found.orders)
         unknowns = [f"{found.moving} unknowns"]
         if found.still:
-            unknowns.append(f"{found.still} more stand still and are solved once")
+            unknowns.append(f"{found.still} more are constant and are solved once")
         if found.not_needed:
             unknowns.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
         yield f"solved {'on each patch' if by_map else 'at each step'}: {'; '.join(unknowns)}"
         series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
-        series += " in the inputs, each proven on a patch of their way," if by_map else ""
+        series += " in the inputs, each proven on a patch of their path," if by_map else ""
         yield (
-            f"takes: {series} of {f'order {few}' if few == many else f'orders {few} to {many}'}, "
+            f"effort: {series} of {f'order {few}' if few == many else f'orders {few} to {many}'}, "
             f"{sum(found.orders)} orders in all; {found.work.factorisations} factorisations, "
             f"{found.start.factorisations} of them to assemble the start"
         )
@@ -156,19 +156,20 @@ def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
 
 
 def _where_it_stands(scene: Scene, stands: Standing) -> Iterator[str]:
-    """The drawn inputs, how far each can go, the wheel's angles, and what closing the drawing moves."""
+    """The drawn inputs, the range of each, the wheel angles, and how far closing moves the points."""
     topology = scene.mechanism.topology
     units = topology.input_units
     yield "as drawn:"
     for one, value in stands.inputs.items():
-        here, ends = f"  {one} is {_told(value, units[one])}; the other inputs held, it", stands.reach[one]
+        ends = stands.reach[one]
+        here = f"  {one} is {_in_unit(value, units[one])}; with the other inputs as drawn it"
         if all(np.isinf(end.value) for end in ends):
             yield f"{here} goes all the way round"
             continue
         yield f"{here} reaches"
         for word, end in zip(("from", "to  "), ends, strict=True):
-            held = f", where it is held by {', '.join(end.limits[:3])}" if end.limits else ""
-            yield f"    {word} {_told(end.value, units[one])}{held}"
+            stop = f", stopped by {', '.join(end.limits[:3])}" if end.limits else ""
+            yield f"    {word} {_in_unit(end.value, units[one])}{stop}"
     for angle, value in stands.angles.items():
         yield f"  {angle} is {round(float(np.degrees(value)), 3):zg} deg"
     if topology.wheel_axis:
@@ -178,25 +179,25 @@ def _where_it_stands(scene: Scene, stands: Standing) -> Iterator[str]:
 
 
 def _out_of_reach(scene: Scene, stands: Standing) -> Iterator[str]:
-    """Inputs that the scene drives farther than they go with the others as drawn."""
+    """Inputs that the scene drives beyond their range with the other inputs as drawn."""
     for name, (low, high) in stands.reach.items():
         values = scene.functions[name].series(scene.instants, 0)[:, 0]
         least, most = float(values.min()), float(values.max())
         if least < low.value or most > high.value:
             unit = scene.mechanism.topology.input_units[name]
-            driven = f"the scene drives {name} from {_told(least, unit)} to {_told(most, unit)}"
-            yield f"{driven}, beyond what it reaches with the others as drawn"
+            driven = f"the scene drives {name} from {_in_unit(least, unit)} to {_in_unit(most, unit)}"
+            yield f"{driven}, beyond its range with the other inputs as drawn"
 
 
 def _default(scene: Scene, point: str) -> str:
-    """A word on a point that stands in for one that the scene leaves out."""
+    """A remark on a point that is used in place of one that the scene leaves out; empty for other points."""
     topology = scene.mechanism.topology
     names = [n for n, other in topology.stand_ins.items() if other == point and n not in topology.points]
     return f" (the default of {names[0]})" if names else ""
 
 
-def _told(value: float, unit: str) -> str:
-    """A value in its unit, and an angle in degrees too."""
+def _in_unit(value: float, unit: str) -> str:
+    """A value with its unit; an angle also in degrees."""
     return f"{value:.6g} {unit}" + (f" ({np.degrees(value):.5g} deg)" if unit == "rad" else "")
 
 

@@ -1,4 +1,4 @@
-"""`pointcoord sensitivity`: which hardpoints the numbers of a car hang on, and what their tolerances make."""
+"""`pointcoord sensitivity`: the derivatives of a car's numbers by its hardpoints, and their tolerances."""
 
 from __future__ import annotations
 
@@ -33,12 +33,14 @@ DESIGNS = 400
 
 @dataclass(frozen=True)
 class Column:
-    """A number as it is shown, and its change by each coordinate, the most important first.
+    """A number of the car, and its derivatives by the coordinates, in the order of the rows.
 
     Attributes:
-        name: with a minus where it counts the other way. unit: angles in degrees.
-        changes: (C,), unit/mm, each at the instant where it is largest.
-        spreads: what the tolerance makes of it: deviation, that of random designs, worst case.
+        name: as shown, with a minus sign if the scene's convention reverses its sign.
+        unit: as shown; angles in degrees.
+        changes: derivative by each of the C coordinates, (C,), unit/mm, at the instant where it is largest.
+        spreads: spread of the number under the tolerance: standard deviation to first order, standard
+            deviation of the random designs, worst case.
     """
 
     name: str
@@ -71,7 +73,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     columns = []
     for number, array in zip(numbers, numbers_named(designs.numbers, called).values(), strict=True):
         deviation, worst = found.spread(number.called, options.tolerance)
-        drawn = float(np.nanstd(array[designs.solved], axis=0).max())  # where it is largest
+        drawn = float(np.nanstd(array[designs.solved], axis=0).max())  # at the instant where it is largest
         spreads = tuple(number.in_degrees * spread for spread in (deviation, drawn, worst))
         changes = (-1 if number.minus else 1) * number.in_degrees * found.largest(number.called)[order]
         columns.append(
@@ -86,7 +88,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def _text(coordinates: Sequence[str], columns: Sequence[Column], target: str, tolerance: float) -> str:
-    """A row for each coordinate, and in text what a tolerance makes."""
+    """CSV with a row for each coordinate; for `-`, text with the first rows and the spreads."""
     head = ("hardpoint", *(f"{one.name} [{one.unit}/mm]" for one in columns))
     if target != "-":
         return csv_of(head, zip(coordinates, *(one.changes.tolist() for one in columns), strict=True))
@@ -97,12 +99,12 @@ def _text(coordinates: Sequence[str], columns: Sequence[Column], target: str, to
         tuple((f"{one.name} [{one.unit}]", *(f"{spread:.4f}" for spread in one.spreads)) for one in columns),
     )
     rest = len(coordinates) - ROWS
-    told = [f"{rest} more coordinates: -o FILE.csv has all"] if rest > 0 else []
-    return text_for(sys.stdout, [table, *told, "", made, ""])
+    more = [f"{rest} more coordinates: -o FILE.csv has all"] if rest > 0 else []
+    return text_for(sys.stdout, [table, *more, "", made, ""])
 
 
 def _picture(coordinates: Sequence[str], columns: Sequence[Column], name: str, ending: str) -> bytes:
-    """A panel of bars for each number, a bar for each of the first coordinates."""
+    """A panel for each number, with a bar for each of the first coordinates."""
     # Imported here: matplotlib takes a second.
     from matplotlib import rc_context
 

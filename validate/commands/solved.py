@@ -1,4 +1,4 @@
-"""`pointcoord simulate` and `plot`: a scene solved by point coordinates, and its numbers shown."""
+"""`pointcoord simulate` and `plot`: solve a scene by point coordinates, and write or draw its numbers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SMOOTH = 401  # a curve of fewer instants has corners
 
 
 def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Write the motion."""
+    """Solve a scene and write its motion."""
     target = place_of_result(options, ENDINGS, console)
     if target != "-":
         require_table(target)
@@ -52,7 +52,7 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Draw curves."""
+    """Draw curves of a scene's motion, or of a file."""
     target = place_of_picture(options, PICTURES, console)
     needed("plot", "matplotlib", "plot")
     if Path(options.scene).suffix in ENDINGS:
@@ -81,14 +81,14 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def _plot_sweep(options: argparse.Namespace, target: str, console: Console) -> ExitStatus:
-    """Draw the columns of a sweep's file, a curve for each design."""
+    """Draw columns of a file that sweep or simulate wrote, a curve for each design."""
     # Imported here: matplotlib and pandas take a second each.
     from validate.curves.of_sweep import columns_called, read_sweep
     from validate.curves.picture import figure_of
     from validate.output.figure import drawn
 
     if options.instants is not None:
-        raise UsageError("--instants is about a scene; a file has its own rows")
+        raise UsageError("--instants goes with a scene only; the rows of a file are fixed; leave it out")
     table = read_sweep(options.scene)
     across, up = (
         columns_called(table, words) for words in (options.x or (TIME,), options.y or (WHEEL.name,))
@@ -113,7 +113,7 @@ def solved(
     """Solve a scene, and write its motion or the part of it that could be solved.
 
     Args:
-        write: writes a motion; returns what of it, in words.
+        write: writes a motion; returns what was written, in words.
     Raises:
         SceneError: the scene is wrong. NotFinished: the result cannot be written.
     """
@@ -136,13 +136,13 @@ def solved(
         return ExitStatus.AGREE
     where = f"on {STANDARD_OUTPUT}" if target == "-" else f"in {target}"
     console.complain(
-        f"{name}: {problem}{advice}; what was solved, {what} up to t = {motion.times[-1]:.10g} s, is {where}"
+        f"{name}: {problem}{advice}; the solved part, {what} up to t = {motion.times[-1]:.10g} s, is {where}"
     )
     return ExitStatus.NO_VERDICT
 
 
 def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
-    """Warn of what looks wrong with the drawing, and note what was taken for granted."""
+    """Print warnings about the drawing, and notes on defaults that were used."""
     warnings = warnings_of(scene, motion.closing)
     for warning in warnings:
         console.warn(f"{name}: {warning}")
@@ -156,15 +156,15 @@ def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
 
 
 def _curves(options: argparse.Namespace, scene: Scene, name: str) -> Curves | None:
-    """What the command line asks for; None if it leaves that open."""
+    """The curves of --x and --y; None if neither is given."""
     if not options.x and not options.y:
         return None
     asked = (("--x", options.x or (TIME,)), ("--y", options.y or (TRAVEL,)))
     across, up = (_named(words, option, scene, name) for option, words in asked)
     if len(across) > 1 and len(up) > 1:
         raise UsageError(
-            f"--x are {len(across)} numbers, and --y {len(up)}; allowed: several of one of them; say which "
-            "component, x, y or z"
+            f"--x names {len(across)} numbers and --y {len(up)}; allowed: several for one of the two options "
+            "only; name one component, x, y or z"
         )
     return Curves(across, up)
 

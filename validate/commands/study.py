@@ -1,4 +1,4 @@
-"""`pointcoord study`: long studies by several processes or machines, recorded as they go."""
+"""`pointcoord study`: long studies with several processes or machines; results are recorded as they come."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from validate.studies.study import Findings, Study
 
 LOCAL = "local"
-SOON = 2.0  # seconds before the first line of how far a study is, which waits for others
+SOON = 2.0  # seconds to the first line of progress, since a study may wait for other processes
 
 
-# What makes each study, of `validate.studies`; its arguments are options of the command line.
+# Module in `validate.studies` and function that make each study; its arguments are command-line options.
 STUDIES = {
     "random": ("random_cars", "random_cars"),
     "bounds": ("bounds", "bounds"),
@@ -36,7 +36,7 @@ STUDIES = {
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Work out what is not recorded yet, and say what all of it comes to."""
+    """Run the tasks that are not recorded yet, and print the findings of all tasks."""
     folder = Path(options.records or f"pointcoord-{options.study}")
     if options.records is not None and not options.records.strip():
         raise UsageError(f"--records {options.records!r} names no folder")
@@ -44,8 +44,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         raise UsageError(f"--scheduler {options.scheduler!r}: allowed: local, or an address")
     if options.workers is not None and options.scheduler != LOCAL:
         raise UsageError(
-            f"--workers {options.workers} counts processes of this machine, a cluster at an address has its "
-            "own; leave one of them out"
+            f"--workers {options.workers} is for processes on this machine only; the cluster at --scheduler "
+            "has its own workers; leave one of the two options out"
         )
     require_results(options, console, ("--json",))
     for package in ("mpmath", "flint", "pinocchio"):
@@ -55,16 +55,16 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     values = {name: getattr(options, name, None) for name in signature(make).parameters}
     study: Study = make(**{name: value for name, value in values.items() if value is not None})
     if not study.tasks:
-        raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
-    return _worked_out(study, folder, options, console)
+        raise UsageError(f"the study has no {study.noun}; allowed: 1 or more")
+    return _run_study(study, folder, options, console)
 
 
-def _worked_out(study: Study, folder: Path, options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Work out what is missing, and say what the tasks that are asked for come to."""
+def _run_study(study: Study, folder: Path, options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Run the missing tasks, and print the findings of all tasks of the study."""
     cluster, where = needed("study", "validate.studies.cluster"), shown(str(folder))
     local = options.scheduler == LOCAL
     who = "processes of this machine" if local else f"the scheduler {shown(options.scheduler)}"
-    # Found out before a folder is made.
+    # Before the folder is made: Dask may be missing.
     cluster.quiet_dask()
     with ExitStack() as stack:
         store = needed("study", "validate.studies.store").records(folder, study)
@@ -83,13 +83,14 @@ def _worked_out(study: Study, folder: Path, options: argparse.Namespace, console
             nonlocal there
             there = before + done
             if there:
-                console.written[where] = f"{held()}; the same command goes on"
-            told(f"{study.noun}s, {who}", there, len(study.tasks))
+                console.written[where] = f"{held()}; the same command continues"
+            progress(f"{study.noun}s, {who}", there, len(study.tasks))
 
         if missing:
-            told = stack.enter_context(console.progress(f"{who} start" if local else f"{who} is asked", SOON))
+            starting = f"{who} start" if local else f"connecting to {who}"
+            progress = stack.enter_context(console.progress(starting, SOON))
             client = stack.enter_context(cluster.opened(options.scheduler, options.workers))
-        console.note(f"{where} holds {held()}; a study that is stopped goes on with the same command")
+        console.note(f"{where} holds {held()}; to continue a stopped study, give the same command again")
         head = Head.of(options.study, options.command, timed=True)
         journal = Journal(options.json, head, console, lambda: found().data, lambda: held() if there else "")
         with journal.closing() as ending:

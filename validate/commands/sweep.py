@@ -46,11 +46,13 @@ EXAMPLES = "POINT.AXIS=START:STOP:COUNT or =A,B,C, in finite mm from the drawing
 
 @dataclass
 class Summary:
-    """What is there so far of a sweep.
+    """The results of a sweep so far.
 
     Attributes:
-        failures: by reason how many designs, and the first of them.
-        ends: by quantity and name of a number of the car its lowest and its highest, each with its design.
+        tried, instants: numbers of designs, and of instants of each.
+        failures: number of failed designs and the first failure, by reason.
+        notes: notes on designs, merged.
+        ends: lowest and highest value of each number of the car, each with its design, by quantity and name.
     """
 
     tried: int = 0
@@ -60,7 +62,7 @@ class Summary:
     ends: dict[tuple[str, str], tuple[tuple[float, int], tuple[float, int]]] = field(default_factory=dict)
 
     def add(self, block: Sweep) -> None:
-        """Take in a block."""
+        """Add a block of designs."""
         self.tried += len(block)
         self.instants = len(block.times)
         for failure in block.failures.values():
@@ -70,7 +72,7 @@ class Summary:
         for quantity, channel in block.numbers.items():
             for name, array in channel.items() if channel.quantity.of == "car" else ():
                 if np.isfinite(array).any():
-                    # Of a row for each design.
+                    # The array has a row for each design.
                     places = int(np.nanargmin(array)), int(np.nanargmax(array))
                     low, high = (
                         (float(array.flat[at]), block.first + at // len(block.times)) for at in places
@@ -79,27 +81,27 @@ class Summary:
                     self.ends[quantity, name] = min(before[0], low), max(before[1], high)
 
     def failed_lines(self) -> list[str]:
-        """Why designs failed, the most frequent reason first."""
+        """The reasons of failed designs, the most frequent first."""
         return [
-            f"{count} of {self.tried} designs failed, {reason}; design {first.design} for one: {first.error}"
+            f"{count} of {self.tried} designs failed, {reason}; such as design {first.design}: {first.error}"
             for reason, (count, first) in sorted(self.failures.items(), key=lambda item: -item[1][0])
         ]
 
     def parts(self) -> tuple[Part, ...]:
-        """For people, angles in degrees."""
+        """The lines and the table to print, angles in degrees."""
         solved = self.tried - sum(count for count, _ in self.failures.values())
         rows = []
         for (quantity, name), ends in self.ends.items():
             factor, unit = degrees_of(QUANTITIES[quantity].unit)
-            told = (f"{round(factor * end, 4):z.6g} (design {design})" for end, design in ends)
-            rows.append((f"{name} [{unit}]", *told))
+            texts = (f"{round(factor * end, 4):z.6g} (design {design})" for end, design in ends)
+            rows.append((f"{name} [{unit}]", *texts))
         table = [Table(("over designs and instants", "lowest", "highest"), tuple(rows))] if rows else []
-        said = f"solved: {solved} of {self.tried} designs, at {counted_as(self.instants, 'instant')} each"
-        return (said, *self.failed_lines(), *table)
+        total = f"solved: {solved} of {self.tried} designs, at {counted_as(self.instants, 'instant')} each"
+        return (total, *self.failed_lines(), *table)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Solve the designs, write them as they come, and say what came of them."""
+    """Solve the designs, write each block as it is solved, and print a summary."""
     target = options.output
     require_results(options, console, ("-o",), (options.scene, options.designs), ENDINGS)
     if target not in (None, "-"):
@@ -112,8 +114,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             scene = scene.model_copy(update={"time": time})
     designs, summary = _designs(scene, options), Summary()
     try:
-        with console.progress("designs", total=designs.count, lines=False) as told:
-            blocks = _seen(sweep_blocks(designs), summary, told)
+        with console.progress("designs", total=designs.count, lines=False) as progress:
+            blocks = _seen(sweep_blocks(designs), summary, progress)
             if target == "-":
                 console.write_lines(csv_lines(rows_of_sweep(blocks)))
             elif target is not None:
@@ -136,18 +138,18 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return ExitStatus.NO_VERDICT if summary.failures else ExitStatus.AGREE
 
 
-def _seen(blocks: Iterator[Sweep], summary: Summary, told: Told) -> Iterator[Sweep]:
-    """The blocks, each taken into the summary on its way."""
+def _seen(blocks: Iterator[Sweep], summary: Summary, progress: Told) -> Iterator[Sweep]:
+    """Pass the blocks on, and add each to the summary."""
     for block in blocks:
         summary.add(block)
-        told("designs", summary.tried)
+        progress("designs", summary.tried)
         yield block
 
 
 def _designs(scene: Scene, options: argparse.Namespace) -> Designs:
-    """What the command line asks for."""
+    """The designs of --vary or --designs."""
     if bool(options.vary) == bool(options.designs):
-        problem = "both --vary and --designs" if options.vary else "nothing varies"
+        problem = "--vary and --designs are both given" if options.vary else "nothing is varied"
         raise UsageError(f"{problem}; give --vary {EXAMPLES}, once or more, or --designs FILE.csv")
     if options.designs:
         return _designs_of_file(scene, options.designs)
@@ -155,7 +157,7 @@ def _designs(scene: Scene, options: argparse.Namespace) -> Designs:
     for text in options.vary:
         what, (coordinate, _, values) = f"--vary {shown(text)}", text.partition("=")
         if len(meant := coordinates_named(coordinate.strip(), scene.mechanism.topology.points)) > 1:
-            raise WrongArgument(what, "names no coordinate", ", ".join(meant))
+            raise WrongArgument(what, "names a point, not a coordinate", ", ".join(meant))
         if coordinate.strip() in varied:
             raise WrongArgument(f"--vary {shown(coordinate)}", "is given twice", "once")
         varied[coordinate.strip()] = values_of(what, values, EXAMPLES)

@@ -1,4 +1,4 @@
-"""`pointcoord table`: what an engineer reads of a car, over the way of its inputs or on a grid of them."""
+"""`pointcoord table`: a car's angles and dimensions over the motion of its inputs, or on a grid of them."""
 
 from __future__ import annotations
 
@@ -41,13 +41,15 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print a table."""
     target = place_of_result(options, ENDINGS, console)
     if options.grid and options.rows:
-        raise UsageError("--rows is about a way of the inputs; leave it out with --grid")
+        raise UsageError("--rows divides the scene's time, and a grid has none; leave --rows or --grid out")
     scene, name = load_scene(options.scene), name_of(options.scene)
     if options.convention:
         if options.convention not in CONVENTIONS:
             raise UnknownName("convention", options.convention, CONVENTIONS)
         if options.all and CONVENTIONS[options.convention].means:
-            raise UsageError("--all is every number by our names; leave --convention out with it")
+            raise UsageError(
+                "--all prints every number by pointcoord's own definitions; leave --convention out with it"
+            )
         scene = scene.model_copy(update={"convention": options.convention})
     read = numbers_asked(scene, name, options.number, None if options.all else READ_FIRST)
     if not options.number:
@@ -57,7 +59,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     inputs = {number.path[0]: number for number in numbers_of(scene) if number.path[0] in scene.functions}
     if options.grid:
         if moving := [n.called for n in read if len(n.path) == 1 or per_second(n.path[0])]:
-            raise UsageError(f"--number {moving[0]}: a grid has poses, and no rates; leave it out, or --grid")
+            raise UsageError(
+                f"--number {moving[0]}: a grid has poses and no rates; leave out this number or --grid"
+            )
         grid = {inputs[one]: values for one, values in _axes(scene, options.grid).items()}
         return _on_grid(scene, grid, read, name, target, console)
     driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
@@ -82,7 +86,7 @@ def _on_grid(
     target: str,
     console: Console,
 ) -> ExitStatus:
-    """A row for each combination of values; status 3 where one of them is out of reach."""
+    """Print a row for each combination of values; status 3 if any of them is out of reach."""
     grid = dict(zip(axes, map(np.ravel, np.meshgrid(*axes.values(), indexing="ij")), strict=True))
     at = {number.path[0]: values for number, values in grid.items()}
     held = {n: law.series(scene.time.start, 0)[0] for n, law in scene.functions.items() if n not in at}
@@ -114,26 +118,28 @@ def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
     for text in texts:
         name, equals, values = text.partition("=")
         if name not in scene.inputs or not equals:
-            problem = f"names no input that the scene drives{meant(name, scene.inputs)}"
+            problem = f"does not name an input that the scene drives{meant(name, scene.inputs)}"
             raise WrongArgument(f"--grid {shown(text)}", problem, f"{EXAMPLES}; of {', '.join(scene.inputs)}")
         if name in found:
             raise WrongArgument(f"--grid {shown(name)}", "is given twice", "each input once")
         found[name] = values_of(f"--grid {shown(text)}", values, EXAMPLES)
     moving = [n for n, law in scene.functions.items() if n not in found and not law.still]
     if moving:
-        raise UsageError(f"{moving[0]} moves in the scene; give its values too, --grid {moving[0]}=VALUES")
+        raise UsageError(
+            f"--grid leaves out {moving[0]}, which moves in the scene; give --grid {moving[0]}=VALUES too"
+        )
     return found
 
 
 def _text(columns: Columns, target: str, reasons: Mapping[int, str] | None = None) -> str:
-    """CSV, or Markdown or text with what is positive.
+    """The table as CSV, or as Markdown or text with the positive directions below it.
 
     Args:
-        reasons: why there are no numbers in a row, of a grid.
+        reasons: by row of a grid, why the row has no numbers.
     """
     numbers, values = [number for number, _ in columns], [array for _, array in columns]
     names = [number.called for number in numbers]
-    # An input may be called as a number is, such as the damper's length.
+    # An input and a number may have the same name, such as the damper's length.
     whole = [".".join(path if len(path := one.path) > 1 else ("input", *path)) for one in numbers]
     names = [long if names.count(name) > 1 else name for name, long in zip(names, whole, strict=True)]
     head = tuple(
@@ -151,15 +157,15 @@ def _text(columns: Columns, target: str, reasons: Mapping[int, str] | None = Non
     # The wheels of an axle share a line.
     signs = {"-" * one.minus + one.called.rpartition(".")[2]: one.sign for one in numbers if one.of_the_car}
     signs |= {one.called: one.sign for one in numbers if len(one.path) > 2 and not one.is_force}
-    told = [f"{number}: positive {sign}" for number, sign in signs.items() if sign]
-    told += [f"forces: {LOADS.sign}"] * any(one.is_force for one in numbers)
+    directions = [f"{number}: positive {sign}" for number, sign in signs.items() if sign]
+    directions += [f"forces: {LOADS.sign}"] * any(one.is_force for one in numbers)
     if target != "-":
-        return "\n".join([table.markdown, "", *(f"- {line}" for line in told), ""])
-    return text_for(sys.stdout, [table, "", *told, ""])
+        return "\n".join([table.markdown, "", *(f"- {line}" for line in directions), ""])
+    return text_for(sys.stdout, [table, "", *directions, ""])
 
 
 def _rounded(values: Array) -> list[str]:
-    """Numbers with so many decimals that the largest has five figures; a dash where there is none."""
+    """Numbers with the decimals that give the largest five significant digits; a dash for no number."""
     largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
     decimals = FIGURES - 1 - int(np.floor(np.log10(largest))) if largest > 0.0 else 0
     decimals = min(max(decimals, DECIMALS[0]), DECIMALS[1])

@@ -1,4 +1,4 @@
-"""`pointcoord validate --tables`: what other programs printed, beside both models."""
+"""`pointcoord validate --tables`: compares tables that other programs printed with both models."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def _parts(one: Published) -> Iterator[Part]:
-    """A table's columns, where it comes from, and what is not known of it or left out."""
+    """The comparison of a table's columns, its source and licence, notes, and columns left out."""
     table = one.table
     yield f"{table.title}: {counted_as(len(one.at), 'row')} over {one.over}"
     head = ("column", *MODELS, "allowed", "at", "verdict")
@@ -42,7 +42,7 @@ def _parts(one: Published) -> Iterator[Part]:
 
 
 def _cells(column: Column) -> Iterator[str | Cell]:
-    """The largest distance of each model, in the printed unit."""
+    """The largest difference of each model from a printed column, in the printed unit."""
     worst = max(column.rows, key=lambda row: row.share)
     yield column.name
     yield from (with_unit(row.difference / column.per, "", 2) for row in column.rows)

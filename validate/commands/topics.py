@@ -1,4 +1,4 @@
-"""`pointcoord help`: the pages that stand beside what they are about."""
+"""`pointcoord help`: prints the README page of a topic."""
 
 from __future__ import annotations
 
@@ -30,22 +30,22 @@ TOPICS = {
     "cost": "validate/cost",
     "program": "validate/commands",
 }
-"""Every topic: the folder whose page it is."""
+"""Every topic, with the folder of its page."""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Print a page, or which there are."""
+    """Print a page, or the list of topics."""
     if options.topic is None:
         console.say("\n".join(f"{n.ljust(12)}{page(n).splitlines()[0].lstrip('# ')}" for n in TOPICS))
     elif options.topic in TOPICS:
         console.say(page(options.topic).rstrip())
     else:
-        raise UsageError(f"help: no topic {options.topic!r}; there are {', '.join(TOPICS)}")
+        raise UsageError(f"help: no topic is called {options.topic!r}; there are: {', '.join(TOPICS)}")
     return ExitStatus.AGREE
 
 
 def page(topic: str) -> str:
-    """The page of a topic, Markdown."""
+    """The page of a topic, as Markdown."""
     root = Path(str(pointcoord.__file__)).parents[1]
     return (root / TOPICS[topic] / PAGE).read_text(encoding="utf-8")
 

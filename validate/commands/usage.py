@@ -1,4 +1,4 @@
-"""What commands share: where scenes come from, and where results go."""
+"""What commands share: reads scenes, and checks where results are written."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from validate.plain_text import one_line, shown
 
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
-LONGEST_OF_A_FILE = 255  # letters of a name, on the usual systems
+LONGEST_FILE_NAME = 255  # characters, on the usual file systems
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
 TOML = (".toml",)
 
 
 def value_of(options: argparse.Namespace, name: str) -> Any:
-    """What the command line gives for an option or an argument; None if the command does not have it."""
+    """The value of an option or an argument; None if the command does not have it."""
     return getattr(options, {"-o": "output"}.get(name, name.lstrip("-").replace("-", "_")), None)
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:
-    """Those of some options that the command line gives."""
+    """The names, of `names`, that the command line gives."""
     return [name for name in names if value_of(options, name) not in (None, False, [])]
 
 
@@ -43,18 +43,19 @@ def require_results(
     endings: Collection[str] = (),
     says: bool = True,
 ) -> None:
-    """See, before anything is solved, that each result has a place of its own that can be written.
+    """Check, before anything is solved, that every result has a place of its own that can be written.
 
-    Standard output is left to the one that is to go there.
+    If a result goes to standard output, the console prints nothing else there.
 
     Args:
-        results: options that name a file, or - for standard output; those that are not given want nothing.
-        read: files and scenes that no result may be written over.
-        endings: that say how to write the first of the results; any if there are none.
-        says: whether the command says something on standard output beside its results.
+        results: options that name a result file, or - for standard output; options not given are skipped.
+        read: files and scenes that no result may overwrite.
+        endings: allowed endings of the first result, which select its format; empty: any.
+        says: whether the command prints on standard output in addition to its results.
     Raises:
-        UsageError: a result names no file or one that is read, two are the same, or the ending is not known.
-        NotFinished: one cannot be written; or standard output is closed and wanted.
+        UsageError: a result names no file or a file that is read, two results are the same file, or an
+            ending is unknown.
+        NotFinished: a result cannot be written, or standard output is needed and closed.
     """
     found = {option: value_of(options, option) for option in results}
     wanted: dict[str, str] = {option: target for option, target in found.items() if target is not None}
@@ -67,7 +68,7 @@ def require_results(
         for file in read:
             if file and os.path.isfile(target) and os.path.isfile(file) and os.path.samefile(target, file):
                 raise UsageError(
-                    f"{option} {target} would overwrite the scene or file that is read; give another file"
+                    f"{option} {target} would overwrite a scene or file that is read; give another file"
                 )
         other = places.setdefault(target if target == "-" else os.path.realpath(target), option)
         if other != option:
@@ -90,10 +91,11 @@ def place_of_result(
     option: str = "-o",
     read: str = "scene",
 ) -> str:
-    """The only file that a command writes, - for standard output; it can be written.
+    """The file of a command with one result, - for standard output; checked to be writable.
 
     Args:
-        option: names it. read: the argument that names what is read.
+        option: the option that names the result.
+        read: the argument that names the file or scene that is read.
     Raises:
         UsageError, NotFinished: see `require_results`.
     """
@@ -103,7 +105,10 @@ def place_of_result(
 
 
 def place_of_picture(options: argparse.Namespace, endings: Collection[str], console: Console) -> str:
-    """The same of a picture; for a terminal, which shows none, a file of a name that is free, and says so.
+    """The file of a picture, - for standard output; checked to be writable.
+
+    If none is given and standard output is a terminal, which shows no pictures, a new file name is chosen and
+    printed.
 
     Raises:
         UsageError, NotFinished: see `require_results`.
@@ -114,27 +119,29 @@ def place_of_picture(options: argparse.Namespace, endings: Collection[str], cons
             stem = "picture" if options.scene == STANDARD_INPUT else Path(options.scene).stem
             names = (f"{stem}.svg" if number == 1 else f"{stem}-{number}.svg" for number in count(1))
             options.output = next(name for name in names if not os.path.lexists(name))
-            console.note(f"the picture goes to {shown(options.output)}; -o FILE says another place")
+            console.note(f"the picture goes to {shown(options.output)}; -o FILE names another file")
     return place_of_result(options, endings, console)
 
 
 def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
-    """Write a file that an option names and that is not there yet, and say what to do.
+    """Write a form for a file that an option names and that does not exist, and ask to fill it in.
 
     Raises:
-        UsageError: it is not called .toml. NotFinished: it cannot be written.
+        UsageError: its name does not end in .toml. NotFinished: it cannot be written.
     """
     require_known_ending(target, TOML)
     write_content(target, text)
-    console.complain(f"{shown(target)} was not there: it is written; fill it in, and run this again")
+    console.complain(
+        f"{shown(target)} did not exist, so a form is written there: fill it in, and run this again"
+    )
     return ExitStatus.WRONG_INPUT
 
 
 def name_of(scene: str) -> str:
-    """What messages call a scene that the command line names; a name that no file can have is shortened."""
+    """The name of a scene in messages; a name too long for any file is shortened."""
     if scene == STANDARD_INPUT:
         return STANDARD_INPUT_NAME
-    of_a_file = all(len(part) <= LONGEST_OF_A_FILE for part in scene.split(os.sep))
+    of_a_file = all(len(part) <= LONGEST_FILE_NAME for part in scene.split(os.sep))
     return shown(scene) if of_a_file else one_line(shown(scene))
 
 
@@ -142,7 +149,7 @@ def require_input_once(names: Sequence[str]) -> None:
     """Refuse standard input as more than one scene.
 
     Raises:
-        UsageError: it is.
+        UsageError: `-` is given more than once.
     """
     if names.count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
@@ -150,7 +157,7 @@ def require_input_once(names: Sequence[str]) -> None:
 
 @contextmanager
 def told_as(name: str) -> Iterator[None]:
-    """Gives faults of a scene the name that the command line gives it, and not its title.
+    """Within this context an error of a scene names the scene as the command line does, not by its title.
 
     Raises:
         SceneError: the scene is wrong.
@@ -162,10 +169,10 @@ def told_as(name: str) -> Iterator[None]:
 
 
 def load_scene(name: str) -> Scene:
-    """Read a scene as the command line names it.
+    """Read a scene that the command line names.
 
     Raises:
-        SceneError: there is none, or it is not written as it must be.
+        SceneError: there is no such scene, or its content is wrong.
     """
     if not name:
         raise SceneError("''", "", "names no scene", SCENE_HELP)

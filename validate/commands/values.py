@@ -1,4 +1,4 @@
-"""Values that the command line gives as a range or a list."""
+"""Reads values that the command line gives as a range or a list."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ def values_of(what: str, text: str, examples: str) -> Array:
     """START:STOP:COUNT or A,B,C as finite numbers.
 
     Args:
-        what: gives them, for messages. examples: of what is allowed.
+        what: the option that gives them, for messages.
+        examples: what is allowed, for messages.
     Raises:
-        WrongArgument: they are none.
+        WrongArgument: the text is neither.
     """
     parts = text.split(":")
     if len(parts) == 1:
         return finite(what, text.split(","), examples)
     count = parts[-1].strip()
     if len(parts) != 3 or not (count.isascii() and count.isdigit() and 1 <= int(count) <= MOST_VALUES):
-        raise WrongArgument(what, "is no range", f"START:STOP:COUNT, with a COUNT of 1 to {MOST_VALUES}")
+        raise WrongArgument(what, "is not a range", f"START:STOP:COUNT, with a COUNT of 1 to {MOST_VALUES}")
     start, stop = finite(what, parts[:2], examples).tolist()
     if int(count) == 1 and start != stop:
         raise WrongArgument(
-            what, "has one value from one number to another", "START = STOP, or a count of 2 or more"
+            what, "has COUNT 1 but START and STOP differ", "START = STOP, or a COUNT of 2 or more"
         )
     return np.linspace(start, stop, int(count))
 
@@ -40,15 +41,17 @@ def values_of(what: str, text: str, examples: str) -> Array:
 def finite(what: str, texts: Sequence[str], examples: str) -> Array:
     """Finite numbers from their texts.
 
+    Args:
+        what, examples: see `values_of`.
     Raises:
-        WrongArgument: one is none.
+        WrongArgument: a text is not a finite number.
     """
     found = []
     for text in texts:
         try:
             found.append(float(text))
         except ValueError:
-            raise WrongArgument(what, f"has {shown(text)!r} for a number", examples) from None
+            raise WrongArgument(what, f"has {shown(text)!r}, which is not a number", examples) from None
     if not np.isfinite(found).all():
         raise WrongArgument(what, "has a number that is not finite", examples)
     return np.array(found)

@@ -1,8 +1,8 @@
-"""Errors of a way's numbers against the many-digit reference.
+"""Errors of a method's numbers against the many-digit reference.
 
-The reference is rounded once to doubles; that, and what it does not prove, make the radius of a row. It
-solves the scene with its inputs rounded to doubles at each instant (`input_rates`), which is what anybody can
-be given: half a unit in the last place of an angle is no error of a way.
+The radius of a row is the reference's proven error plus its rounding to doubles. The reference solves the
+scene with inputs rounded to doubles at each instant (`input_rates`), as every method does. So rounding an
+input by half a unit in the last place is not an error of a method.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ class Truth:
     """The reference at the instants of a study.
 
     Attributes:
-        numbers: of what the scene asks for and what is not fixed to the chassis.
-        radius: by quantity, the largest proven error of any of these numbers.
+        numbers: the numbers that the scene asks for, without points fixed to the chassis.
+        radius: by quantity, the largest proven error of these numbers.
     """
 
     numbers: Numbers
@@ -39,10 +39,11 @@ class Truth:
 
 
 def judge(scene: Scene, instants: Array, positions: bool | None = None) -> Callable[[Answer], Found]:
-    """What tells the errors of answers at instants, (N,), s; the reference is solved once, when it is needed.
+    """A function that returns the errors of an answer; it solves the reference once, when first called.
 
     Args:
-        positions: whether only positions are looked at, or all else; everything if None.
+        instants: (N,), s.
+        positions: True: judge positions only; False: judge all other quantities; None: judge everything.
     """
     truth = cache(lambda: truth_of(scene, instants))
     return lambda answer: errors_of(answer, truth(), positions)
@@ -55,7 +56,7 @@ def truth_of(scene: Scene, instants: Array) -> Truth:
         NoReferenceError: an instant has no pose, or none can be proven.
     """
     solved = as_solution(scene, reference_motion(scene, instants.tolist()), instants)
-    # A point of the chassis is where it is drawn: it would dilute the mean, and says nothing of a way.
+    # A point of the chassis is at its drawn position: it would dilute the mean, and tests no method.
     fixed = set(scene.mechanism.topology.chassis)
     numbers: dict[str, dict[str, Array]] = {}
     radius: dict[str, float] = {}
@@ -68,12 +69,12 @@ def truth_of(scene: Scene, instants: Array) -> Truth:
 
 
 def errors_of(answer: Answer, truth: Truth, positions: bool | None = None) -> Found:
-    """Columns of a row for each quantity that the scene asks for; one that is not given is left out.
+    """The columns of a row for each quantity that the scene asks for, with verdict `left out` if not given.
 
-    A quantity that is given at all must be given whole.
+    If any number of a quantity is given, all its numbers must be given.
 
     Raises:
-        NoAnswer: a number is none, or it or its point is missing.
+        NoAnswer: a number is missing or not finite, or has a wrong shape.
     """
     found: Found = {}
     work = ", ".join(f"{name} {count}" for name, count in answer.work.items())
@@ -86,7 +87,7 @@ def errors_of(answer: Answer, truth: Truth, positions: bool | None = None) -> Fo
             continue
         errors = np.concatenate([_error(quantity, n, given, exact).ravel() for n, exact in names.items()])
         largest = float(np.abs(errors).max())
-        # In parts of the largest, so that no square is too large or too small for a double.
+        # Relative to the largest error, so that no square overflows or underflows.
         mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
         sizes = {"error": largest, "rms": largest * mean**0.5, "numbers": errors.size}
         found[quantity] = {**sizes, "radius": truth.radius[quantity], "work": work}
@@ -105,5 +106,5 @@ def _error(quantity: str, name: str, given: Mapping[str, Array], exact: Array) -
     bad = ~np.isfinite(off).reshape(len(off), -1).all(axis=-1)
     if bad.any():
         where = f"{np.count_nonzero(bad)} of {len(off)} instants, first at number {int(np.argmax(bad))}"
-        raise NoAnswer(what, f"is no finite number at {where}", "finite numbers")
+        raise NoAnswer(what, f"is not finite at {where}", "finite numbers")
     return off

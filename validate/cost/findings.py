@@ -1,8 +1,8 @@
-"""What the long table says: queries on it, and the three sentences of a reader who has no time.
+"""Findings from the table of measurements: queries, and three sentences that summarise them.
 
-Three rules keep it honest. A way is in a race for an accuracy only by a setting whose largest error, and the
-reference's own radius on top of it, is at or below that accuracy: a wrong number is never quick. Times whose
-quartiles overlap are a tie. Nothing is averaged over quantities, scenes or ways.
+Three rules keep the comparison fair. A method takes part in the race for an accuracy only with settings whose
+largest error plus the reference's radius is at or below this accuracy: a wrong number never wins. Times whose
+quartiles overlap are a tie. Nothing is averaged over quantities, scenes or methods.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from validate.cost.way import power
 from validate.cost.ways.registry import OURS
 
 ACCURACIES = (1e-3, 1e-6, 1e-9)
-"""In the unit of each quantity: mm of positions."""
-LISTED = 6  # ways that a sentence names
+"""The accuracies of the races, in the unit of each quantity, such as mm for positions."""
+LISTED = 6  # largest number of methods that a sentence names
 
 
 def unit_of(quantity: str) -> str:
@@ -29,31 +29,31 @@ def unit_of(quantity: str) -> str:
 
 
 def words_of(quantity: str) -> str:
-    """A quantity for people."""
+    """The name of a quantity in words."""
     return QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
 
 
 def duration(seconds: float) -> str:
-    """A time in three digits and the first unit that is not too large, such as 14.3 us."""
+    """A time with three digits and a suitable unit, such as 14.3 us."""
     units = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
     name = next((name for name, size in units.items() if seconds >= 0.9995 * size), "ns")
     return f"{float(f'{seconds / units[name]:.3g}'):g} {name}"
 
 
 def timed(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows that have a time and an error."""
+    """The measured rows, which have a time and an error."""
     return table[(table.verdict == "measured") & table.time.notna() & table.error.notna()]
 
 
 def heights(errors: pd.Series) -> tuple[pd.Series, str]:
-    """Errors on a logarithmic axis, and words that say where one of exactly 0 is: a tenth below the least."""
+    """Errors for a logarithmic axis, with zero drawn at a tenth of the least error, and a remark on it."""
     least = errors[errors > 0.0].min()
     drawn = errors.clip(lower=(1e-16 if math.isnan(least) else least) / 10.0)
     return drawn, ", exactly 0 at the lower edge" if (errors == 0.0).any() else ""
 
 
 def cheapest(table: pd.DataFrame) -> pd.DataFrame:
-    """By scene, quantity, way and accuracy the quickest setting that is accurate enough."""
+    """The fastest setting that is accurate enough, by scene, quantity, method and accuracy."""
     found = timed(table)
     near = pd.concat([found[found.error + found.radius <= a].assign(accuracy=a) for a in ACCURACIES])
     near = near.sort_values("time", kind="stable")
@@ -61,7 +61,7 @@ def cheapest(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def races(table: pd.DataFrame) -> pd.DataFrame:
-    """Who is quicker to an accuracy: the quickest of our ways, or of the others; and all that reach it."""
+    """By scene, quantity and accuracy: the fastest of pointcoord's methods against the fastest other."""
     best, asked = cheapest(table), timed(table).groupby(["scene", "quantity"], sort=False)
     lines = []
     for (scene, quantity), accuracy in product(asked.groups, ACCURACIES):
@@ -83,7 +83,7 @@ def races(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def sentences(table: pd.DataFrame) -> list[str]:
-    """Who is quickest, what digits cost, and where others win."""
+    """Three sentences: the fastest methods, the cost of further digits, and the races that others win."""
     return [line for line in (_quickest(table), _digits(table), _won(table)) if line]
 
 
@@ -93,12 +93,12 @@ def _quickest(table: pd.DataFrame) -> str:
     times = finest.groupby("way").time.agg(["median", "min", "max"]).sort_values("median")
     if times.empty:
         return ""
-    told = [f"{one.Index} {_span(one.min, one.max, duration)}" for one in times[:LISTED].itertuples()]
+    spans = [f"{one.Index} {_span(one.min, one.max, duration)}" for one in times[:LISTED].itertuples()]
     missed = [w for w in asked[asked.quantity == "position"].way.unique() if w not in times.index]
     made = finest[finest.way == "map"].set_up
     return (
-        f"A pose to {power(ACCURACIES[-1])} mm of position takes {', '.join(told)}, "
-        f"the quickest of {len(times)} ways"
+        f"To solve a pose to {power(ACCURACIES[-1])} mm, the fastest of {len(times)} methods take "
+        f"{', '.join(spans)}"
         + (f"; the map is made once, in {_span(made.min(), made.max(), duration)}" if len(made) else "")
         + (f"; not reached by {', '.join(missed)}" if missed else "")
         + "."
@@ -114,12 +114,12 @@ def _digits(table: pd.DataFrame) -> str:
         return ""
     digits = np.log10(ends.value["last"] / ends.value["first"]).max()
     times = (ends.time["first"] / ends.time["last"]).rename("times").reset_index()
-    who = times.way.where(times.way.isin(OURS), "other ways")
+    who = times.way.where(times.way.isin(OURS), "other methods")
     spans = times.groupby(who, sort=False).times.agg(["min", "max"])
-    told = [f"{one.Index} {_span(one.min, one.max, '{:.2g}'.format)}" for one in spans.itertuples()]
+    ratios = [f"{one.Index} {_span(one.min, one.max, '{:.2g}'.format)}" for one in spans.itertuples()]
     return (
-        f"From the coarsest setting to the finest, {digits:.0f} digits on, a pose takes so many times as "
-        f"long: {', '.join(told)}."
+        f"Time of a pose with the finest setting over that with the coarsest, {digits:.0f} digits apart: "
+        f"{', '.join(ratios)}."
     )
 
 
@@ -132,10 +132,10 @@ def _won(table: pd.DataFrame) -> str:
     winners = f" ({', '.join(lost.other.value_counts().index[:LISTED])})" if len(lost) else ""
     unmade = int(without.verdict.isin(["other", "only others"]).sum())
     return (
-        f"Of {len(found)} races, each of a scene, a quantity and an accuracy of "
-        f"{', '.join(map(power, ACCURACIES))}, other ways than pointcoord's win {len(lost)}{winners}, or "
-        f"{unmade} if the map, whose making is not counted, is left out; {counts.get('tie', 0)} are ties, "
-        f"nobody reaches {counts.get('nobody', 0)}."
+        f"Of {len(found)} races, one for each scene, quantity and accuracy of "
+        f"{', '.join(map(power, ACCURACIES))}, methods other than pointcoord's win {len(lost)}{winners}, or "
+        f"{unmade} without the map, whose making is not counted; {counts.get('tie', 0)} are ties; in "
+        f"{counts.get('nobody', 0)} no method reaches the accuracy."
     )
 
 

@@ -1,4 +1,4 @@
-"""The picture of a report: error of positions against time, a line for each way."""
+"""The picture of a report: error of positions against time, with a line for each method."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ except ImportError as error:
 
 @mpl.rc_context(SETTINGS)
 def headline(table: pd.DataFrame) -> Figure | None:
-    """Error of positions against time, of the scene that is measured first; None if there is none."""
+    """Error of positions against time, for the first measured scene; None if nothing was measured."""
     here = timed(table)
     here = here[here.quantity == "position"]
     if here.empty:
@@ -33,7 +33,7 @@ def headline(table: pd.DataFrame) -> Figure | None:
     errors, nothing = heights(here.error)
     for way, look in looks(here.way).items():
         line = here[here.way == way].sort_values("value", ascending=False)
-        # Markers are filled, and the name has a star, where one solve serves any instant.
+        # If one solve serves any instant, markers are filled and the name has a star.
         dense = bool(line.dense.any())
         axes.plot(
             1e6 * line.time,
@@ -55,9 +55,7 @@ def headline(table: pd.DataFrame) -> Figure | None:
     axes.set_ylabel(f"largest error, {unit_of('position')}")
     title = f"{here.scene.iloc[0]}: largest error against time of a pose, {here.poses.max()} poses a run"
     page.suptitle(title, x=0.01, ha="left", fontsize=11)
-    key = (
-        f"{KEY.replace('. ', '.' + chr(10))} Grey: {', '.join(map(power, ACCURACIES))}; the set-up is apart."
-    )
+    key = f"{KEY.replace('. ', '.' + chr(10))} Grey: {', '.join(map(power, ACCURACIES))}; without the set-up."
     legend = page.legend(
         loc="outside lower left", ncols=4, frameon=False, fontsize=7.5, title=key, title_fontsize=7.5
     )

@@ -1,14 +1,14 @@
-"""A race: several runs timed in rounds, so that their times compare.
+"""A race: several runs timed in rounds, so that their times can be compared.
 
-All are run once in a round, and all again in the next, each round in another order that a fixed seed gives: a
-machine that is busy for a while hurts all alike, and no run always comes after the same one. So ratios are
-those of one process, and a race that was stopped is run again as a whole. Python's garbage collector runs
-before each round and never while something is timed; numerical libraries take one thread. What is quicker
-than a sample should last is repeated within the sample, and the mean is the sample.
+Each round runs all of them once, in a random order from a fixed seed. So a busy machine slows all alike, and
+no run always follows the same other one. Ratios hold for one process: a race that was stopped is repeated as
+a whole. Python's garbage collector runs before each round and never while something is timed; numerical
+libraries use one thread. A run shorter than the least length of a sample is repeated within the sample, which
+is the mean.
 
-The first run of each is timed apart; it gives the numbers, whose errors are the row's. The second warms up
-and says how many runs make a sample. What refuses, breaks down, or gives a number that is none has a row with
-its reason and no time; a wrong number is an error like any other, and stands with its size in the row.
+The first run is timed separately; its numbers give the errors of the row. The second run warms up, and its
+time sets the number of runs in a sample. A run that is refused, fails, or gives a number that is not finite
+has a row with the reason and no time. A wrong number is not a failure: its error is in the row.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from validate.cost.table import Row, Verdict
 from validate.errors import NoAnswer
 
 Clock = Callable[[], int]
-"""Nanoseconds since some instant."""
+"""Returns nanoseconds since some instant."""
 Progress = Callable[[str, int, int], None]
-"""Is called before anything is measured: what, how much is done, of how much."""
+"""Called before each run, with the name of the run, the number of runs done, and the total number."""
 SEED = 20221122
 MOST_LOOPS = 10_000
 
@@ -43,9 +43,10 @@ class Effort:
     """How much is measured.
 
     Attributes:
-        repeats: samples of each run. least: seconds that a sample lasts at least.
-        most: seconds for all samples of a run together; it gets fewer where they take longer, and only its
-            first run where two take longer.
+        repeats: number of samples of each run.
+        least: least length of a sample, s.
+        most: time limit for all samples of a run together, s. A slow run gets fewer samples; if two runs
+            exceed the limit, it gets only its first run.
     """
 
     repeats: int = 9
@@ -57,17 +58,17 @@ FULL, QUICK = Effort(), Effort(repeats=5, least=0.002, most=4.0)
 
 
 Found = dict[str, Mapping[str, Any]]
-"""Columns of a row for each quantity."""
+"""Columns of the rows, by quantity."""
 
 
 @dataclass(frozen=True)
 class Runner:
-    """Something to be timed.
+    """A run to be timed.
 
     Attributes:
-        row: what its rows have in common.
-        set_up: makes ready, and gives what is to be run; that gives an answer.
-        found: looks at the first answer; not timed.
+        row: the columns that its rows have in common.
+        set_up: prepares the run and returns the function that gives the answer.
+        found: evaluates the first answer; not timed.
     """
 
     row: Row
@@ -76,7 +77,7 @@ class Runner:
 
 
 def silent(what: str, done: int, of: int) -> None:
-    """Tell nobody."""
+    """Report no progress."""
 
 
 def race(
@@ -85,14 +86,14 @@ def race(
     progress: Progress = silent,
     clock: Clock = time.perf_counter_ns,
 ) -> list[Row]:
-    """Run all of them against each other, and give their rows in their order."""
+    """Time all runners against each other; returns their rows in the order of the runners."""
     courses = [_course(runner, effort, clock) for runner in runners]
     rows: list[list[Row]] = [[] for _ in runners]
     steps, collects = len(runners) * (effort.repeats + 1), gc.isenabled()
     gc.disable()
     try:
         with threadpool_limits(limits=1), warnings.catch_warnings():
-            # What overflows is seen in the numbers.
+            # An overflow shows in the numbers.
             warnings.simplefilter("ignore")
             for number in range(effort.repeats + 1):
                 gc.collect()
@@ -113,10 +114,10 @@ def race(
 
 
 def _course(runner: Runner, effort: Effort, clock: Clock) -> Iterator[list[Row]]:
-    """The rows of a runner after its first two runs, and again after each sample that there is time for."""
+    """Yield the rows of a runner after its first two runs, and again after each sample in the time limit."""
 
     def run() -> tuple[tuple[float, float], Any]:
-        """Seconds of the set-up and of the rest, and the answer."""
+        """Times of the set-up and of the run, s, and the answer."""
         begun = clock()
         solve = runner.set_up()
         ready = clock()
@@ -139,7 +140,7 @@ def _course(runner: Runner, effort: Effort, clock: Clock) -> Iterator[list[Row]]
 
 
 def _rows(row: Row, found: Found, samples: Sequence[tuple[float, float]]) -> list[Row]:
-    """A row for each quantity, with median and quartiles of the samples where it has numbers."""
+    """A row for each quantity, with the median and the quartiles of the samples if it was measured."""
     times: dict[str, Any] = {}
     if samples:
         set_up, rest = np.transpose(samples)
@@ -153,12 +154,12 @@ def _rows(row: Row, found: Found, samples: Sequence[tuple[float, float]]) -> lis
 
 
 def _broken(error: Exception) -> dict[str, Any]:
-    """Columns of a row of what breaks down: failed, or that its package is not there."""
+    """Columns of a row for an exception: failed, or left out if a package is missing."""
     known = isinstance(error, PointcoordError | NoAnswer | ImportError)
     verdict: Verdict = "left out" if isinstance(error, ImportError) else "failed"
     return absent(verdict, str(error) if known else f"{type(error).__name__}: {error}")
 
 
 def absent(verdict: Verdict, reason: str) -> dict[str, Any]:
-    """Columns of a row that has no numbers."""
+    """Columns of a row without numbers."""
     return {"poses": 0, "verdict": verdict, "reason": visible(" ".join(reason.split()))}

@@ -1,6 +1,6 @@
-"""The report of a study from its table: sentences, tables, data and the picture.
+"""The report of a study from its rows: sentences, tables, data and the picture.
 
-The same rows give the same bytes: nothing in it depends on when or where it is made.
+Equal rows give equal bytes: the report does not depend on the time or place where it is made.
 """
 
 from __future__ import annotations
@@ -14,25 +14,26 @@ from typing import TYPE_CHECKING, Any
 from validate.cost.table import WHERE, Row, frame, read_rows
 from validate.output.table import Part, Table
 
-# Imported where they are needed, as `findings` is: pandas takes half a second, and most pages show no costs.
+# pandas and `findings` are imported where needed: pandas takes half a second, and most pages have no costs.
 if TYPE_CHECKING:
     import pandas as pd
 
-TITLE = "What accuracy costs in time"
-NOTHING = "nothing was measured, so that there is nothing to say"
+TITLE = "Run time against accuracy"
+NOTHING = "nothing was measured, so there are no findings"
 HOW = (
-    "errors are against a many-digit reference, whose radius counts; times are medians of interleaved "
-    "repeats by one thread, from instants to arrays, the set-up apart; *: one solve serves any instant"
+    "errors are against a many-digit reference, whose radius is added; times are medians of interleaved "
+    "repeats with one thread, from instants to arrays, without the set-up; *: one solve serves any instant"
 )
 WIDTH = 110  # columns of a terminal
 
 
 @dataclass(frozen=True)
 class Report:
-    """Rows with where they come from.
+    """The rows of a study and their source.
 
     Attributes:
-        store: the file that holds them. command: that makes this report, as a shell would take it.
+        store: the file of the rows.
+        command: the command line that makes this report, quoted for a shell.
     """
 
     store: str
@@ -41,17 +42,17 @@ class Report:
 
     @classmethod
     def of_file(cls, store: str, command: str = "") -> Report:
-        """That of a file.
+        """The report of a file.
 
         Raises:
-            UsageError: it cannot be read, or holds no rows.
+            UsageError: the file cannot be read, or has no rows.
         """
         rows = read_rows(store)
         return cls(store, command or rows[0].command, tuple(rows))
 
     @property
     def quick(self) -> bool:
-        """Whether any row is one of `--quick`."""
+        """Whether any row was measured with `--quick`."""
         return any(row.quick for row in self.rows)
 
     @cached_property
@@ -61,19 +62,19 @@ class Report:
 
     @cached_property
     def sentences(self) -> list[str]:
-        """What the rows say."""
+        """The findings in sentences."""
         from validate.cost.findings import sentences
 
         return sentences(self.table)
 
     @property
     def tables(self) -> list[Table]:
-        """The same with its numbers."""
+        """The times to the finest accuracy, and the rows without numbers."""
         return [*_reached(self.table), *_without_numbers(self.table)]
 
     @property
     def measured(self) -> int:
-        """How many rows hold numbers."""
+        """The number of rows with numbers."""
         return sum(row.verdict == "measured" for row in self.rows)
 
     def measured_by(self) -> dict[str, str] | None:
@@ -81,7 +82,7 @@ class Report:
         return {what: getattr(self.rows[0], what) for what in ("command", *WHERE)} if self.rows else None
 
     def head(self) -> list[tuple[str, str]]:
-        """Machine, versions and commands."""
+        """Names and values: command, rows, program, machine, versions and how it was measured."""
         return [
             ("command", self.command),
             ("rows", f"{self.store}: {self.measured} measured of {len(self.rows)}"),
@@ -91,19 +92,19 @@ class Report:
         ]
 
     def parts(self) -> tuple[Part, ...]:
-        """For a terminal: sentences, tables, and by what it was measured."""
-        said = self.sentences or ([] if self.measured else [NOTHING])
+        """The report for a terminal: sentences, tables, program and machine."""
+        lines = self.sentences or ([] if self.measured else [NOTHING])
         shown = [part for table in self.tables for part in ("", table)]
         by = "".join(f" by {row.program}, {row.machine}" for row in self.rows[:1])
         last = f"{self.store}: {self.measured} rows measured{by}"
-        return ("\n".join(map(_wrapped, (TITLE, *said))), *shown, "", _wrapped(HOW), _wrapped(last))
+        return ("\n".join(map(_wrapped, (TITLE, *lines))), *shown, "", _wrapped(HOW), _wrapped(last))
 
     def csv(self) -> str:
-        """The long table."""
+        """All rows as CSV."""
         return str(self.table.to_csv(index=False, lineterminator="\n"))
 
     def data(self) -> dict[str, Any]:
-        """As plain data: see the schema of the documents, kind `cost`."""
+        """The report as plain data; see the JSON Schema, kind `cost`."""
         from validate.cost.findings import races
 
         return {
@@ -116,10 +117,10 @@ class Report:
         }
 
     def headline(self) -> bytes | None:
-        """The one picture, as SVG; None if there is nothing to draw.
+        """The picture, as SVG; None if nothing was measured.
 
         Raises:
-            ImportError: matplotlib is not there.
+            ImportError: matplotlib is not installed.
         """
         from validate.cost.picture import headline
         from validate.output.figure import drawn
@@ -129,7 +130,7 @@ class Report:
 
 
 def _reached(table: pd.DataFrame) -> Iterator[Table]:
-    """Time of a pose by the cheapest setting that reaches the finest accuracy, the quickest way first."""
+    """Time of a pose with the fastest setting that reaches the finest accuracy, the fastest method first."""
     from validate.cost.findings import ACCURACIES, cheapest, duration, timed
     from validate.cost.way import power
 
@@ -153,14 +154,14 @@ def _reached(table: pd.DataFrame) -> Iterator[Table]:
         for way, *of in times.itertuples()
     )
     caption = (
-        f"Time of a pose to {power(ACCURACIES[-1])} mm of position, by the cheapest setting; "
+        f"Time of a pose to {power(ACCURACIES[-1])} mm of position, with the fastest setting; "
         f"{' to '.join(dict.fromkeys(map(str, (tried.poses.min(), tried.poses.max()))))} poses a run"
     )
-    yield Table(("way", *scenes), tuple(rows), caption=caption)
+    yield Table(("method", *scenes), tuple(rows), caption=caption)
 
 
 def _without_numbers(table: pd.DataFrame) -> Iterator[Table]:
-    """What failed or was left out: each reason with the settings and quantities that it is of."""
+    """Rows that failed or were left out: each reason with its settings and quantities."""
     here, lines = table[table.verdict != "measured"], []
     for (scene, way, verdict, reason), some in here.groupby(
         ["scene", "way", "verdict", "reason"], sort=False
@@ -172,10 +173,10 @@ def _without_numbers(table: pd.DataFrame) -> Iterator[Table]:
 
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
-    """Lines of a data frame as plain data; what is not there is null."""
+    """Rows of a data frame as plain data; missing values are None."""
     return list(table.astype(object).where(table.notna(), None).to_dict("records"))
 
 
 def _wrapped(text: str) -> str:
-    """A paragraph for a terminal; lines after the first stand further in."""
+    """A paragraph wrapped for a terminal; lines after the first are indented."""
     return fill(text, WIDTH, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)

@@ -1,12 +1,13 @@
-r"""The scenes of the study, and the instants at which every way solves and errors are measured.
+r"""The scenes of the study, and the instants at which every method solves and errors are measured.
 
-The instants must be special to no way: not the ends of a chain's segments, where Newton's method has just
-been, nor an even grid, on which differences and sums of periodic motions cancel. So the time of a scene is
-cut into N equal parts, and instant i lies in its part i at the golden ratio's offset,
+The instants must not favour any method. They must not be the ends of a chain's segments, where Newton's
+method has just been applied, nor an even grid, on which differences and sums of periodic motions cancel. So
+the time of a scene is divided into N equal parts, and instant i lies in part i at an offset from the golden
+ratio phi,
 
-    t_i = start + (i + frac((i + 1) / phi)) (stop - start) / N,        i = 0 .. N - 1,
+    t_i = start + (i + frac((i + 1) / phi)) (stop - start) / N,        i = 0 .. N - 1.
 
-whose multiples keep from any fraction of small denominator as well as multiples of a number can (Hurwitz).
+Multiples of the golden ratio stay as far as possible from fractions with small denominators (Hurwitz).
 """
 
 from __future__ import annotations
@@ -27,17 +28,18 @@ Array = NDArray[np.float64]
 
 NEAR_TOGGLE = "near-toggle"
 STUDY_SCENES = ("bounce", "steer", "bounce-and-steer", "off-axis-strut", "double-wishbone", NEAR_TOGGLE)
-"""Those that are measured if none is named."""
+"""The scenes that are measured if none is named."""
 QUICK_SCENE = "bounce-and-steer"
-"""That of a quick study: both inputs move."""
+"""The scene of a quick study: both inputs move."""
 RATES = ("velocity", "acceleration", "knuckle_rates")
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
-MOST, MOST_QUICK = 200, 24  # the reference takes some 5 ms for each, and more tell no more about an error
+# Largest number of instants: the reference takes some 5 ms for each, and more show no larger errors.
+MOST, MOST_QUICK = 200, 24
 
 
 @dataclass(frozen=True)
 class StudyScene:
-    """A scene as it is measured, under its name in rows."""
+    """A scene of the study, with its name in the rows."""
 
     name: str
     scene: Scene
@@ -48,10 +50,10 @@ class StudyScene:
 
 
 def study_scene(name: str, scene: Scene) -> StudyScene:
-    """A scene with what is measured of it.
+    """A scene with the effects that are measured.
 
-    One that asks for any rate is measured with the velocities and accelerations of all points and of the
-    knuckle, beside what it asks for; one that asks for positions, or angles, is measured so.
+    If the scene asks for any rate, the velocities and accelerations of all points and of the knuckle are
+    measured in addition. If it asks only for positions or angles, nothing is added.
     """
     if plan_effects(scene.effects).derivative > 0:
         asked = {*scene.effects, *RATES}
@@ -60,10 +62,10 @@ def study_scene(name: str, scene: Scene) -> StudyScene:
 
 
 def own_scene(name: str) -> Scene:
-    """One of `STUDY_SCENES` by its name.
+    """A scene of `STUDY_SCENES` by its name.
 
     Raises:
-        SceneError: there is none.
+        SceneError: there is no such scene.
     """
     if name == NEAR_TOGGLE:
         text = resources.files("validate.cost").joinpath("scenes", f"{NEAR_TOGGLE}.toml").read_bytes()
@@ -75,7 +77,7 @@ def study_instants(scene: Scene, count: int | None = None, *, quick: bool = Fals
     """Instants inside a scene's time, increasing, shape (N,), s.
 
     Args:
-        count: N; as many as the scene has samples, but at most 200, or 24 of a quick study, if None.
+        count: N; if None, the number of the scene's samples, but at most 200, or 24 for a quick study.
     """
     if scene.time.start == scene.time.stop:
         return np.array([scene.time.start])

@@ -1,7 +1,8 @@
-"""The study: error and time of every way with every setting on each scene.
+"""The study: error and time of every method with every setting on each scene.
 
-A race for each scene. It is solved for its positions alone and, where it asks for more, for everything.
-Positions are judged by the first and all else by the second, so that nobody's positions wait for rates.
+Each scene is one race. It is solved for positions alone and, if it asks for more, again for everything. The
+first run gives the rows of positions and the second all other rows, so that times of positions include no
+rates.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ from validate.cost.scenes import StudyScene, study_instants
 from validate.cost.table import Row
 from validate.cost.way import Way
 
-SETTINGS_QUICK = 3  # of a way, the first and the last among them
+SETTINGS_QUICK = 3  # number of settings of a method in a quick study, the first and the last among them
 
 
 @dataclass(frozen=True)
 class Study:
-    """What is to be measured, and the columns that say where."""
+    """The scenes and methods to measure, and the columns of program and machine."""
 
     scenes: tuple[StudyScene, ...]
     ways: tuple[Way, ...]
@@ -33,14 +34,14 @@ class Study:
 
 
 def measure(study: Study, progress: Progress = silent) -> Iterator[list[Row]]:
-    """Measure, a scene after the other: the rows of each."""
+    """Measure scene by scene; yields the rows of each."""
     for scene in study.scenes:
         rows = race(runners_of(scene, study.ways, study.quick), QUICK if study.quick else FULL, progress)
         yield [replace(row, quick=study.quick, **study.where) for row in rows]
 
 
 def runners_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> list[Runner]:
-    """Every way with every setting, for positions and for everything; of a quick study few settings."""
+    """Every method with every setting, for positions and for everything; in a quick study few settings."""
     instants, runners = study_instants(study.scene, quick=quick), []
     row = Row(study.name, "", poses=len(instants))
     alone = (study.positions_only(), "position", judge(study.positions_only(), instants))

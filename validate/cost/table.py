@@ -1,7 +1,6 @@
-"""The long table of the study, kept as a Parquet file: a row is one quantity of one way with one setting.
+"""The table of measurements, a Parquet file: a row is one quantity of one method with one setting.
 
-Every row says what was measured, how exact it was, how long it took, and by what program on what machine. So
-tables can be concatenated.
+Every row has the error, the time, the program and the machine, so that tables can be concatenated.
 """
 
 from __future__ import annotations
@@ -20,35 +19,35 @@ from pydantic import TypeAdapter, ValidationError
 from validate.errors import UsageError
 from validate.output.document import machine, program_version
 
-# Imported where a table is made: it takes half a second, and most pages show no costs.
+# pandas is imported where a table is made: it takes half a second, and most pages have no costs.
 if TYPE_CHECKING:
     import pandas as pd
 
 Verdict = Literal["measured", "failed", "left out"]
 PACKAGES = ("numpy", "scipy", "pin", "mujoco", "exudyn")
 WHERE = ("program", "machine", "python", "packages")
-"""Columns that are the same in all rows whose times compare."""
+"""Columns that must be equal in rows whose times are compared."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """What was measured; None where there is no number.
+    """A row of measurements; None where there is no number.
 
     Attributes:
-        scene: its name. way: its name.
-        setting: in words, such as `1e-9 mm`. value: the number in it.
+        scene: name of the scene. way: name of the method.
+        setting: in words, such as `1e-9 mm`. value: the number in the setting.
         dense: whether one solve serves any instant.
-        poses: that one run gives.
+        poses: number of poses of one run.
         quantity: see `pointcoord.effects.registry.QUANTITIES`.
-        error, rms: against the reference, largest and root mean square of the components, in the quantity's
-            unit. radius: the reference's own proven error. numbers: how many components there are.
-        time: from instants to arrays, s a pose, median of the repeats; lower, upper: their quartiles.
-        set_up: s a run, median: what is done before the instants are known. first: the first run with its
-            set-up, s.
-        work: what one run did, such as `residuals 120, jacobians 40`.
+        error, rms: largest and root mean square error of the components against the reference, in the unit of
+            the quantity. radius: proven error of the reference. numbers: number of components.
+        time: from instants to arrays, s per pose, median of the repeats. lower, upper: quartiles.
+        set_up: time of the work before the instants are known, s per run, median. first: time of the first
+            run with its set-up, s.
+        work: counts of one run, such as `residuals 120, jacobians 40`.
         reason: why there are no numbers.
-        quick: whether less was measured, as `--quick` asks.
-        program, machine, python, packages, command: by what it was measured.
+        quick: whether it was measured with `--quick`.
+        program, machine, python, packages, command: where and how it was measured.
     """
 
     scene: str
@@ -92,11 +91,11 @@ def frame(rows: Iterable[Row]) -> pd.DataFrame:
 
 
 def read_rows(path: str) -> list[Row]:
-    """The rows of a file, at least one, wherever they were measured.
+    """The rows of a file, at least one, from any machine.
 
     Raises:
-        UsageError: it cannot be read, is no such table, or holds none.
-        ImportError: pyarrow is not there.
+        UsageError: the file cannot be read, is not such a table, or has no rows.
+        ImportError: pyarrow is not installed.
     """
     from pyarrow import parquet
 
@@ -106,20 +105,20 @@ def read_rows(path: str) -> list[Row]:
             raise ValueError(f"the columns {', '.join(sorted(odd))} are missing or unknown")
         if rows := TypeAdapter(list[Row]).validate_python(table.to_pylist()):
             return rows
-        why = "it holds no rows"
+        why = "it has no rows"
     except OSError as error:
         raise UsageError(f"{path}: cannot be read ({error.strerror}); give another file") from None
     except ValidationError as error:
         first = error.errors()[0]
         why = f"{first['loc'][1]} of row {first['loc'][0]}: {first['msg']}"
-    # pyarrow's errors have no family of their own.
+    # pyarrow's errors have no common base class.
     except Exception as error:
         why = " ".join(str(error).split())[:200]
-    raise UsageError(f"{path}: is no Parquet file of what accuracy costs ({why}); give another file")
+    raise UsageError(f"{path}: is not a file of pointcoord cost --rows ({why}); give another file")
 
 
 def measured_here(command: str) -> Mapping[str, str]:
-    """The columns that say where this process measures, and by which command."""
+    """The columns of program, machine and command for rows measured in this process."""
     here = machine()
     return {
         "program": f"pointcoord {program_version()}",
@@ -131,7 +130,7 @@ def measured_here(command: str) -> Mapping[str, str]:
 
 
 def _processor() -> str:
-    """The processor's name, as far as the system tells it."""
+    """The name of the processor, if the system has it."""
     try:
         text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
     except OSError:

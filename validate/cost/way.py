@@ -1,4 +1,4 @@
-"""What a way to solve a scene is to the study: a name, its settings, and a function."""
+"""A method to solve scenes (a way) in the study: a name, its settings, and a function."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ def power(number: float) -> str:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a way computed, by quantity and name, in the scene's axes and units, and what it did for that."""
+    """The numbers of a method, by quantity and name, in the scene's axes and units, and counts of work."""
 
     numbers: Numbers
     work: Mapping[str, int] = field(default_factory=dict)
 
 
 Solve = Callable[[Array], Answer]
-"""Solves at increasing instants, (N,), s; the first may lie after the scene's start."""
+"""Solves at N increasing instants, (N,), s; the first may be after the scene's start."""
 
 
 def laws_at(scene: Scene, instants: Array) -> dict[str, Array]:
@@ -44,16 +44,16 @@ def laws_at(scene: Scene, instants: Array) -> dict[str, Array]:
 
 @dataclass(frozen=True)
 class Way:
-    """A way to solve scenes. Adding one is a file with one of these, and a line of the registry.
+    """A method to solve scenes. To add one, write a file with a `Way`, and add a line to the registry.
 
     Attributes:
-        name: on the command line and in tables. words: what it is, in a line.
-        prepare: makes a scene ready for the value of a setting, which is the set-up. It raises whatever the
-            way refuses a scene with. The scene's own instants mean nothing here; what it asks for does.
-        values: of the setting, the coarsest first; None where there is nothing to set.
-        setting: a value in words.
-        dense: whether one solve serves any instant, so that more instants cost their evaluation only.
-        package: an optional one that it needs, by the name that it is imported with.
+        name: on the command line and in tables. words: a description of one line.
+        prepare: the set-up: prepares a scene for a value of the setting. It raises an error if the method
+            refuses the scene. It uses the effects that the scene asks for, but not the scene's instants.
+        values: values of the setting, the coarsest first; None if there is no setting.
+        setting: template of a value in words.
+        dense: whether one solve serves any instant, so that more instants cost only their evaluation.
+        package: import name of an optional package that the method needs.
     """
 
     name: str
@@ -69,10 +69,11 @@ class Way:
         return "" if value is None else self.setting.format(power(value))
 
     def ready(self, scene: Scene, value: float | None, instants: Array) -> Callable[[], Answer]:
-        """The set-up, for a scene at instants.
+        """Set up a scene; returns the function that solves it at the instants.
 
         Raises:
-            ImportError: its package is not installed. Also whatever it refuses a scene with.
+            ImportError: the package of the method is not installed.
+            Exception: the method refuses the scene.
         """
         if self.package and find_spec(self.package) is None:
             raise ImportError(f"needs the package {self.package!r}, which is not installed")

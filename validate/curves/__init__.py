@@ -1,1 +1,1 @@
-"""Curves of a motion: which of its numbers are meant, and a picture of one over another."""
+"""Curves of a motion: finds the numbers that are named, and draws one against another."""

@@ -1,4 +1,4 @@
-"""The numbers of a scene that can be shown, found by as few words as tell them apart."""
+"""The numbers of a scene that can be shown, found by the shortest unique name."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from validate.tables.units import degrees_of
 Array = NDArray[np.float64]
 
 Sampled = Samples | Solution
-"""Numbers of a motion or of another solution at instants."""
+"""Numbers of a motion, or of another solution, at instants."""
 Read = Callable[[Motion | None, Sampled], Array]
 
 TIME, TRAVEL = "time", "travel"
 COMPONENTS = "xyz"
-NAMED = 12  # numbers, in a message
+NAMED = 12  # largest number of names listed in a message
 PLACE = ALWAYS[0].quantities[0]
 
 
@@ -38,13 +38,13 @@ class Number:
     """A number of a scene over time.
 
     Attributes:
-        path: quantity, name and component, as far as it has them; what names it.
-        words: for people.
-        unit: of what `read` gives.
-        sign: where it is positive, in words; empty if that goes without saying.
-        read: its values at the instants of samples of a motion, (N,); KeyError where they do not have it.
-        missing: why it is not there; None if the scene asks for it.
-        minus: whether it counts the other way than our number of its path.
+        path: its name: quantity, name and component, as far as it has them.
+        words: its name in words.
+        unit: unit of the values from `read`.
+        sign: its positive direction in words; empty if it needs no statement.
+        read: returns its values at the N instants of samples, (N,); KeyError if the samples lack it.
+        missing: why the scene does not give it; None if the scene asks for it.
+        minus: whether its sign is opposite to that of pointcoord's number with this path.
     """
 
     path: tuple[str, ...]
@@ -57,16 +57,16 @@ class Number:
 
     @property
     def of_the_car(self) -> bool:
-        """Whether it is an angle or another number that the whole car has once."""
+        """Whether it is a number of the whole car, such as an angle, and not of a point or a body."""
         return len(self.path) == 2
 
     @property
     def panel(self) -> tuple[str, ...]:
-        """Numbers of the same are drawn over the same axis."""
+        """The panel in which it is drawn: numbers with an equal value here share an axis."""
         if len(self.path) < 3:
             # The wheels of an axle share an axis.
             return (*self.path[:-1], self.path[-1].rpartition(".")[2])
-        # Places lie far apart: on one axis nothing would be seen of how they change.
+        # The components of a position differ much: on one axis their changes would not be visible.
         return (PLACE.name, self.path[2]) if self.path[0] == PLACE.name else self.path[:1]
 
     @property
@@ -76,34 +76,34 @@ class Number:
 
     @property
     def called(self) -> str:
-        """Its name in tables: a number of the car's own, of others the whole path."""
+        """Its name in tables: for a number of the car its own name, for others the whole path."""
         return self.path[-1] if len(self.path) < 3 and not self.is_force else ".".join(self.path)
 
     @property
     def short(self) -> str:
-        """As few words as name it."""
+        """Its short name: without the quantity for numbers of the car and for positions."""
         return ".".join(self.path[1:] if self.of_the_car or self.path[0] == PLACE.name else self.path)
 
     def shown(self, motion: Motion | None, samples: Sampled) -> Array:
-        """Its values for people, (N,): an angle in degrees.
+        """Its values as shown, (N,); angles in degrees.
 
         Args:
-            motion: may be None of a number of the car at poses, which have no motion.
+            motion: may be None for a number of the car at poses without a motion.
         """
         return self.read(motion, samples) * self.in_degrees
 
     @property
     def in_degrees(self) -> float:
-        """What its values are multiplied by for that."""
+        """The factor from its unit to the shown unit: that from rad to degrees, or 1."""
         return degrees_of(self.unit)[0]
 
     @property
     def unit_shown(self) -> str:
-        """The unit of these."""
+        """The shown unit: degrees for an angle."""
         return degrees_of(self.unit)[1]
 
     def negative(self) -> Number:
-        """The same, counted the other way."""
+        """This number with the opposite sign."""
 
         def read(motion: Motion | None, samples: Sampled) -> Array:
             return np.negative(self.read(motion, samples))
@@ -113,14 +113,14 @@ class Number:
 
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:
-    """Time, travel of the wheel and inputs of a scene, and every number that it can ask for."""
+    """Time, wheel travel and inputs of a scene, and every number that the scene can ask for."""
     time = Number((TIME,), TIME, "s", "", lambda _, samples: samples.times)
     travel = [_travel(scene)] if scene.mechanism.topology.wheel_centre else []
     found: dict[tuple[str, ...], Number] = {}
     had = {*scene.mechanism.effects}
     for number in (n for effect in (*ALWAYS, *EFFECTS.values()) for n in _of_effect(effect, scene)):
         before = found.setdefault(number.path, number)
-        # Two effects may give a number: it is there where one of them is asked for.
+        # Two effects may give the same number: it is not missing if the scene asks for one of them.
         if before.missing and not (number.missing and before.missing.effect in had):
             found[number.path] = number
     return (time, *travel, *_inputs(scene), *found.values())
@@ -129,14 +129,15 @@ def numbers_of(scene: Scene) -> tuple[Number, ...]:
 def numbers_asked(
     scene: Scene, name: str, named: Sequence[str] | None, first: Sequence[str] | None
 ) -> tuple[Number, ...]:
-    """What a table of a car holds, by the scene's convention.
+    """The numbers in a table of a car, by the scene's convention.
 
     Args:
-        name: of the scene, for messages. named: by words, see `numbers_called`.
-        first: without names, those that are taken of what the car has; of None every number by our names that
-            does not hang on how fast the car moves.
+        name: name of the scene, for messages.
+        named: names of numbers, see `numbers_called`.
+        first: used if `named` is empty: the numbers to take if the car has them. None: every number of the
+            car, by pointcoord's names, that does not depend on the speed of the motion.
     Raises:
-        UsageError: the car has no such number, or none at all.
+        UsageError: the car has no such number, or no numbers at all.
     """
     part, numbers, convention = scene.mechanism, numbers_of(scene), CONVENTIONS[scene.convention]
     had = {number for effect in part.effects for number in EFFECTS[effect].names(part.topology)}
@@ -145,7 +146,7 @@ def numbers_asked(
     if not every:
         raise UsageError(
             f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles]; "
-            "pointcoord simulate writes what it gives"
+            "pointcoord simulate writes the numbers that the scene asks for"
         )
     if named:
         try:
@@ -164,10 +165,10 @@ def numbers_asked(
 
 
 def numbers_called(words: str, scene: Scene) -> tuple[Number, ...]:
-    """The numbers that some words name by the scene's convention, see `found`.
+    """The numbers with a given name in the scene's convention, see `found`.
 
     Raises:
-        UsageError: they fit none, or numbers of more than one name.
+        UsageError: the name fits no number, or numbers with different names.
     """
     called, sign = CONVENTIONS[scene.convention].number(words)
     own = called.rpartition(".")[2]
@@ -182,10 +183,10 @@ def numbers_called(words: str, scene: Scene) -> tuple[Number, ...]:
 
 
 def asking_for(scene: Scene, numbers: Iterable[Number]) -> Scene:
-    """The scene with the effects that give some numbers beside its own.
+    """The scene with the effects added that give some numbers.
 
     Raises:
-        NotComputed: it does not report the point of one.
+        NotComputed: the scene does not report the point of a number.
     """
     wanted = []
     for number in numbers:
@@ -196,11 +197,11 @@ def asking_for(scene: Scene, numbers: Iterable[Number]) -> Scene:
 
 
 def _travel(scene: Scene) -> Number:
-    """How far the wheel centre is above its place in the drawing as closed, against the chassis; mm."""
+    """Height of the wheel centre above its position in the closed drawing, relative to the chassis, mm."""
     up = np.array(scene.mechanism.up)
 
     def read(motion: Motion | None, samples: Sampled) -> Array:
-        assert motion is not None  # nobody asks poses for it
+        assert motion is not None  # poses without a motion are not asked for it
         return np.asarray(movement(scene, motion, samples) @ up)
 
     missing = _missing(ALWAYS[0], PLACE, scene.mechanism.topology.wheel_centre, scene)
@@ -208,7 +209,7 @@ def _travel(scene: Scene) -> Number:
 
 
 def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
-    """Of the wheel centre from its place in the drawing as closed, against the chassis, (N, 3), mm."""
+    """Displacement of the wheel centre from the closed drawing, relative to the chassis, (N, 3), mm."""
     centre = scene.mechanism.topology.wheel_centre
     readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
     local = samples.numbers[PLACE.name][centre] - readout.mechanism.origin
@@ -254,7 +255,7 @@ def _of_effect(effect: Effect, scene: Scene) -> Iterator[Number]:
 
 
 def _missing(effect: Effect, quantity: Quantity, name: str, scene: Scene) -> NotComputed | None:
-    """Why a number of an effect is not there; None if it is."""
+    """Why a scene does not give a number of an effect; None if the scene gives it."""
     what = f"{quantity.words} of {name}"
     if effect not in ALWAYS and effect.name not in scene.effects:
         return NotComputed(what, effect.name)
@@ -272,7 +273,7 @@ def _reader(quantity: Quantity, name: str, component: int | None = None) -> Read
 
 
 def _along(scene: Scene, i: int) -> str:
-    """Where an axis of the points points in the car: up, rearward, left; empty where it is between these."""
+    """The direction of an axis in the car, such as up, rearward or left; empty for an oblique axis."""
     up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
     named = (("up", "down", up), ("right", "left", right), ("rearward", "forward", np.cross(right, up)))
     for positive, negative, direction in named:
@@ -282,43 +283,43 @@ def _along(scene: Scene, i: int) -> str:
 
 
 def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
-    """The numbers that some words name: one, that of each wheel, or the components of one vector.
+    """The numbers that `words` names: one number, that of each wheel, or the components of one vector.
 
-    The words, with dots between them, are a quantity, a name and a component, without those at either end
-    that are not needed; without a quantity the first that fits is meant, position before velocity.
+    `words` is QUANTITY.NAME.COMPONENT; parts at either end may be left out. Without a quantity the first one
+    that fits is taken, position before velocity.
 
     Raises:
-        UsageError: they fit none, or numbers of more than one name.
+        UsageError: `words` fits no number, or numbers with different names.
     """
-    # A number may be called as a quantity is, and stands before it then.
+    # A number and a quantity may have the same name; the number is taken.
     fitting = [n for n in numbers if f".{'.'.join(n.path)}".endswith(f".{words}")]
     fitting = fitting or [n for n in numbers if f".{words}." in f".{'.'.join(n.path)}."]
     fitting = [n for n in fitting if n.path[0] == fitting[0].path[0]]
     if not fitting:
         known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
         own = dict.fromkeys(n.short.rpartition(".")[2] for n in numbers if len(n.path) < 3)
-        there = f"there are: {some_of([*own], NAMED)}, and of points POINT.z or QUANTITY.POINT.z"
+        there = f"there are: {some_of([*own], NAMED)}, and for points POINT.z or QUANTITY.POINT.z"
         raise UsageError(
-            f"{shown(words)!r} names no number that is here{hint(words, [*own, *known])}; {there}"
+            f"{shown(words)!r} names no number of this scene{hint(words, [*own, *known])}; {there}"
         )
     names = dict.fromkeys(n.path[:2] for n in fitting)
     own_names = {name[-1].rpartition(".")[2] for name in names} if fitting[0].of_the_car else names
     if len(own_names) > 1:
         some = ", ".join(".".join(name) for name in names)
-        raise UsageError(f"{shown(words)!r} is more than one number; say which, such as {some}")
+        raise UsageError(f"{shown(words)!r} names more than one number; give one of: {some}")
     return tuple(fitting)
 
 
 @dataclass(frozen=True)
 class Curves:
-    """What is drawn over what: one number over several, or several over one."""
+    """The numbers of the two axes: one number against several, or several against one."""
 
     across: tuple[Number, ...]
     up: tuple[Number, ...]
 
     @property
     def pairs(self) -> tuple[tuple[Number, Number], ...]:
-        """Each curve's two numbers."""
+        """The horizontal and the vertical number of each curve."""
         return tuple(product(self.across, self.up))
 
 
@@ -328,11 +329,11 @@ def angles_of(scene: Scene) -> tuple[Number, ...]:
 
 
 def usual(scene: Scene, motion: Motion, angles: Sequence[Number]) -> Curves:
-    """What an engineer wants to see first.
+    """The curves that are drawn without --x and --y.
 
-    The angles of the wheel against its travel, which goes upward on the paper, where the wheel goes mostly up
-    and down; else against the one input that moves, or time. The wheel centre's place over time where there
-    are no angles; without a wheel that of the first point that moves.
+    If the wheel moves mainly up and down, the wheel angles over wheel travel, with travel on the vertical
+    axis; otherwise the angles over the one input that moves, or over time. Without angles, the position of
+    the wheel centre over time; without a wheel, the position of the first point that moves.
     """
     there = [n for n in numbers_of(scene) if n.missing is None]
     one: Mapping[str, Number] = {n.path[0]: n for n in there if len(n.path) == 1}

@@ -1,4 +1,4 @@
-"""A file that `sweep` or `simulate` wrote, and its columns by few words."""
+"""Reads a file that `sweep` or `simulate` wrote, and finds its columns by short names."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ import pandas as pd
 from validate.errors import UsageError
 from validate.plain_text import shown, some_of
 
-NAMED = 8  # columns, in a message
+NAMED = 8  # largest number of columns listed in a message
 
 
 def read_sweep(path: str) -> pd.DataFrame:
-    """The table of a file, by its ending.
+    """The columns of numbers of a file; its ending gives the format.
 
     Raises:
-        UsageError: it cannot be read, or has no numbers.
+        UsageError: the file cannot be read as a table.
     """
     read = {".csv": pd.read_csv, ".parquet": pd.read_parquet, ".npz": _of_npz}[Path(path).suffix]
     try:
         table = read(path)
-    # What other bytes end with is numpy's affair, pandas' and zipfile's.
+    # For damaged files numpy, pandas and zipfile raise many kinds of errors.
     except Exception as error:
         allowed = "a file that pointcoord sweep or simulate wrote"
-        raise UsageError(f"{shown(path)} is no table ({shown(str(error))}); give {allowed}") from None
+        raise UsageError(f"{shown(path)} is not a table ({shown(str(error))}); allowed: {allowed}") from None
     return table.select_dtypes("number")
 
 
@@ -36,10 +36,10 @@ def _of_npz(path: str) -> pd.DataFrame:
 
 
 def columns_called(table: pd.DataFrame, words: Sequence[str]) -> list[str]:
-    """The columns whose names, but for the unit, are some words or have them among their parts.
+    """The columns with given names. A name is compared without the unit; it may be a part between dots.
 
     Raises:
-        UsageError: there is none.
+        UsageError: a name fits no column.
     """
     found, plain_names = [], {str(name): str(name).partition(" [")[0] for name in table}
     for word in words:

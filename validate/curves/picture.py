@@ -1,4 +1,4 @@
-"""Curves as a picture: a panel for each kind of number, and one axis that all of them share."""
+"""Draws curves: a panel for each kind of number; all panels share one axis."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ Array = NDArray[np.float64]
 Values = Callable[[Number], Array]
 
 COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY)
-STYLES = ("-", "--", "-.", ":")  # for those who see no colours, and beyond their number
-# Inches: how wide and high panels are, one alone or several that stand side by side or above each other, and
-# what the labels and the title take.
+STYLES = ("-", "--", "-.", ":")  # for readers who cannot see colours, and for more curves than colours
+# Width and height, inches: of a single panel, of panels side by side, of panels above each other, and the
+# room for labels and the title.
 ALONE, BESIDE, ABOVE, LABELS = (4.4, 3.6), (2.3, 3.6), (5.5, 2.3), (0.9, 1.1)
-LETTER = 0.066  # inches, of a letter of a label, on average
-MOST = 400  # designs: more curves cover each other, and evenly as many are drawn
-# Digits below which numbers that do not change differ by rounding.
+LETTER = 0.066  # average width of a letter of a label, inches
+MOST = 400  # largest number of designs drawn, evenly chosen: more curves would cover each other
+# Relative change below which a number is drawn as constant: smaller changes are rounding.
 STILL = 1e-9
 
 
@@ -38,7 +38,7 @@ def figure(curves: Curves, values: Values, title: str) -> Figure:
     """Draw curves.
 
     Args:
-        values: of each number, as it is shown, (N,).
+        values: returns the values of a number as shown, (N,).
     """
     upright = len(_panels(curves.across)) > 1 or curves.up[0].path[0] == TRAVEL
     several = _panels(curves.across if upright else curves.up)
@@ -55,7 +55,7 @@ def figure(curves: Curves, values: Values, title: str) -> Figure:
 
 @LOOK
 def figure_of(table: pd.DataFrame, across: str, up: Sequence[str], title: str) -> Figure:
-    """Draw columns of a sweep's table: a panel for each that goes upward, a curve for each design."""
+    """Draw columns of a sweep's table: a panel for each column in `up`, a curve for each design."""
     designs = [table] if DESIGN not in table else [one for _, one in table.groupby(DESIGN)]
     chosen = np.unique(np.linspace(0, len(designs) - 1, min(len(designs), MOST)).round().astype(int))
     page, grid = panels((5.5, 2.2 * len(up) + 0.8), title, len(up), 1, sharex=True)
@@ -69,7 +69,7 @@ def figure_of(table: pd.DataFrame, across: str, up: Sequence[str], title: str) -
 
 
 def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
-    """Numbers that are drawn over the same axis together."""
+    """Groups of numbers that are drawn on the same axis."""
     found: dict[tuple[str, ...], list[Number]] = {}
     for number in numbers:
         found.setdefault((*number.panel, number.unit), []).append(number)
@@ -107,10 +107,10 @@ def _draw(axes: Axes, curves: Curves, values: Values, size: tuple[float, float])
 
 
 def _label(numbers: Sequence[Number], letters: int) -> str:
-    """What an axis shows, with its unit and where it is positive; the legend names several."""
+    """The label of an axis: number, unit and positive direction; several numbers are named in the legend."""
     first, signs = numbers[0], list(dict.fromkeys(n.sign for n in numbers if n.sign))
     words = f"{first.words} " if len(numbers) == 1 else ""
-    told = "; ".join(dict.fromkeys(f"+{n.called} {n.sign}" for n in numbers if n.sign))
+    positive = "; ".join(dict.fromkeys(f"+{n.called} {n.sign}" for n in numbers if n.sign))
     if len(signs) == 1:
-        told = f"+ {signs[0]}"
-    return "\n".join(fill(line, letters) for line in (f"{words}[{first.unit_shown}]", told) if line)
+        positive = f"+ {signs[0]}"
+    return "\n".join(fill(line, letters) for line in (f"{words}[{first.unit_shown}]", positive) if line)

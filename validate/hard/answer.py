@@ -1,7 +1,7 @@
-"""A scene solved by formulations, each answer compared with the reference: right or wrong, by how much.
+"""Solves a scene by several formulations, and compares each answer with the reference.
 
-Every number that a formulation gives is compared: positions, velocities, accelerations, body rates and
-wheel angles at every instant, each against the formulation's own bound or tolerance (see `tolerance`).
+Every number of a formulation is compared: positions, velocities, accelerations, body rates and wheel angles
+at every instant, each against the error bound that the formulation states (see `comparison.tolerance`).
 """
 
 from __future__ import annotations
@@ -24,27 +24,29 @@ from validate.formulations.registry import formulation
 from validate.reference import InfeasibleError, NoReferenceError
 
 OURS = "pointcoord"
-# Every case that pointcoord has to solve is tried by a map of the inputs too.
+# Every case that pointcoord has to solve is also solved by a map of the inputs.
 MAP = "pointcoord-map"
-NOT_ASKED = NoReferenceError("the reference", "is not asked, as all refuse", "an answer to compare")
-# Factorisations of one map: some 0.3 s. Plain motions take a tenth of it; near folds no number is enough.
+NOT_ASKED = NoReferenceError("the reference", "is not solved, because all refuse", "an answer to compare")
+# Limit of factorisations of a map: some 0.3 s. Plain motions take a tenth; near a fold no limit would be
+# enough.
 MAP_EFFORT = 1000
-# right: every number lies within its bound of the reference. refused: a reason in place of numbers. wrong:
-# some do not. unjudged: the reference could not be proven, a failure unless the case allows it.
+# right: every number is within its bound of the reference. wrong: some number is not. refused: a reason
+# instead of numbers. unjudged: the reference could not be proven, which is a failure unless the case allows
+# it.
 Outcome = Literal["right", "refused", "wrong", "unjudged"]
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What one formulation made of one value of a case's parameter.
+    """The answer of one formulation at one value of a case's parameter.
 
     Attributes:
-        formulation: its name.
-        outcome: by the reference.
-        reason: of a refusal; else which quantity came closest to its bound, or exceeded it the most.
-        error: largest distance of a point from the reference, in the case's unit; None without numbers.
-        bound: largest bound that the formulation gives for it, in the same unit.
-        share: largest error of any quantity, rates and angles too, in parts of its bound.
+        formulation: name of the formulation.
+        outcome: the judgement by the reference.
+        reason: of a refusal; else the quantity with the largest error / bound.
+        error: largest error of a point's position, in the case's unit; None without numbers.
+        bound: largest error bound of a position that the formulation states, in the same unit.
+        share: largest error / bound of any quantity, rates and angles included.
         condition: largest condition number.
     """
 
@@ -59,13 +61,13 @@ class Answer:
 
 @dataclass(frozen=True)
 class Trial:
-    """One value of a parameter, tried by every formulation of the case.
+    """The answers of all formulations of a case at one value of its parameter.
 
     Attributes:
-        facts: what else is to be said of it, by name with its unit.
-        scene: None where it could not be read.
-        came: a formulation's solution, or why there is none, by name.
-        reference: at the scene's instants, or why there is none.
+        facts: further facts on the value, by name with unit.
+        scene: the scene; None if it could not be read.
+        came: by formulation, its solution, or the error.
+        reference: the reference at the scene's instants, or the error.
     """
 
     value: float
@@ -79,15 +81,15 @@ class Trial:
 def try_scene(value: float, content: Mapping[str, Any], formulations: Sequence[str]) -> Trial:
     """Solve a scene by each formulation and compare the answers with the reference.
 
-    A scene that cannot be read is refused by all. Where the reference has no pose no answer is right. It is
-    not asked if all refuse, when there is nothing to compare with it. The drawings of hard cases are exact,
-    so that it takes an unclear side from exact products.
+    A scene that cannot be read counts as refused by all. If the reference proves that there is no pose, no
+    answer is right. If all refuse, the reference is not solved. The drawings of hard cases are exact, so
+    the reference decides an unclear side of the drawing by exact products.
     """
     try:
         scene = Scene.from_mapping(content)
     except SceneError as error:
         refused = tuple(Answer(name, "refused", said(error)) for name in formulations)
-        return Trial(value, refused, {"reference": "not asked"})
+        return Trial(value, refused, {"reference": "not solved"})
     came = {name: solved(name, scene) for name in formulations}
     reference: Solution | Exception = NOT_ASKED
     if any(isinstance(one, Solution) for one in came.values()):
@@ -97,12 +99,12 @@ def try_scene(value: float, content: Mapping[str, Any], formulations: Sequence[s
             # Inputs that overflow have no exact value to solve for.
             reference = error
     answers = tuple(_compared(scene, *one, reference) for one in came.items())
-    told = {"reference": said(reference)} if isinstance(reference, Exception) else {}
-    return Trial(value, answers, {} if reference is NOT_ASKED else told, scene, came, reference)
+    facts = {"reference": said(reference)} if isinstance(reference, Exception) else {}
+    return Trial(value, answers, {} if reference is NOT_ASKED else facts, scene, came, reference)
 
 
 def solved(name: str, scene: Scene) -> Solution | Exception:
-    """A formulation's solution, or why there is none: a warning is an error, and the run goes on.
+    """A formulation's solution, or its error. Python warnings count as errors; errors do not end the run.
 
     Raises:
         MissingLibrary: the formulation is not installed.
@@ -112,7 +114,7 @@ def solved(name: str, scene: Scene) -> Solution | Exception:
             warnings.simplefilter("error")
             one = formulation(name)
             if isinstance(one, PointCoordinates) and one.method is BY_MAP:
-                # Given up early: thousands of hard cases have to be tried in little time.
+                # With limited effort: thousands of hard cases have to be solved in little time.
                 one = replace(one, method=replace(BY_MAP, map_effort=MAP_EFFORT))
             return one.solve(scene)
     except MissingLibrary:
@@ -122,9 +124,9 @@ def solved(name: str, scene: Scene) -> Solution | Exception:
 
 
 def _compared(scene: Scene, name: str, came: Solution | Exception, reference: Solution | Exception) -> Answer:
-    """What a formulation came to, compared with the reference or with the proof that there is no pose.
+    """A formulation's result, compared with the reference or with the proof that there is no pose.
 
-    An error other than a refusal is a defect of the formulation, and its answer is wrong.
+    An error that is not a refusal is a defect of the formulation, and counts as a wrong answer.
     """
     if isinstance(came, FormulationError | SceneError):
         return Answer(name, "refused", said(came.reason if isinstance(came, FormulationError) else came))
@@ -142,9 +144,10 @@ def _compared(scene: Scene, name: str, came: Solution | Exception, reference: So
 
 
 def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer:
-    """Compare all numbers of a solution with the reference, each by the bound that the solution gives.
+    """Compare all numbers of a solution with the reference, each by the error bound of the solution.
 
-    However large that is: the reference tells what a partner with a wide tolerance could not.
+    The bound counts however large it is: unlike another model, the reference has a negligible error of its
+        own.
     """
     rows = compare_solutions(scene, answer, reference, "hard", told_by(reference, scene)).rows
     worst = max(rows, key=lambda row: np.inf if np.isnan(row.share) else row.share)
@@ -153,7 +156,7 @@ def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer
     if any(row.verdict in ("disagrees", "not given") for row in rows):
         outcome, off = "wrong", "is not a number"
         if np.isfinite(worst.difference):
-            off = f"is off by {worst.difference:.2g} {worst.unit}, {worst.share:.2g} of what is allowed,"
+            off = f"has an error of {worst.difference:.2g} {worst.unit}, {worst.share:.2g} times its bound,"
         reason += f" {off} at t = {worst.instant:.6g} s"
     error = max(np.max(np.abs(answer.position[n] - place)) for n, place in reference.position.items())
     bound = max(np.max(claim) for claim in answer.accuracy.claims["position"].values())

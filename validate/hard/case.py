@@ -1,8 +1,8 @@
-"""A hard case is a row: why it is hard, a scene made from one number that leads into it, what has to come.
+"""A hard case: why it is hard, a function that makes its scene from one number, and the expected outcome.
 
-A family is such a row for every mechanism. The paper's strut is tried at every value of the number, the
-others at one: what is hard about a value is the same in each. Values are few: far from the singular place, at
-it, between them, and where `right` has to begin.
+A family is such a case for every mechanism. The paper's strut is run at every value of the number, the other
+mechanisms at one, since the difficulty is the same in each. The values are few: far from the singular pose,
+at it, between them, and the value from which an answer must be right.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from validate.hard.subjects import PAPER, SUBJECTS, Content, Subject, hyphens
 from validate.reference import InfeasibleError
 
 SOLVERS = (OURS, "pointcoord-newton", "absolute", "relative")
-# Why a model may refuse a mechanism, or no reference be had of it.
+# Mechanisms that a model may refuse, or for which the reference may find no proof, with the reason.
 HARD: Mapping[str, str] = {"bricard": "one of its rows depends on the others at every pose"}
 SceneAt = Callable[[Subject, float], Content]
 Judge = Callable[[Subject, float, Trial, Answer], Answer]
@@ -29,11 +29,11 @@ Every = Callable[[Subject], Values]
 
 @dataclass(frozen=True)
 class Expected:
-    """What a formulation may make of a case.
+    """The outcomes of a formulation that a case allows.
 
     Attributes:
-        outcomes: those allowed.
-        right_from: for values of the parameter from here up only `right` is allowed.
+        outcomes: the allowed outcomes.
+        right_from: at values of the parameter from here up only `right` is allowed.
     """
 
     outcomes: tuple[Outcome, ...]
@@ -41,24 +41,24 @@ class Expected:
 
     @property
     def words(self) -> str:
-        """In words."""
+        """The allowed outcomes in words."""
         surely = f"; right from {self.right_from:g} up" if self.right_from < float("inf") else ""
         return " or ".join(self.outcomes) + surely
 
     def met(self, value: float, outcome: Outcome) -> bool:
-        """Whether an outcome is what had to come."""
+        """Whether an outcome is allowed at a value."""
         return outcome in (("right",) if value >= self.right_from else self.outcomes)
 
 
 RIGHT = Expected(("right",))
 RIGHT_OR_REFUSED = Expected(("right", "refused"))
 REFUSED = Expected(("refused",))
-# Of mechanisms that a model may refuse, and of which there may be no reference: then nothing is judged.
+# For mechanisms that a model may refuse, and for which there may be no reference, so that nothing is judged.
 IF_ANY = Expected(("right", "refused", "unjudged"))
 
 
 def right_from(least: float) -> Expected:
-    """Right, or refused at less than a value."""
+    """Right or refused below a value, right from this value up."""
     return replace(RIGHT_OR_REFUSED, right_from=least)
 
 
@@ -68,18 +68,18 @@ class Case:
 
     Attributes:
         name: on the command line, words joined by hyphens.
-        group: heading that it is shown under.
-        why: one sentence that says why it is hard.
-        parameter: what tends to the singular place, with its unit.
-        values: of the parameter.
-        scene: the content of the scene, of a mechanism and at a value.
+        group: the heading in listings.
+        why: one sentence on why it is hard.
+        parameter: what is varied towards the singular pose, with its unit.
+        values: values of the parameter.
+        scene: makes the content of the scene from the mechanism and a value.
         subject: the mechanism.
-        expected: by formulation; a case tries the formulations named here.
-        judge: what becomes of an answer by what else is asked of it here.
-        facts: that say more of a value, by name with its unit.
-        unit: of error and bound.
-        given: whether the scene can be given to another solver.
-        beyond: whether the scene has no pose at some instants, and `right` is a refusal that says so rightly.
+        expected: the allowed outcomes by formulation; these formulations are run.
+        judge: a further check of an answer; returns the answer, with its outcome corrected.
+        facts: returns further facts on a value, by name with unit.
+        unit: unit of error and bound.
+        given: whether the scene may be given to another solver, too.
+        beyond: whether the scene has no pose at some instants; `right` is then a correct refusal.
     """
 
     name: str
@@ -97,11 +97,11 @@ class Case:
     beyond: bool = False
 
     def content(self, value: float) -> Content:
-        """Of the scene at a value."""
+        """The content of the scene at a value."""
         return self.scene(self.subject, value)
 
     def examine(self, value: float) -> Trial:
-        """Try one value; by a map as well if it is one of the few, where there is something to compare."""
+        """Solve the case at one value; at the values of `mapped` by a map too, if it can be compared."""
         by_map = [MAP] if value in self.mapped else []
         trial = try_scene(value, self.content(value), [*self.expected, *by_map])
         answers, of_map = trial.answers[: len(self.expected)], trial.answers[len(self.expected) :]
@@ -114,15 +114,15 @@ class Case:
         return replace(trial, answers=answers, facts={**trial.facts, **facts})
 
     def without(self, formulations: Collection[str]) -> Case:
-        """The same, tried by none of some formulations, such as those that are not installed."""
+        """This case without some formulations, such as those that are not installed."""
         left = {name: one for name, one in self.expected.items() if name not in formulations}
         return replace(self, expected=left)
 
     @property
     def mapped(self) -> tuple[float, ...]:
-        """The values that are tried by a map too: the one amid them and the last, as each takes long.
+        """The values that are solved by a map too: the middle one and the last, because each takes long.
 
-        A map says nothing of how far it came, so that none is asked for what lies beyond the last pose.
+        A refusal by a map does not say how far it came, so none is made for cases beyond the last pose.
         """
         by_map = OURS in self.expected and MAP not in self.expected and not self.beyond
         return (self.values[len(self.values) // 2], self.values[-1]) if by_map else ()
@@ -130,7 +130,7 @@ class Case:
     def unexpected(self, trial: Trial) -> tuple[Answer, ...]:
         """The answers of a trial that are not allowed.
 
-        A map may be refused, its effort being bounded; it answers only where the other method may.
+        A map may always be refused, since its effort is limited; it may answer only if pointcoord may.
         """
         allowed = dict(self.expected)
         if OURS in allowed:
@@ -140,7 +140,7 @@ class Case:
 
     @property
     def behaviour(self) -> str:
-        """What is expected, in words: formulations of which as much is expected are named together."""
+        """The allowed outcomes in words; formulations with equal ones are named together."""
         alike: dict[str, list[str]] = {}
         for name, one in self.expected.items():
             alike.setdefault(one.words, []).append(name)
@@ -150,12 +150,12 @@ class Case:
 
     @property
     def without_pose(self) -> bool:
-        """Whether some instants of a scene that is given to others have no pose, at every value."""
+        """Whether other solvers can be given the scene, and it has instants without a pose at every value."""
         return self.given and (self.beyond or all(one == REFUSED for one in self.expected.values()))
 
     @property
     def answered(self) -> tuple[float, ...]:
-        """The values at which the scene has an answer that any solver can be asked for."""
+        """The values at which any solver should be able to answer."""
         if not self.given or self.without_pose:
             return ()
         expected = self.expected.get(OURS) or next(iter(self.expected.values()))
@@ -176,15 +176,16 @@ def family(
     given: bool = True,
     **more: Any,
 ) -> Callable[[SceneAt], SceneAt]:
-    """Put the cases that a scene makes of some mechanisms at the end of some others, see `Case`.
+    """A decorator of a scene function: appends its case for each mechanism to `cases`, see `Case`.
 
-    Those that are hard by nature are given to nobody.
+    Mechanisms in `HARD` are not given to other solvers.
 
     Args:
-        values: all that a single mechanism or the strut is tried at, the others at one of them; or of each.
-        expected: by formulation, or of each of `SOLVERS`, of any mechanism or each.
-        name, why: the scene's own name, and the first paragraph of its text, if not given.
-        suffix: of the name; that of the mechanism if not given.
+        values: the values for a single mechanism or for the paper's strut, other mechanisms get the middle
+            one; or a function that returns the values for a mechanism.
+        expected: by formulation, or for all `SOLVERS`; or a function that returns it for a mechanism.
+        name, why: the function's name, and the first paragraph of its docstring, if not given.
+        suffix: suffix of the name; the suffix of the mechanism if not given.
     """
 
     def rows(scene: SceneAt) -> SceneAt:
@@ -216,25 +217,26 @@ def family(
 
 
 def reason_of(function: Callable[..., Any]) -> str:
-    """Why a case is hard that a function makes: the first paragraph of its text."""
+    """Why a case is hard: the first paragraph of its function's docstring."""
     return " ".join((function.__doc__ or "").partition("\n\n")[0].split())
 
 
 def values_of(subject: Subject, values: Values) -> Values:
-    """Those of a family's values that a mechanism is tried at: all, or the one amid them."""
+    """The values of a family for a mechanism: all for the paper's strut, the middle one for others."""
     return values if subject is PAPER else (values[len(values) // 2],)
 
 
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
-    """Every third decade, going in: from 10^high down to 10^low, both among them."""
+    """Every third decade from 10^high down to 10^low, both included."""
     return tuple(float(f"1e{k}") for k in (*range(high, low, -3), low))
 
 
 def every(found: Callable[[Subject], Sequence[object]], step: int = 1) -> Every:
-    """A number, from 1, for each thing that a mechanism has; of all but the strut for one amid them.
+    """The numbers, from 1, of all parts that `found` lists; for mechanisms other than the strut the middle
+    one.
 
     Args:
-        step: of the strut's things one of so many.
+        step: every `step`-th part of the strut.
     """
 
     def values(subject: Subject) -> Values:

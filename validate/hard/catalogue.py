@@ -1,4 +1,4 @@
-"""All hard cases in the order of their groups, by name."""
+"""All hard cases, in the order of their groups."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CA
 
 
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:
-    """The cases of these names in the order of the catalogue, or all without names.
+    """The cases with these names, in the order of the catalogue; all cases without names.
 
     Raises:
-        UsageError: a name that no case has.
+        UsageError: no case has one of the names.
     """
     known = [case.name for case in CASES]
     for name in names:
         if name not in known:
             # All names are in lower case.
             near = get_close_matches(name.lower(), known, n=3)
-            hint = f"; near names: {', '.join(near)}" if near else ""
-            raise UsageError(f"no hard case is called {name!r}{hint}; pointcoord hard --list names all")
+            hint = f"; similar names: {', '.join(near)}" if near else ""
+            raise UsageError(f"no hard case is called {name!r}{hint}; pointcoord hard --list prints all")
     return tuple(case for case in CASES if not names or case.name in names)

@@ -1,7 +1,7 @@
-"""The last values that inputs can reach, each the fold at which the reference proves that there is no way on.
+"""The last values that inputs can reach: the folds at which the reference proves that a path cannot continue.
 
-Drawn anew where the other inputs are held, to many digits, a mechanism is driven by one input alone beyond
-the end that pointcoord sees.
+To find an end, the mechanism is redrawn at the values of the other inputs, to many digits. The reference then
+drives the one input beyond the end that pointcoord finds.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from validate.reference import Design, InfeasibleError
 from validate.reference.exact import as_fraction
 from validate.reference.route import CLEAR, reached
 
-NEAR = 1e-6  # of the range: what pointcoord's end is off by at most
-BEYOND = 1e-3  # of the range: how far beyond it the reference is asked
+NEAR = 1e-6  # largest error of pointcoord's end, as a share of the range
+BEYOND = 1e-3  # how far beyond pointcoord's end the reference is driven, as a share of the range
 Values = tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class LastValue:
-    """One end of an input, the others held.
+    """One end of an input, with the other inputs held.
 
     Attributes:
-        value: rad or mm; poses exist up to here.
-        reach: distance from this end to the opposite one, rad or mm.
+        value: the end, rad or mm; poses exist up to this value.
+        reach: distance from this end to the opposite end, rad or mm.
         ahead: whether it is the upper end.
     """
 
@@ -40,7 +40,7 @@ class LastValue:
     ahead: bool
 
     def beyond(self, share: float) -> float:
-        """An input beyond this end by a share of the reach, or before it by a negative one, rad or mm."""
+        """The value beyond this end by a share of the reach, rad or mm; before it for a negative share."""
         return float(self.value + (1 if self.ahead else -1) * Fraction(share) * Fraction(self.reach))
 
 
@@ -51,18 +51,18 @@ def last_value(
 
     Args:
         ahead: whether the upper end is wanted.
-        held: all inputs amid their ranges, from where this one is driven; at home if not given.
+        held: values of all inputs within their ranges, from which this input is driven; `home` if not given.
     Raises:
-        ValueError: no end is near the place where pointcoord sees it.
+        ValueError: the reference finds no end near pointcoord's end.
     """
     there = held or subject.home
     return _last_value(subject, driven, ahead, tuple(there[name] for name in subject.driven))
 
 
 def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
-    """The ends of a mechanism's inputs, the others as drawn: of which, and whether it is the upper one.
+    """The ends of a mechanism's inputs, with the others as drawn: the input, and whether it is the upper end.
 
-    Turns from the drawing have none of their own: they go round, or end where something else locks.
+    Inputs of the kind `turn` are left out: they have no end, or end where something else locks.
     """
     drawn = tuple(subject.drawn[name] for name in subject.driven)
     return tuple(
@@ -79,7 +79,8 @@ def _last_value(subject: Subject, driven: str, ahead: bool, values: Values) -> L
     held = dict(zip(subject.driven, values, strict=True))
     low, high = _seen(subject, driven, values)
     reach, seen = high.value - low.value, Fraction((low, high)[ahead].value)
-    # Drawn at a pose, to many digits, so that one input alone leads from there to its end.
+    # Redrawn at the pose of the held inputs, to many digits, so that one input alone leads from there to its
+    # end.
     plain = subject.plain
     if held != subject.drawn:
         pose = reference_instant(subject.scene, {name: (value, 0, 0) for name, value in held.items()})
@@ -97,7 +98,7 @@ def _last_value(subject: Subject, driven: str, ahead: bool, values: Values) -> L
 
 @cache
 def _seen(subject: Subject, driven: str, values: Values) -> tuple[End, End]:
-    """Both ends of an input as pointcoord sees them, the others held at these values."""
+    """Both ends of an input as pointcoord finds them, with the other inputs held at these values."""
     held = dict(zip(subject.driven, values, strict=True))
     there = subject.car if held == subject.drawn else drawn_at(subject.car, held)
     return reach_of(Scene.from_mapping(subject.absolute(held, there)), driven)

@@ -1,4 +1,4 @@
-"""Examined cases as text for people and as plain data for machines."""
+"""Results of hard cases as text and tables to print, and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ SHORT = 90  # characters of a reason in a table
 
 
 def listing(cases: Sequence[Case]) -> str:
-    """Names and reasons of cases, under the headings of their groups."""
+    """Names of cases and why they are hard, under the headings of their groups."""
     groups = groupby(cases, lambda case: case.group)
     texts = ("\n".join((group, *(f"  {one.name}: {one.why}" for one in some))) for group, some in groups)
     return "\n\n".join(texts)
 
 
 def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
-    """What came of a case: a row per formulation, and per value as well if asked for."""
+    """The results of a case: a row for each formulation, and on request a row for each value."""
     case, values = result.case, result.case.values
     span = f"{values[0]:g}{f' to {values[-1]:g}' * (len(values) > 1)}, {counted_as(len(values), 'value')}"
     sizes = (f"error [{case.unit}]", f"bound [{case.unit}]", "of its bound", "condition")
@@ -36,7 +36,7 @@ def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
         unlike = any(answer.formulation == name for _, answer in result.unexpected)
         refused = [(value, a) for value, a in given if a.outcome == "refused"]
         verdict = "NOT as expected" if unlike else "as expected"
-        verdict += "".join(f"; gives up at {value:g}: {short(a.reason)}" for value, a in refused[:1])
+        verdict += "".join(f"; first refusal at {value:g}: {short(a.reason)}" for value, a in refused[:1])
         digits = _digits([answer for _, answer in given])
         rows.append((name, str(len(given)), *_outcomes(found), *digits, verdict))
     lines: list[Part] = [
@@ -68,7 +68,7 @@ def _outcomes(found: Mapping[Outcome, int]) -> list[str]:
 
 
 def _digits(answers: Sequence[Answer]) -> list[str]:
-    """The largest of each size; a share of a bound that is just below 1 is not rounded up to it."""
+    """The largest error, bound, share and condition; a share just below 1 is not rounded up to 1."""
     found = []
     for what in ("error", "bound", "share", "condition"):
         most = max((x for a in answers if (x := getattr(a, what)) is not None), default=None)
@@ -82,14 +82,14 @@ def short(reason: str) -> str:
 
 
 def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
-    """Counts over all cases, and the verdict."""
+    """Counts of the answers over all cases, and the verdict."""
     rows = [(name, str(sum(found.values())), *_outcomes(found)) for name, found in counts(results).items()]
     trials = sum(len(result.trials) for result in results)
     lines: list[Part] = [
         f"{counted_as(len(results), 'case')}, {counted_as(trials, 'scene')}:",
         Table(("formulation", "answers", *OUTCOMES), tuple(rows)),
     ]
-    # Reasons begin with the kind of the error.
+    # A reason begins with the class of the error.
     of_map = (a for r in results for _, a in r.answers(MAP) if a.outcome == "refused")
     if refused := Counter(answer.reason.partition(":")[0] for answer in of_map):
         kinds = ", ".join(f"{count} {kind}" for kind, count in refused.most_common())
@@ -107,12 +107,12 @@ def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
 
 
 def listing_data(cases: Sequence[Case]) -> dict[str, Any]:
-    """What cases are and what is expected of them, as plain data; none of them tried."""
+    """Descriptions of cases and their expected outcomes as plain data, without results."""
     return {"cases": [_description(case) for case in cases]}
 
 
 def results_data(results: Sequence[Examined]) -> dict[str, Any]:
-    """Everything, as plain data: each case with each trial."""
+    """All cases with all answers as plain data."""
     cases = [
         {
             **_description(result.case),

@@ -1,4 +1,4 @@
-"""Cases tried one after the other, and what all of it comes to."""
+"""Runs hard cases one after the other, and counts their outcomes."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ ValueAndAnswer = tuple[float, Answer]
 
 @dataclass(frozen=True)
 class Examined:
-    """A case with its trials, in the order of its values, and how long they took, s.
+    """A case with its trials, in the order of its values, and their run time, s.
 
-    Answers come with the value of the parameter.
+    Its methods return answers as pairs with the value of the parameter.
     """
 
     case: Case
@@ -26,7 +26,7 @@ class Examined:
     seconds: float
 
     def answers(self, formulation: str = "") -> tuple[ValueAndAnswer, ...]:
-        """What a formulation answered, or all did."""
+        """The answers of a formulation, or of all."""
         return tuple(
             (t.value, a) for t in self.trials for a in t.answers if formulation in ("", a.formulation)
         )
@@ -43,7 +43,7 @@ class Examined:
 
 
 def examine(case: Case) -> Examined:
-    """Try all values of a case.
+    """Solve a case at all its values.
 
     Raises:
         MissingLibrary: a formulation of the case is not installed.
@@ -54,7 +54,8 @@ def examine(case: Case) -> Examined:
 
 
 def tried(case: Case, value: float) -> Trial:
-    """A value tried; a trial that fails says nothing of the formulations: it is counted, and the run goes on.
+    """Solve a case at one value. An error of the trial itself makes all its answers unjudged; the run
+    continues.
 
     Raises:
         MissingLibrary: a formulation of the case is not installed.
@@ -69,7 +70,7 @@ def tried(case: Case, value: float) -> Trial:
 
 
 def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examined, ...]:
-    """Examine cases one after the other; each is handed over as soon as it is done."""
+    """Examine cases one after the other; `done` is called with each as soon as it is finished."""
     results = []
     for case in cases:
         results.append(examine(case))
@@ -78,7 +79,7 @@ def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examin
 
 
 def counts(results: Iterable[Examined]) -> dict[str, Counter[Outcome]]:
-    """How often each formulation came to each outcome."""
+    """Numbers of answers by formulation and outcome."""
     found: dict[str, Counter[Outcome]] = {}
     for _, answer in (one for result in results for one in result.answers()):
         found.setdefault(answer.formulation, Counter())[answer.outcome] += 1

@@ -1,4 +1,4 @@
-"""The mechanisms that cases are made of, and scenes in which their inputs move: shipped ones, and cars."""
+"""The mechanisms of the hard cases, shipped ones and the cars of `CARS`, and scenes in which they move."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ Content = dict[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A mechanism as cases try it.
+    """A mechanism of hard cases.
 
     Attributes:
-        name: of its file, or of a car of `CARS`.
-        car: as it is drawn.
-        driven: the inputs that are driven.
-        level: values of the inputs that motions are about, if not those of the drawing.
-        effects: that are asked for.
+        name: name of its file, or of a car in `CARS`.
+        car: the car as drawn.
+        driven: the driven inputs.
+        level: input values about which motions are made; empty: the drawn values.
+        effects: the effects that its scenes ask for.
     """
 
     name: str
@@ -35,17 +35,17 @@ class Subject:
 
     @property
     def suffix(self) -> str:
-        """What the names of its cases end with; nothing of the paper's strut."""
+        """The suffix of the names of its cases; empty for the paper's strut."""
         return "" if self.name == "paper" else f"-{hyphens(self.name)}"
 
     @cached_property
     def scene(self) -> Scene:
-        """A scene of it, to look at."""
+        """A scene of the mechanism at zero inputs, to read its structure from."""
         return Scene.from_mapping(self.absolute(dict.fromkeys(self.driven, 0.0)))
 
     @cached_property
     def units(self) -> Mapping[str, str]:
-        """Of each input that is driven: rad or mm."""
+        """The unit of each driven input: rad or mm."""
         return {name: self.scene.mechanism.structure.inputs[name].unit for name in self.driven}
 
     def is_a(self, kind: str, driven: str) -> bool:
@@ -59,7 +59,7 @@ class Subject:
 
     @property
     def of_parts(self) -> bool:
-        """Whether other mechanisms are its parts."""
+        """Whether the mechanism is composed of other mechanisms, as an axle is."""
         return bool(self.scene.mechanism.file.mirrored)
 
     @property
@@ -69,12 +69,12 @@ class Subject:
 
     @cached_property
     def drawn(self) -> Mapping[str, float]:
-        """The value of each input as drawn, rad or mm."""
+        """The drawn value of each input, rad or mm."""
         return {"arm_angle": drawn_angle(self.car), "rack": 0.0} if self.level else drawn_inputs(self.scene)
 
     @property
     def home(self) -> Mapping[str, float]:
-        """The value of each input that motions are about, rad or mm."""
+        """The value of each input about which motions are made, rad or mm."""
         return self.level or self.drawn
 
     def content(
@@ -83,8 +83,8 @@ class Subject:
         """A scene in which every input moves about home by the law of its unit.
 
         Args:
-            rad, mm: laws of angles and of lengths, from home.
-            scale: of the car over the mechanism as it is drawn.
+            rad, mm: laws of angles and of lengths, counted from home.
+            scale: size of the car over the size as drawn.
             settings: as for `absolute`.
         """
         inputs = {
@@ -94,21 +94,21 @@ class Subject:
         return self.absolute(inputs | ({} if heave is None else {"heave": heave}), **settings)
 
     def absolute(self, inputs: Mapping[str, Law], car: Car | None = None, **settings: Any) -> Content:
-        """A scene with these laws, which are not counted from home.
+        """A scene with these laws as they are, not counted from home.
 
         Args:
-            car: in place of the mechanism as it is drawn. settings: as for `content_of`.
+            car: used instead of the car as drawn. settings: as for `content_of`.
         """
         return content_of(car or self.car, inputs, **{"effects": self.effects, **settings})
 
 
 def hyphens(name: str) -> str:
-    """A name as names of cases have it."""
+    """A name in the form of case names, with hyphens."""
     return name.replace("_", "-").replace(".", "-")
 
 
 def moved_by(law: Law, home: float) -> Law:
-    """A law counted from home."""
+    """A law with the value `home` added."""
     if not home:
         return law
     if isinstance(law, Sequence):
@@ -121,7 +121,7 @@ def moved_by(law: Law, home: float) -> Law:
 
 
 def _others() -> Iterator[Subject]:
-    """Every other mechanism that is shipped, as the first scene of it draws it, driven as there."""
+    """Every other shipped mechanism, with the drawing and the inputs of its first built-in scene."""
     seen = {car.suspension for car in CARS.values()}
     for scene in map(Scene.load, built_in_scenes()):
         name, inputs = scene.mechanism.name, scene.mechanism.structure.inputs
@@ -137,8 +137,8 @@ PAPER, BESIDE, WISHBONE = OF_CARS["paper"], OF_CARS["beside"], OF_CARS["wishbone
 _EVERY = tuple(_others())
 OTHERS = tuple(subject for subject in _EVERY if not subject.of_parts)
 NAMED: Mapping[str, Subject] = {**OF_CARS, **{subject.name: subject for subject in _EVERY}}
-# Two corners on one rack take thirty times the time of one: they are tried in families of which they do not
-# repeat each corner's answers, and mostly rolling on the ground, which takes in all that the others have.
+# An axle takes thirty times the time of a corner. So axles are run only in families in which they do not
+# repeat the answers of a corner, and mostly as the rolling axle, which includes all features of the others.
 ROLLING = NAMED["rolling_axle"]
 SUBJECTS = (PAPER, WISHBONE, *OTHERS)
 ALL = (*SUBJECTS, *(subject for subject in _EVERY if subject.of_parts))

@@ -1,1 +1,1 @@
-"""A run as one page of HTML that needs no network, and its data beside it."""
+"""The HTML report of a run: one page that needs no network, and its data files."""

@@ -1,7 +1,7 @@
-"""What a section of the page is made of, as plain data: text, plots as plotly draws them, and tables.
+"""The blocks of a section of the page, as plain data: text, plots for plotly, and tables.
 
-Texts in plots come from our own registries, or through `plain`: plotly reads some HTML in its labels, and a
-scene's own words stand around a plot and not in it.
+plotly interprets some HTML in its labels. So texts in plots come from the registries of the program, or pass
+through `plain`; a title of a scene is placed outside the plot.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from validate.output.table import Table
 
 Array = NDArray[np.float64]
 Trace = dict[str, Any]
-"""What plotly draws in one colour, as it has it."""
+"""A trace of plotly: a curve or a set of points."""
 
-# Blue and vermilion, which colour-blind eyes tell apart, in tones that stand out of white and of black.
+# Blue and vermilion, which colour-blind readers can distinguish, visible on white and on black.
 OURS, OTHER = "#2f86c9", "#d9641c"
 
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Text, and what kind of verdict it tells, if any, with small print below it."""
+    """Text, with small print below it; `verdict` colours it if it states a verdict."""
 
     template: ClassVar[str] = "paragraph.html"
     text: str
@@ -38,12 +38,12 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes.
+    """A plot with one pair of axes.
 
     Attributes:
-        words: what is drawn, for people who see the page and for those who hear it.
-        traces, layout: as plotly has them.
-        rem: height of one that is as wide as the page; 0 of one that stands beside others.
+        words: what is drawn: the caption, also for screen readers.
+        traces, layout: in the format of plotly.
+        rem: height of a panel as wide as the page; 0 for a panel next to others.
     """
 
     words: str
@@ -53,16 +53,16 @@ class Panel:
 
     @property
     def json(self) -> str:
-        """The panel for the script of the page."""
+        """The panel as JSON for the script of the page."""
         return json.dumps({"data": self.traces, "layout": self.layout}, allow_nan=False)
 
 
 @dataclass(frozen=True)
 class Plots:
-    """Panels side by side, as many as the page is wide.
+    """Panels side by side, as many in a row as fit the page.
 
     Attributes:
-        at_once: whether they are seen before anybody opens them, however many others stand beside them.
+        at_once: whether they are unfolded from the start, however many other plots the section has.
     """
 
     template: ClassVar[str] = "plots.html"
@@ -73,12 +73,15 @@ class Plots:
 
 @dataclass(frozen=True)
 class Spatial:
-    """A drawing in space that moves.
+    """An animated 3D drawing of the mechanism.
 
     Attributes:
-        scene: whose it is. caption: what its lines are. json: what is drawn, for the script of the page.
-        count: of its instants. curves: that stand beside it.
-        at_once: whether it is seen before anybody opens it, as the first one is.
+        scene: name of the scene.
+        caption: explains the lines.
+        json: the data for the script of the page.
+        count: number of instants.
+        curves: plots next to the drawing.
+        at_once: whether it is unfolded from the start, as the first drawing is.
     """
 
     template: ClassVar[str] = "spatial.html"
@@ -91,14 +94,15 @@ class Spatial:
 
 
 Block = Paragraph | Plots | Spatial | Table
-"""A piece of a page; its `template` draws it as `block`."""
+"""A piece of a page; the file named `template` renders it, as the variable `block`."""
 
 
 def panel(words: str, across: str, up: str, traces: Iterable[Trace], logarithmic: str = "") -> Panel:
-    """Traces over a pair of axes.
+    """A panel with traces over a pair of axes.
 
     Args:
-        across, up: titles of the axes. logarithmic: which of them are, `y` or `xy`.
+        across, up: titles of the horizontal and the vertical axis.
+        logarithmic: the logarithmic axes, `y` or `xy`.
     """
     layout: dict[str, Any] = {"showlegend": True}
     for name, title in (("x", across), ("y", up)):
@@ -108,21 +112,21 @@ def panel(words: str, across: str, up: str, traces: Iterable[Trace], logarithmic
 
 
 def curve(name: str, x: ArrayLike, y: ArrayLike, colour: str, **line: Any) -> Trace:
-    """A line through points, (N,) each; a single one is seen as such."""
+    """A line through N points, x and y (N,); a single point is drawn as a marker."""
     mode = "lines" if np.size(x) > 1 else "markers"
     look = {"mode": mode, "line": {"color": colour, **line}, "marker": {"color": colour}}
     return {"x": numbers(x), "y": numbers(y), "name": name, **look}
 
 
 def marks(name: str, x: ArrayLike, y: ArrayLike, colour: str, symbol: str = "x", size: int = 7) -> Trace:
-    """Points, (N,) each, that no line joins; crosses if not said otherwise."""
+    """N markers without a line, x and y (N,); crosses by default."""
     look = {"symbol": symbol, "color": colour, "size": size}
     return {"x": numbers(x), "y": numbers(y), "name": name, "mode": "markers", "marker": look}
 
 
 def gaps(words: str, over: str, x: Array, difference: Array, tolerance: Array, unit: str) -> Panel:
-    """Differences and what each is held to, (N,) each."""
-    # A logarithm has no place for a difference or a tolerance of nothing.
+    """A panel of differences and their tolerances, (N,) each, on a logarithmic axis."""
+    # Zero has no place on a logarithmic axis.
     held, apart = (np.where(part > 0.0, part, np.nan) for part in (tolerance, difference))
     dots = {"mode": "lines+markers", "marker": {"size": 4}}
     traces = curve("tolerance", x, held, OTHER), curve("difference", x, apart, OURS, width=1) | dots
@@ -130,13 +134,17 @@ def gaps(words: str, over: str, x: Array, difference: Array, tolerance: Array, u
 
 
 def numbers(array: ArrayLike) -> list[float | None]:
-    """Numbers in as many digits as a drawing needs; None where there is none."""
+    """Numbers rounded to 6 digits, enough for a drawing; None for NaN and infinity."""
     values = np.asarray(array, dtype=float).tolist()
     return [float(f"{value:.6g}") if math.isfinite(value) else None for value in values]
 
 
 def fewer(weight: Array, most: int) -> Sequence[int]:
-    """Places of at most so many numbers of (N,): of each stretch that which weighs most, and the ends."""
+    """Indices of at most `most` of N numbers: the largest weight of each stretch, and the ends.
+
+    Args:
+        weight: (N,).
+    """
     count = len(weight)
     if count <= most:
         return range(count)
@@ -146,5 +154,5 @@ def fewer(weight: Array, most: int) -> Sequence[int]:
 
 
 def plain(text: str) -> str:
-    """Words from a file as a label: plotly reads some HTML, and these are no marks of it."""
+    """A text for a plot label, with characters that plotly could read as HTML replaced by question marks."""
     return re.sub(r"[^\w .,:;()[\]/^+=-]", "?", text)

@@ -1,4 +1,4 @@
-"""The data of a page as files beside it: JSON with everything, CSV with a line for each number."""
+"""The data files of a page: JSON with everything, CSV with a line for each number."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from validate.published.tables import MODELS, Published
 WORDS = {
     "results.json": "the run, as --json writes it",
     "comparisons.csv": "a line for each point, body or angle that was compared",
-    "numbers.csv": "a line for each number of the file of results that was compared, beside ours",
+    "numbers.csv": "a line for each compared number of the file of results, with the computed number",
     "published.csv": "a line for each number of other programs' tables",
     "hard.json": "the hard cases, as pointcoord hard --json writes them",
-    "cost.json": "what accuracy costs in time, with everything that was measured",
+    "cost.json": "run time against accuracy, with all measurements",
 }
-"""Every file that a report may write beside its page, and what it holds."""
-# Of the files of lines; a comparison's columns are what it is made of.
+"""Every data file that a report may have, and what it contains."""
+# Headers of the CSV files; those of comparisons.csv are the fields of `Comparison`.
 NUMBERS = ("row", "over", "at", "column", "is", "unit", "given", "ours", "difference", "held_to")
 PUBLISHED = ("table", "over", "at", "quantity", "name", "unit", "printed", *MODELS)
 
 
 def data_files(run: Run) -> Mapping[str, str]:
-    """Names and contents of what a run has."""
+    """Names and contents of the data files of a run."""
     files = {"results.json": json_text(run.document)}
     if run.record.examined:
         rows = (asdict(row).values() for outcome in run.record.outcomes for row in outcome.rows)
@@ -43,17 +43,17 @@ def data_files(run: Run) -> Mapping[str, str]:
 
 
 def _numbers(run: Run) -> Iterator[Iterable[object]]:
-    """Numbers of a file, and what they were held to in the comparison."""
+    """Numbers of a file of results, with the computed numbers and the tolerances."""
     for file in run.record.files.values():
         for i, (row, at) in enumerate(zip(file.rows, file.at.tolist(), strict=True)):
             for held in file.columns:
                 what, allowed = held.series.meaning, run.record.factor * held.tolerance[i]
-                told = (held.series.values[i], held.ours[i], held.gap[i], allowed)
-                yield (row, file.over, at, held.series.column, what.words, what.unit, *map(float, told))
+                values = (held.series.values[i], held.ours[i], held.gap[i], allowed)
+                yield (row, file.over, at, held.series.column, what.words, what.unit, *map(float, values))
 
 
 def _published(tables: Iterable[Published]) -> Iterator[Iterable[object]]:
-    """Numbers of printed tables in our units, those of columns whose rule is not known among them."""
+    """Numbers of printed tables in the units of pointcoord, also of columns whose definition is not known."""
     for one in tables:
         for column in one.columns:
             row = column.rows[0]

@@ -1,4 +1,4 @@
-"""Hard cases as a report has them: the document of a run, just made, or kept in a file by an earlier one."""
+"""Hard cases for a report: the document of this run, or of an earlier run, read from a file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NAMED = 10  # cases that a sentence names
 
 
 class Trial(BaseModel):
-    """What formulations made of one value of a case's parameter."""
+    """The answers of all formulations at one value of a case's parameter."""
 
     value: float
     answers: tuple[Answer, ...]
@@ -35,7 +35,7 @@ class Unexpected(BaseModel):
 
 
 class Case(BaseModel):
-    """A hard case, tried; its texts are those of `validate.hard.case.Case`."""
+    """A hard case with its results; its texts are those of `validate.hard.case.Case`."""
 
     name: str
     group: str
@@ -55,9 +55,10 @@ class HardCases(BaseModel):
     """All cases of a run, in the form of `pointcoord hard --json`.
 
     Attributes:
-        document: all of it, as it was written. started: UTC, if the run noted it.
-        counts: how often each formulation came to each outcome. as_expected: whether every case allows what
-            came of it.
+        document: the whole document, as written.
+        started: UTC, if the run recorded it.
+        counts: number of answers by formulation and outcome.
+        as_expected: whether every answer is one that its case allows.
     """
 
     document: Mapping[str, Any]
@@ -75,18 +76,18 @@ class HardCases(BaseModel):
         """The cases of a document.
 
         Raises:
-            ValidationError: it is none of hard cases.
+            ValidationError: the document does not contain hard cases.
         """
         return cls.model_validate({**document, "document": document})
 
     @property
     def status(self) -> ExitStatus:
-        """What the cases alone would end a run with."""
+        """The exit status of the cases alone."""
         return ExitStatus.AGREE if self.as_expected else ExitStatus.DISAGREE
 
     @property
     def sentence(self) -> str:
-        """What came of them in a few words."""
+        """The results of the cases in one sentence."""
         count = counted_as(len(self.cases), "hard case")
         other = some_of([one.name for one in self.cases if one.unexpected], NAMED)
         came = "all as expected" if self.as_expected else f"disagrees, not as expected: {other}"
@@ -96,10 +97,10 @@ class HardCases(BaseModel):
 
 
 def read_hard_cases(file: str) -> HardCases:
-    """Read what a run of hard cases kept.
+    """Read a file that `pointcoord hard --json` wrote.
 
     Raises:
-        UsageError: it holds none.
+        UsageError: the file contains no hard cases.
     """
     try:
         return HardCases.of(json.loads(Path(file).read_bytes()))
@@ -107,10 +108,10 @@ def read_hard_cases(file: str) -> HardCases:
         problem = f"cannot be read ({error.strerror})"
     except ValidationError as error:
         first = error.errors()[0]
-        problem = f"holds no hard cases ({'.'.join(map(str, first['loc']))}: {first['msg']})"
+        problem = f"contains no hard cases ({'.'.join(map(str, first['loc']))}: {first['msg']})"
     except TypeError:
-        problem = "holds no hard cases"
+        problem = "contains no hard cases"
     except (ValueError, RecursionError):
-        problem = "is no JSON"
+        problem = "is not JSON"
     allowed = "a file that `pointcoord hard --json FILE` wrote"
     raise UsageError(f"--hard {shown(file)}: {shown(problem)}; allowed: {allowed}")

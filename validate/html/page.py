@@ -1,4 +1,4 @@
-"""A run as one page of HTML through templates in which all text is escaped, and the folder of the page."""
+"""Renders a run as one HTML page, by templates that escape all text, and writes the folder of the page."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from validate.output.files import require_writable, unwritable, write_content
 
 TEMPLATES = Path(__file__).with_name("templates")
 SCRIPTS = ("grid.js", "plots.js", "spatial.js")
-# What marks a page as ours, so that no other page is written over.
+# Marks a page of this program, so that no other page is overwritten.
 GENERATOR = "pointcoord report"
-# That mark is near its beginning.
+# The mark is within these first bytes of a page.
 BEGINNING = 4096
 PAGE = "index.html"
-# Nothing is loaded from anywhere: styles are in the page itself, pictures are what plotly makes of its own
-# plots, and the only scripts that run are those with these hashes.
+# Nothing is loaded from elsewhere: styles are in the page, pictures are made by plotly from its plots, and
+# only scripts with these hashes run.
 POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
     "form-action 'none'; script-src {}"
@@ -35,9 +35,9 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     """The page of a run.
 
     Args:
-        files: beside it, by name, and what each holds.
+        files: what each data file of the page contains, by name.
     Raises:
-        MissingLibrary: a package of the extra is not there.
+        MissingLibrary: a package of the extra `report` is not installed.
     """
     jinja2 = needed("report", "jinja2", "report")
     environment = jinja2.Environment(
@@ -65,33 +65,33 @@ def _own(name: str) -> str:
 
 
 def require_folder(folder: str) -> None:
-    """Refuse a folder that cannot take a report, before anything is solved; nothing is made.
+    """Refuse a folder that cannot be used for a report, before anything is solved; no folder is made.
 
     Raises:
-        UsageError: it is a file, or holds a page that this program did not make.
-        NotFinished: it cannot be made or written.
+        UsageError: the folder is a file, or contains a page that this program did not write.
+        NotFinished: the folder cannot be made or written.
     """
     place = Path(folder)
     if "\0" in folder:
         raise UsageError(f"{folder}: names no folder")
     if place.exists() and not place.is_dir():
-        raise UsageError(f"{folder}: is a file; allowed: a folder, which is made if it is not there")
+        raise UsageError(f"{folder}: is a file; allowed: a folder, which is made if it does not exist")
     there = next(one for one in (place, *place.absolute().parents) if one.exists())
     if not (there.is_dir() and os.access(there, os.W_OK)):
-        raise NotFinished(folder, f"cannot be written (there is no folder that takes it in {str(there)!r})")
+        raise NotFinished(folder, f"cannot be written (no folder can be made in {str(there)!r})")
     old = place / PAGE
     if old.is_file() and f'content="{GENERATOR}"'.encode() not in old.read_bytes()[:BEGINNING]:
-        raise UsageError(f"{old}: is no report of this program; give another folder, or move it away")
+        raise UsageError(f"{old}: is not a report of this program; give another folder, or move the page")
     if place.is_dir():
         for name in (*WORDS, PAGE):
             require_writable(os.path.join(folder, name))
 
 
 def make_folder(folder: str) -> None:
-    """Make the folder of a report, if it is not there.
+    """Make the folder of a report, if it does not exist.
 
     Raises:
-        NotFinished: it cannot be made.
+        NotFinished: the folder cannot be made.
     """
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
@@ -100,11 +100,11 @@ def make_folder(folder: str) -> None:
 
 
 def write_report(folder: str, run: Run) -> None:
-    """Write the page and its data; the page is last, so that where it is, its data are.
+    """Write the data files and then the page; the page is last, so that a page never lacks its data.
 
     Raises:
-        MissingLibrary: a package of the extra is not there.
-        NotFinished: one cannot be written.
+        MissingLibrary: a package of the extra `report` is not installed.
+        NotFinished: a file cannot be written.
     """
     make_folder(folder)
     data = data_files(run)

@@ -1,4 +1,4 @@
-"""What a report is about: the scenes of a run and all that came of them, and what else it holds."""
+"""The content of a report: the scenes of a run with their results, and further results."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from validate.output.document import Head
 from validate.output.report import outcome_data
 from validate.published.tables import Published
 
-# Scenes that are drawn, and not only told in tables: the first ones, and so many more that do not agree.
+# Numbers of scenes that are drawn, not only listed in tables: the first ones, and further ones that disagree.
 FIRST, FURTHER = 8, 8
-# Points of one curve, and instants of a drawing in space, at most: a page stays small.
+# Largest numbers of points of a curve and of instants of an animation, so that the page stays small.
 POINTS, FRAMES = 120, 61
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A scene of the run that the page draws, with its numbers; motion is of all points, by pointcoord."""
+    """A scene that the page draws, with its numbers; `motion` has all points, solved by pointcoord."""
 
     examined: Examined
     scene: Scene
@@ -37,28 +37,28 @@ class Drawn:
 
     @property
     def models(self) -> tuple[Solution, ...]:
-        """Both solutions of its first comparison: what each really gives, when it does."""
+        """Both solutions of its first comparison: the usable numbers of each, at the instants it gives."""
         both = self.examined.outcomes[0].solutions
         return tuple(usable(solution, self.scene.instants) for solution in both)
 
 
 @dataclass(frozen=True)
 class Drawings:
-    """The scenes of a run that are drawn; of the others tables tell, and their numbers are let go.
+    """The scenes of a run that are drawn; the numbers of other scenes, which tables list, are not kept.
 
     Attributes:
-        count: how many scenes the run has.
+        count: number of scenes of the run.
     """
 
     count: int
     kept: list[Drawn] = field(default_factory=list)
 
     def add(self, examined: Examined, scene: Scene | None) -> None:
-        """Keep a scene that was compared if it is one of the first, or one of some more that do not agree."""
+        """Keep a compared scene if it is one of the first, or one of the further ones that do not agree."""
         disagrees = examined.status is not ExitStatus.AGREE
         room = FIRST + FURTHER if disagrees or self.count <= FIRST + FURTHER else FIRST
         if scene is not None and examined.outcomes and len(self.kept) < room:
-            # Why pointcoord refuses it is told already.
+            # If pointcoord refuses the scene, the comparison has reported the reason already.
             with suppress(PointcoordError):
                 motion = simulate(scene.model_copy(update={"points": None}))
                 self.kept.append(Drawn(examined, scene, motion))
@@ -66,12 +66,14 @@ class Drawings:
 
 @dataclass(frozen=True)
 class Run:
-    """All that a report is made of; what was not computed is not there.
+    """All content of a report; results that were not computed are empty or None.
 
     Attributes:
-        record: what its scenes come to. drawn: those of them that the page draws.
+        record: results of the scenes.
+        drawn: the scenes that the page draws.
         published: printed tables of other programs.
-        hard: hard cases. cost: what accuracy costs in time.
+        hard: hard cases.
+        cost: run time against accuracy.
     """
 
     head: Head
@@ -83,17 +85,17 @@ class Run:
 
     @property
     def not_drawn(self) -> Sequence[str]:
-        """Which scenes are drawn, in a sentence, where these are not all."""
+        """A sentence on which scenes are drawn, if not all are."""
         drawn, compared = len(self.drawn), sum(bool(one.outcomes) for one in self.record.examined)
-        # Of a file's scene no motion is solved, which the page says in a place of its own.
+        # With a file of results no motion is solved; the page has a section for the file.
         if drawn == compared or self.record.files:
             return ()
-        told = f"Drawn are {drawn} of {compared} scenes: the first {FIRST}, and the first {FURTHER} further "
-        return (f"{told}ones that do not agree. The tables and the data beside this page have all.",)
+        text = f"{drawn} of {compared} scenes are drawn: the first {FIRST}, and the first {FURTHER} others "
+        return (f"{text}that do not agree. The tables and the data files of this page contain all scenes.",)
 
     @property
     def status(self) -> ExitStatus:
-        """What the run ends with."""
+        """The exit status of the run."""
         found = [self.record.status]
         if self.hard is not None:
             found.append(self.hard.status)
@@ -105,7 +107,7 @@ class Run:
 
     @property
     def sentence(self) -> str:
-        """The verdict in a sentence; what does not agree is named."""
+        """The verdict in a sentence, which names everything that does not agree."""
         parts = [sentence(self.record)] if self.record.names else []
         wrong = [one.table.title for one in self.published if not one.agreed]
         if wrong:
@@ -118,7 +120,7 @@ class Run:
 
     @cached_property
     def document(self) -> Mapping[str, Any]:
-        """The run as plain data, in the form of `--json` of the command that it is of."""
+        """The run as plain data, in the form that `--json` of its command writes."""
         if self.hard is not None and self.head.kind == "hard":
             return self.hard.document
         results = self.record.data()

@@ -1,1 +1,1 @@
-"""What is printed and written."""
+"""Output: the console, tables, pictures, CSV and JSON files."""

@@ -1,10 +1,9 @@
 """Named columns as files: CSV, NPZ and Parquet, written block by block.
 
-A block has some rows of every column; however many rows there are, CSV and Parquet take no more memory
-than a block.
-Motions have a row for each instant. Sweeps have one for each design and instant, with the design's number,
-what varies in it, how far its drawing moves to close, and whether it was solved. The numbers of a design that
-could not be solved are NaN.
+A block has some rows of every column. CSV and Parquet need the memory of one block, however many rows there
+are. A motion has a row for each instant. A sweep has a row for each design and instant, with the design's
+number, its varied coordinates, how far its drawing moves to close, and its status. The numbers of a design
+that could not be solved are NaN.
 """
 
 from __future__ import annotations
@@ -26,26 +25,26 @@ from validate.output.files import require_known_ending, write_whole
 
 Array = NDArray[np.float64]
 Block = Mapping[str, NDArray[Any]]
-"""By name some rows of each column, along the first axis."""
+"""Some rows of each column, by name; the rows are along the first axis."""
 
 ENDINGS = (".csv", ".npz", ".parquet")
 DESIGN, TIME, CLOSING, STATUS = "design", "time [s]", "closing [mm]", "status"
 SOLVED = "solved"
-# Rows that are computed or made text of together: every kind of file has the same bits, and as objects of
-# Python their numbers take some 10 MB.
+# Rows that are computed or converted to text together. The size is the same for every file format, so that
+# the numbers have the same bits in each; as Python objects they take some 10 MB.
 ROWS = 2048
 PLAIN = re.compile(r'"([^",\\]*)"')  # words that need no quotes in CSV
 # Numbers of a sweep's table that are copied at a time.
 PIECE = 2**20
-# Blocks of a motion in a group of rows of Parquet, which is compressed by itself: more make smaller files.
+# Blocks of a motion in a row group of Parquet. A row group is compressed alone: larger ones save space.
 GROUP = 16
 
 
 def require_table(target: str) -> None:
-    """Refuse a file that cannot be written by its ending, before anything is solved.
+    """Refuse a file whose ending gives no known format, before anything is solved.
 
     Raises:
-        UsageError: it is none of `ENDINGS`. MissingLibrary: Parquet needs pyarrow.
+        UsageError: the ending is not in `ENDINGS`. MissingLibrary: pyarrow, for Parquet, is not installed.
     """
     require_known_ending(target, ENDINGS)
     if Path(target).suffix == ".parquet":
@@ -53,14 +52,14 @@ def require_table(target: str) -> None:
 
 
 def write_table(target: str, blocks: Iterator[Block], group: int = 1) -> None:
-    """Write the rows of a motion or of a sweep by the ending of the target.
+    """Write the rows of a motion or of a sweep in the format that the target's ending gives.
 
     Args:
-        group: how many blocks make a group of rows of Parquet, `GROUP` for a motion.
+        group: number of blocks in a row group of Parquet, `GROUP` for a motion.
     Raises:
         UsageError, MissingLibrary: see `require_table`.
-        NotFinished: the file cannot be written; what was there is whole.
-        PointcoordError: as the blocks raise it.
+        NotFinished: the file cannot be written; an old file is kept unchanged.
+        PointcoordError: raised by the blocks as they are solved.
     """
     require_table(target)
     ending = Path(target).suffix
@@ -80,34 +79,34 @@ def rows_of_motion(motion: Motion, instants: int | None = None) -> Iterator[Bloc
     """A row for each instant.
 
     Args:
-        instants: how many, evenly over the motion; its own if not given.
+        instants: number of evenly spaced instants; the motion's own instants if not given.
     Raises:
-        NotComputed: instants are given, and the method knows the motion at its own only.
+        NotComputed: instants are given, but the method has solved the motion at its own instants only.
     """
     return (dict(columns(block)) for block in motion.blocks(instants, ROWS))
 
 
 def rows_of_sweep(blocks: Iterable[Sweep]) -> Iterator[Block]:
-    """A row for each design and instant, of some designs at a time."""
+    """A row for each design and instant; each block has some designs."""
     for block in blocks:
         instants, each, numbers = len(block.times), dict(number_columns(block)), block.numbers_of_designs
         varied = {f"{name} [mm]": values for name, values in block.varied.items()}
         before = {DESIGN: numbers, **varied, CLOSING: block.closing}
         failed = (block.failures.get(number) for number in numbers.tolist())
-        said = np.array([SOLVED if failure is None else failure.reason for failure in failed])
+        status = np.array([SOLVED if failure is None else failure.reason for failure in failed])
         some = max(PIECE // (instants * max(len(each), 1)), 1)
         for low in range(0, len(block), some):
             here = slice(low, low + some)
             yield {
                 **{name: np.repeat(values[here], instants) for name, values in before.items()},
-                TIME: np.tile(block.times, len(said[here])),
+                TIME: np.tile(block.times, len(status[here])),
                 **{name: column[here].ravel() for name, column in each.items()},
-                STATUS: np.repeat(said[here], instants),
+                STATUS: np.repeat(status[here], instants),
             }
 
 
 def csv_lines(blocks: Iterable[Block]) -> Iterator[str]:
-    """Rows as CSV, some at a time, the names of the columns first; reading a number gives the same bits."""
+    """CSV text, some rows at a time, the header first; a number read back has the same bits."""
     for i, block in enumerate(blocks):
         if not i:
             yield f"{','.join(block)}\r\n"
@@ -116,12 +115,12 @@ def csv_lines(blocks: Iterable[Block]) -> Iterator[str]:
 
 
 def _lines(block: list[NDArray[Any]]) -> str:
-    """Lines, each number in as few digits as give its bits back."""
+    """CSV lines; each number has the fewest digits that give its bits when read back."""
     if words := any(column.dtype.kind != "f" for column in block):
         rows = list(zip(*(column.tolist() for column in block), strict=True))
     else:
         rows = np.stack(block, axis=-1).tolist()
-    # Python's own texts of numbers take four times as long.
+    # Python's `repr` of the numbers would take four times as long.
     text = to_json(rows, inf_nan_mode="constants").decode()
     text = text.removeprefix("[[").removesuffix("]]").replace("],[", "\r\n")
     if words:
@@ -132,14 +131,14 @@ def _lines(block: list[NDArray[Any]]) -> str:
 
 
 def _npz(stream: BinaryIO, blocks: Iterable[Block]) -> None:
-    """One member for each column, all of them in memory until they are written."""
+    """One array for each column; all rows are in memory until they are written."""
     every = [*blocks]
     whole: dict[str, Any] = {name: np.concatenate([block[name] for block in every]) for name in every[0]}
     np.savez(stream, **whole)
 
 
 def _parquet(stream: BinaryIO, blocks: Iterator[Block], group: int) -> None:
-    """Columns with the names of the CSV; so many blocks make a group of rows."""
+    """Columns with the names of the CSV; `group` blocks make a row group."""
     import pyarrow
     import pyarrow.parquet
 

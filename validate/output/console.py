@@ -1,4 +1,4 @@
-"""What a run says: results on standard output, everything else in single lines on standard error."""
+"""Prints results on standard output, and messages as single lines on standard error."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ STANDARD_OUTPUT = "standard output"
 class Console:
     """Standard output and standard error of one run.
 
-    Whatever writes on standard output raises NotFinished where that does not take it.
+    Every method that writes on standard output raises NotFinished if the text cannot be written.
 
     Attributes:
-        quiet: whether only results that were asked for and errors are said.
-        mute: whether standard output belongs to a result, so that nothing else is said there.
-        written: the files that the run has written, and what they hold, for the one who interrupts it.
+        quiet: whether only requested results and errors are printed.
+        mute: whether standard output is used for a result, so that nothing else is printed there.
+        written: the files written so far and what they contain, for the message after an interruption.
     """
 
     def __init__(self) -> None:
@@ -36,24 +36,24 @@ class Console:
 
     @property
     def left(self) -> str:
-        """The files that the run has written, in words."""
+        """The files written so far and what they contain, in words."""
         return "; ".join(f"{target} holds {what}" for target, what in self.written.items())
 
     def say(self, text: str) -> None:
-        """Lines for people; nothing if the run is quiet or mute."""
+        """Print lines; nothing if the run is quiet or mute."""
         if not self.quiet and not self.mute:
             self.write(text + "\n")
             self.flush()
 
     def show(self, parts: Sequence[Part]) -> None:
-        """Lines and tables for people, laid out for a terminal that is one; nothing if quiet or mute."""
+        """Print lines and tables, fitted to a terminal; nothing if the run is quiet or mute."""
         self.say(text_for(sys.stdout, parts))
 
     def put(self, target: str | None, content: str | bytes, what: str) -> None:
-        """Write a result whole to its file, or to standard output for `-` or None.
+        """Write a whole result to its file, or to standard output for `-` or None.
 
         Args:
-            what: it is, in words.
+            what: the result in words, such as `the picture`.
         """
         if target is None or target == "-":
             target = STANDARD_OUTPUT
@@ -64,10 +64,10 @@ class Console:
         self.written[target] = what
 
     def write(self, text: str) -> None:
-        """Text on standard output, as it is; characters that it has no code for are shown as escapes.
+        """Write text on standard output; characters that its encoding lacks become escapes.
 
-        Once the reader of a pipe has gone, such as `head`, the text is dropped: the work and its verdict
-        are wanted all the same.
+        After the reader of a pipe has closed it, as `head` does, the text is dropped, but the run continues:
+        its verdict and its files are still wanted.
         """
         if not self._reader_gone:
             try:
@@ -77,13 +77,13 @@ class Console:
                 self._lose(error)
 
     def write_lines(self, texts: Iterable[str]) -> None:
-        """Many texts, as they come."""
+        """Write many texts on standard output, each as it comes."""
         for text in texts:
             self.write(text)
         self.flush()
 
     def flush(self) -> None:
-        """Bring what was written to its reader."""
+        """Flush standard output."""
         if self._reader_gone or sys.stdout is None:
             return
         try:
@@ -92,10 +92,10 @@ class Console:
             self._lose(error)
 
     def _lose(self, error: Exception) -> None:
-        """Point standard output to nowhere, so that what is left in its buffer cannot fail again at the end.
+        """Redirect standard output to the null device, so that flushing its buffer at exit cannot fail again.
 
         Raises:
-            NotFinished: it is not only that its reader has gone.
+            NotFinished: the error is not just a broken pipe.
         """
         self._reader_gone = True
         with suppress(OSError, ValueError, AttributeError):
@@ -110,18 +110,18 @@ class Console:
 
     def complain(self, message: str) -> None:
         """One line on standard error."""
-        # Without a standard error `print` would take standard output.
+        # If standard error is None, `print` would write on standard output.
         if sys.stderr is not None:
             with suppress(OSError, ValueError):
                 print(f"pointcoord: {one_line(message)}", file=sys.stderr, flush=True)
 
     def note(self, message: str) -> None:
-        """One line on standard error of what was taken for granted; nothing if the run is quiet."""
+        """One line of information on standard error; nothing if the run is quiet."""
         if not self.quiet:
             self.complain(f"note: {message}")
 
     def warn(self, message: str) -> None:
-        """One line on standard error that does not change the status; nothing if the run is quiet."""
+        """One line of warning on standard error; it does not change the exit status. Nothing if quiet."""
         if not self.quiet:
             self.complain(f"warning: {message}")
 
@@ -129,11 +129,13 @@ class Console:
     def progress(
         self, message: str, first: float = PAUSE, total: int | None = None, lines: bool = True
     ) -> Iterator[Told]:
-        """Says how far the block is, unless the run is quiet; inside of another such block, in its place.
+        """Print the progress of the block, unless the run is quiet. A nested block uses the outer progress.
 
         Args:
-            message: what is done, until something else is told. first: seconds before the first line in a
-                pipe. total: of how much, if it is known. lines: whether a pipe has lines too.
+            message: what is being done, until the next call of the yielded function.
+            first: seconds before the first line if standard error is no terminal.
+            total: the total amount, if known.
+            lines: whether lines are printed if standard error is no terminal.
         """
         outer, terminal = self._progress, is_terminal(sys.stderr)
         if outer is not None:
@@ -142,9 +144,9 @@ class Console:
         elif self.quiet or sys.stderr is None or not (terminal or lines):
             yield lambda message, done, total=None: None
         else:
-            self._progress = said = Progress(self.note, message, total, PATIENCE if terminal else first)
+            self._progress = shown = Progress(self.note, message, total, PATIENCE if terminal else first)
             try:
-                yield said.told
+                yield shown.told
             finally:
                 self._progress = None
-                said.end()
+                shown.end()

@@ -1,6 +1,6 @@
-"""The JSON that the program writes: what was run, where and when, around what came of it.
+"""The JSON documents of the program: the results, with the command, machine and time of the run.
 
-Its JSON Schema is `schema.json` beside this file, and `pointcoord --schema` prints it.
+The JSON Schema is `schema.json` in this folder; `pointcoord --schema` prints it.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from typing import Any
 from validate.exit_status import ExitStatus, of_interruption
 from validate.output.console import Console
 
-# Raised by one whenever a key changes its meaning or goes; a new key changes nothing for its readers.
+# Increased by one when a key changes its meaning or is removed. A new key does not disturb readers.
 SCHEMA_VERSION = 3
 PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint", "mujoco", "exudyn")
-# Environment variables that say how many threads the linear algebra takes.
+# Environment variables that set the number of threads of the linear algebra.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-# Kinds of runs that hold nothing to anything: times and numbers are neither right nor wrong.
+# Kinds of runs that compare nothing: their times and numbers are neither right nor wrong.
 COMPARES_NOTHING = ("cost", "fit", "fit-suspects", "hard-list")
-PAUSE = 9.0  # between two writings of a journal, in times that the first took
+PAUSE = 9.0  # pause after a journal is written, in multiples of the time that writing took
 
 
 def program_version() -> str:
@@ -37,7 +37,7 @@ def program_version() -> str:
 
 
 def _version(distribution: str) -> str | None:
-    # Imported here: it takes a third of numpy's time, and most runs write no document.
+    # Imported here: it takes a third of the time of importing numpy, and most runs write no document.
     from importlib import metadata
 
     try:
@@ -47,7 +47,7 @@ def _version(distribution: str) -> str | None:
 
 
 def code_digest(places: Sequence[str]) -> str:
-    """A digest of code and mechanisms: files and folders of this distribution, such as `validate/cost`."""
+    """A digest of the .py and .toml files at some places of this distribution, such as `validate/cost`."""
     import hashlib
 
     root, digest = Path(__file__).parents[2], hashlib.sha256()
@@ -66,7 +66,7 @@ def schema_text() -> str:
 
 @cache
 def machine() -> dict[str, Any]:
-    """Where the numbers come from: system, processors, versions, and how many threads are allowed."""
+    """The machine of the run: system, processors, versions, and thread limits."""
     import platform
 
     return {
@@ -80,20 +80,19 @@ def machine() -> dict[str, Any]:
 
 
 def now() -> str:
-    """The time as RFC 3339 has it, UTC, to the second."""
+    """The current time in the format of RFC 3339, UTC, to the second."""
     return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 @dataclass(frozen=True)
 class Head:
-    """What is known of a run before it begins.
+    """The facts of a run that are known before it begins.
 
     Attributes:
-        kind: which command's results follow: validate, hard, hard-list, random, bounds, claims, cost, fit or
+        kind: kind of the results: validate, hard, hard-list, random, bounds, claims, cost, fit or
             fit-suspects.
         command: the command line, word by word.
-        started: UTC; None in a run whose results say nothing of times, so that the same run gives the same
-            bytes.
+        started: UTC; None if the document has no times, so that equal runs give equal bytes.
     """
 
     kind: str
@@ -106,14 +105,14 @@ class Head:
         return cls(kind, tuple(command), now() if timed else None)
 
     def verdict(self, status: ExitStatus) -> str:
-        """A status in words."""
+        """The exit status in words."""
         compared = self.kind not in COMPARES_NOTHING or status is not ExitStatus.AGREE
         return status.verdict if compared else "nothing compared"
 
     def document(
         self, results: Mapping[str, Any], status: ExitStatus | None, complete: bool
     ) -> dict[str, Any]:
-        """Everything as plain data; a run that goes on has no status yet."""
+        """The document as plain data; status None for a run in progress."""
         return {
             "schema_version": SCHEMA_VERSION,
             "kind": self.kind,
@@ -131,13 +130,13 @@ class Head:
 
 
 def json_text(data: Any) -> str:
-    """JSON of plain data. It has no infinity and no NaN: a number that does not exist is null."""
+    """JSON of plain data. JSON has no infinity and no NaN: such a number becomes null."""
     return json.dumps(_plain(data), indent=1, allow_nan=False) + "\n"
 
 
 def _plain(data: Any) -> Any:
     if isinstance(data, str):
-        # A file's name may hold bytes that are no text.
+        # A file name may contain bytes that are not valid text.
         return data.encode("utf-8", "backslashreplace").decode("utf-8")
     if isinstance(data, float) and not math.isfinite(data):
         return None
@@ -153,8 +152,8 @@ class Ending:
     """How a block ends.
 
     Attributes:
-        status: what the run ends with, as the block sets it if it comes to its end.
-        complete: whether it does.
+        status: exit status of the run; the block sets it.
+        complete: whether the block ended without an exception.
     """
 
     status: ExitStatus = ExitStatus.AGREE
@@ -163,10 +162,10 @@ class Ending:
 
 @contextmanager
 def at_the_end(write: Callable[[Ending], None]) -> Iterator[Ending]:
-    """Write what there is when the block ends, however it ends.
+    """Call `write` when the block ends, also if it ends with an exception.
 
     Raises:
-        BaseException: what `write` raises; else whatever ends the block.
+        BaseException: raised by `write`, or else by the block.
     """
     ending = Ending()
     try:
@@ -184,14 +183,14 @@ def at_the_end(write: Callable[[Ending], None]) -> Iterator[Ending]:
 
 @dataclass
 class Journal:
-    """The JSON of a run, written again as its parts are finished, so that a kill loses next to nothing.
+    """The JSON of a run. It is written again after each part, so that a killed run loses very little.
 
-    Standard output takes one document only: it is written at the end.
+    To standard output the document is written once, at the end.
 
     Attributes:
-        target: the file, - for standard output, None where no JSON is asked for.
-        results: all that there is so far, as plain data.
-        what: it is, in words; empty as long as there is nothing worth writing.
+        target: the file, - for standard output, None if no JSON is asked for.
+        results: returns all results so far, as plain data.
+        what: returns the results in words, such as `3 of 20 scenes`; empty while there are none.
     """
 
     target: str | None
@@ -202,21 +201,21 @@ class Journal:
     _next: float = 0.0
 
     def keep(self) -> None:
-        """Write what is finished.
+        """Write the results so far, unless the last writing was too recent.
 
         Raises:
-            NotFinished: it cannot be written.
+            NotFinished: the file cannot be written.
         """
         if self.target not in (None, "-") and (began := time.monotonic()) >= self._next:
             self._write(None, False)
-            # Writing costs more the more there is: with such pauses it takes at most a tenth of the time.
+            # Writing takes longer the more results there are; the pause keeps it below a tenth of the run.
             self._next = time.monotonic() + PAUSE * (time.monotonic() - began)
 
     def closing(self) -> AbstractContextManager[Ending]:
-        """Write it when a block ends, however it ends, with the status that the block sets.
+        """Write the document when a block ends, also after an exception, with the status that the block sets.
 
         Raises:
-            NotFinished: it cannot be written; and whatever ends the block.
+            NotFinished: the document cannot be written; also any exception of the block.
         """
 
         def write(ending: Ending) -> None:

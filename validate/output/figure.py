@@ -1,4 +1,4 @@
-"""How pictures by matplotlib look: their letters, frame and colours. It is of the extra `plot`."""
+"""The style of matplotlib pictures: fonts, frame and colours. Needs the extra `plot`."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ try:
 except ImportError as error:
     raise not_there("validate.output.figure", error, "plot") from None
 
-# Okabe and Ito, Color Universal Design, 2008; yellow is left out, being too light for lines on paper.
+# Okabe and Ito, Color Universal Design, 2008, without yellow, which is too light for lines on paper.
 ORANGE, SKY, GREEN = "#e69f00", "#56b4e9", "#009e73"
 BLUE, RED, PINK = "#0072b2", "#d55e00", "#cc79a7"
 GREY = "#777777"
 FAINT = "#cccccc"
 INK = "#222222"
-# Text becomes outlines, so that a picture looks alike everywhere; ids do not change from run to run.
+# Text is drawn as outlines, so that a picture looks the same everywhere; the hash salt keeps ids constant.
 SETTINGS: Any = {
     "svg.hashsalt": "pointcoord",
     "svg.fonttype": "path",
@@ -40,19 +40,19 @@ SETTINGS: Any = {
     "savefig.facecolor": "white",
 }
 LOOK: ContextDecorator = mpl.rc_context(SETTINGS)
-"""Decorates a function that draws: what it draws looks so."""
+"""Decorator of a drawing function: applies `SETTINGS`."""
 SHADES = mpl.colormaps["viridis"]  # from dark to light
-DOTS = 200  # to an inch, of a PNG
-TITLE = 0.08  # inches, of a letter of a title, on average
+DOTS = 200  # dots per inch of a PNG
+TITLE = 0.08  # average width of a letter of a title, inches
 
 
 def panels(
     size: tuple[float, float], title: str, rows: int, columns: int, sharex: bool = False, sharey: bool = False
 ) -> tuple[Figure, list[Axes]]:
-    """A new page and its panels, row by row, below a title that takes as many lines as it needs.
+    """A new page and its panels, row by row, below a title that is wrapped to the width.
 
     Args:
-        size: width and height, inches. sharex, sharey: whether panels have that axis in common.
+        size: width and height, inches. sharex, sharey: whether the panels share this axis.
     """
     page = Figure(figsize=size, layout="constrained")
     heading = fill(shown(title), int(size[0] / TITLE))
@@ -64,7 +64,7 @@ def panels(
 
 
 def plain(axes: Axes) -> None:
-    """A frame of two sides and a faint grid of the decades."""
+    """Draw only the left and bottom sides of the frame, and a faint grid at the major ticks."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(True, which="major", color=FAINT, linewidth=0.4)
     axes.set_axisbelow(True)
@@ -73,9 +73,9 @@ def plain(axes: Axes) -> None:
 
 @LOOK
 def drawn(figure: Figure, ending: str) -> bytes:
-    """A figure as the bytes of a file, `svg` or `png`; the same for the same figure."""
+    """A figure as the bytes of a file, `svg` or `png`; equal figures give equal bytes."""
     stream = io.BytesIO()
-    # A date, or the version of a library, would make a file of the same rows another one.
+    # Without a date and library version, which would change the bytes.
     metadata: dict[str, Any] = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
     figure.savefig(stream, format=ending, dpi=DOTS, metadata=metadata)
     return stream.getvalue()

@@ -1,6 +1,6 @@
-"""Files that are whole or not there: written beside their place under another name, and then renamed.
+"""Atomic writing: a file is written under a temporary name in the same folder, and then renamed.
 
-A full disk, a kill or Ctrl-C leaves what was there before.
+After a full disk, a kill or Ctrl-C the old file is still there, unchanged.
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from validate.errors import NotFinished, UsageError
 
 
 def require_known_ending(target: str, endings: Iterable[str]) -> None:
-    """Refuse a name whose ending does not say how to write the file.
+    """Refuse a file name whose ending gives no known format.
 
     Raises:
-        UsageError: it is none of these.
+        UsageError: the ending is not in `endings`.
     """
     if Path(target).suffix not in endings:
         raise UsageError(f"{target}: has no known ending; allowed: {', '.join(endings)}")
 
 
 def unwritable(target: str, error: OSError) -> NotFinished:
-    """The error of a target that the operating system does not let us write."""
-    hint = "; make room, or write elsewhere" if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
+    """The error for a target that the operating system cannot write."""
+    hint = "; free some space, or write elsewhere" if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
     return NotFinished(target, f"cannot be written ({error.strerror or error}){hint}")
 
 
 def require_writable(target: str) -> None:
-    """Refuse a file that cannot be written, before anything is solved; what is there stays as it is.
+    """Refuse a file that cannot be written, before anything is solved; an old file is not changed.
 
     Raises:
-        NotFinished: it cannot be.
+        NotFinished: the file cannot be written.
     """
     try:
         if not _is_special(target):
@@ -51,12 +51,12 @@ def require_writable(target: str) -> None:
 
 
 def write_whole(target: str, write: Callable[[BinaryIO], object]) -> None:
-    """Write a file beside its place, bring it to the disk, and rename it into its place.
+    """Write a file under a temporary name, sync it to the disk, and rename it to the target.
 
-    A pipe or a device has no place to rename into and is written as it is.
+    A pipe or a device cannot be replaced by renaming, and is written directly.
 
     Raises:
-        NotFinished: it cannot be written; what was there is whole.
+        NotFinished: the file cannot be written; an old file is unchanged.
     """
     try:
         if _is_special(target):
@@ -71,7 +71,7 @@ def write_whole(target: str, write: Callable[[BinaryIO], object]) -> None:
                 os.fsync(stream.fileno())
             _replace(beside, Path(os.path.realpath(target)))
         except BaseException:
-            # Ctrl-C as well: nothing half written stays behind.
+            # Also after Ctrl-C: no temporary file stays behind.
             with suppress(OSError):
                 beside.unlink()
             raise
@@ -80,23 +80,23 @@ def write_whole(target: str, write: Callable[[BinaryIO], object]) -> None:
 
 
 def write_content(target: str, content: str | bytes) -> None:
-    """Write a file of a content at hand, see `write_whole`.
+    """Write a file with the given content, see `write_whole`.
 
     Raises:
-        NotFinished: it cannot be written; what was there is whole.
+        NotFinished: the file cannot be written; an old file is unchanged.
     """
-    # The name of a file may hold bytes that are no text.
+    # The content may quote a file name with bytes that are not valid text.
     data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
     write_whole(target, lambda stream: stream.write(data))
 
 
 def _replace(beside: Path, place: Path) -> None:
-    """Rename a file into its place, with the rights of the one that is there; a link stays one."""
+    """Rename a file to its target, with the permissions of the old file; a symbolic link is kept."""
     if place.exists():
         beside.chmod(stat.S_IMODE(place.stat().st_mode))
     os.replace(beside, place)
     with suppress(OSError):
-        # The name too is on the disk; a folder that cannot be opened for that keeps its old habits.
+        # Sync the folder too, so that the new name is on the disk; some systems cannot open a folder.
         folder = os.open(place.parent, os.O_RDONLY)
         try:
             os.fsync(folder)
@@ -105,10 +105,10 @@ def _replace(beside: Path, place: Path) -> None:
 
 
 def _is_special(target: str) -> bool:
-    """Whether a target is something else than a file, such as a pipe.
+    """Whether a target exists and is not a regular file, such as a pipe.
 
     Raises:
-        OSError: it is a folder, or a file that may not be written.
+        OSError: the target is a folder, or a file without write permission.
     """
     if "\0" in target:
         raise OSError(errno.EINVAL, "a null character in its name")
@@ -121,10 +121,10 @@ def _is_special(target: str) -> bool:
 
 
 def _beside(target: str) -> Path:
-    """Where a target is written first: what a kill leaves there goes when the same file is written again."""
+    """The temporary file of a target; one that a killed run left is replaced by the next with this target."""
     place = Path(os.path.realpath(target))
     if not place.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"there is no folder {str(place.parent)!r}")
     with suppress(FileNotFoundError):
-        os.stat(place)  # a name that is too long is refused
+        os.stat(place)  # raises OSError if the name is too long
     return place.with_name(f".pointcoord-{place.name[:200]}.part")

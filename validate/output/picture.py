@@ -1,8 +1,7 @@
-"""A drawing as a picture: three views of the hardpoints, as drawn and as closed, in one SVG file.
+"""A picture of a drawing: three views of the hardpoints, as drawn and as closed, in one SVG file.
 
-For someone who has written hardpoints into a scene file: the picture shows a wrong sign, axis or side before
-anything is solved. The views are from behind, from the left and from above. What is joined to what comes from
-the topology.
+It shows a wrong sign, axis or side of a hardpoint before a motion is solved. The views are from behind, from
+the left and from above. The lines between points come from the topology.
 """
 
 from __future__ import annotations
@@ -23,11 +22,11 @@ Places = Mapping[str, Array]
 VIEW = 290.0  # px, side of the square that a view is scaled into
 MARGIN = 30.0
 LINE = 15.0  # px, from line to line of text
-LETTERS = 150  # to a line
-LETTER = 6.5  # px, wide
-TOGETHER = 9.0  # px: points closer than that have one number
-CLEAR = 16.0  # px: a number so far from every other point and number is clear enough
-# Where a number may stand beside its point, to the right and down, the first that is clear.
+LETTERS = 150  # characters in a line of text
+LETTER = 6.5  # px, width of a character
+TOGETHER = 9.0  # px: points closer than this share one label
+CLEAR = 16.0  # px: a label at this distance from every other point and label is clear enough
+# Positions of a label relative to its point, right and down, in order of preference.
 AROUND = ((1, -1), (1, 0), (1, 1), (0, -1), (0, 1), (-1, -1), (-1, 0), (-1, 1))
 KEY = (
     "blue: as drawn; red: as closed, where that differs by a pixel; filled: on the chassis; "
@@ -48,7 +47,7 @@ text { font: 11px sans-serif; fill: #222 }
 
 
 def svg(drawing: ClosedDrawing) -> str:
-    """The picture of a scene's drawing; what closing moves by more than a pixel is drawn a second time."""
+    """The picture of a drawing. If closing moves a point by more than a pixel, both states are drawn."""
     part, topology = drawing.scene.mechanism, drawing.mechanism.topology
     points = {name: np.array(part.points[name]) for name in topology.points}
     width, top = 3 * VIEW + 4 * MARGIN, 2 * LINE + MARGIN
@@ -68,7 +67,7 @@ def svg(drawing: ClosedDrawing) -> str:
     ]
     up, right = np.array(part.up), np.array(part.right)
     rearward = np.cross(right, up)
-    # What each is called, and the car's axes that point right and down on the paper.
+    # The title of each view, and the directions of the car that point right and down on the paper.
     views = (
         (f"from behind: {_named(right)} right, {_named(up)} up", right, -up),
         (f"from the left: {_named(rearward)} right, {_named(up)} up", rearward, -up),
@@ -91,7 +90,7 @@ def svg(drawing: ClosedDrawing) -> str:
 
 
 def _named(direction: Array) -> str:
-    """A direction of the car in the axes that its points are given in: +y, -x, or its three components."""
+    """A direction in the axes of the scene's points: +y, -x, or its three components."""
     along = np.flatnonzero(direction)
     if len(along) == 1:
         return f"{'+' if direction[along[0]] > 0.0 else '-'}{'xyz'[along[0]]}"
@@ -99,7 +98,7 @@ def _named(direction: Array) -> str:
 
 
 def _view(title: str, corner: Array, topology: Topology, drawn: Places, moved: Places) -> list[str]:
-    """A view in its frame, of points where they are on the paper, (2,), as drawn and as closed."""
+    """A view in its frame, from the positions of the points on the paper, (2,), as drawn and as closed."""
     room = 0.45 * MARGIN
     frame = corner + np.array([[-room, -room], [VIEW + room, VIEW + room]])
     (x, y), (side, _) = frame[0], frame[1] - frame[0]
@@ -123,7 +122,7 @@ def _view(title: str, corner: Array, topology: Topology, drawn: Places, moved: P
 
 
 def _labels(drawn: Places, frame: Array) -> Iterator[str]:
-    """A number beside every point, where there is room; points that fall together on the paper share one."""
+    """A label next to every point, where there is room; points that coincide on the paper share a label."""
     groups: list[tuple[Array, list[str]]] = []
     for i, place in enumerate(drawn.values(), 1):
         near = (together for other, together in groups if np.abs(other - place).max() < TOGETHER)
@@ -137,8 +136,8 @@ def _labels(drawn: Places, frame: Array) -> Iterator[str]:
         half = np.array([0.5 * LETTER * len(text), 6.0])
         around = place + np.array(AROUND) * np.array([6.0 + half[0], 11.0])
         others = np.array([other for other in taken if np.abs(other - place).max() >= TOGETHER])
-        others = others.reshape(-1, 2)  # none where all points fall together
-        # A number is wider than it is high, and reaches further to its sides.
+        others = others.reshape(-1, 2)  # empty if all points coincide
+        # A label is wider than high, so distances to its sides count less.
         away = np.linalg.norm((around[:, None] - others) / (1.0 + half / 20.0), axis=-1)
         clear = np.minimum(away.min(axis=1, initial=CLEAR), CLEAR)
         clear[~((frame[0] <= around - half) & (around + half <= frame[1])).all(axis=1)] = 0.0

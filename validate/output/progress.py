@@ -1,4 +1,4 @@
-"""How far a long run is: a line on standard error now and then."""
+"""Progress of a long run: a line on standard error from time to time."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from collections.abc import Callable
 # Seconds until the first line on a terminal, and from line to line.
 PATIENCE, PAUSE = 2.0, 10.0
 Told = Callable[..., None]
-"""Takes what is done now, how much has been done, and of how much where that is another total than before."""
+"""Called with what is being done, the amount done, and the total amount if it has changed."""
 
 
 class Progress:
-    """Says now and then what a run is doing, from a thread of its own: also while it only waits.
+    """Prints progress lines from a separate thread, so that they also come while the run waits.
 
     Args:
-        say: takes a line.
-        message, total: what is done, and of how much, until something else is told.
+        say: prints a line.
+        message, total: what is being done, and the total amount, until `told` is called.
         first: seconds before the first line.
     """
 
@@ -27,24 +27,24 @@ class Progress:
         self._say, self._first = say, first
         self._message, self._done, self._total = message, 0, total
         self._began, self._over = time.monotonic(), threading.Event()
-        # What was there when this run began took it no time.
+        # The amount done before this run and the start time, so that the pace counts this run's work only.
         self._before, self._since = 0, self._began
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
     def told(self, message: str, done: int, total: int | None = None) -> None:
-        """What is done now, how much has been, and of how much where that is another total than before."""
+        """Set what is being done, the amount done, and the total amount if it has changed."""
         if not self._done or done < self._done:
             self._before, self._since = done, time.monotonic()
         self._message, self._done, self._total = message, done, total or self._total
 
     def end(self) -> None:
-        """Say nothing more."""
+        """Stop printing."""
         self._over.set()
         self._thread.join()
 
     def line(self) -> str:
-        """What is said: also about how long the rest takes, at the pace since this run began."""
+        """The line to print, with the estimated time left at the pace of this run."""
         now, share, rest = time.monotonic(), "", ""
         new, left = self._done - self._before, (self._total or 0) - self._done
         if self._total:

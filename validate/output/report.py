@@ -1,4 +1,4 @@
-"""Results as tables and lines for people, and as plain data for machines."""
+"""Results of comparisons as tables and lines to print, and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -20,36 +20,36 @@ from validate.tables.units import degrees_of
 if TYPE_CHECKING:  # most runs compare no file
     from validate.measured.comparing import DataOutcome
 
-MOST_EXPLANATIONS = 3  # that are printed
+MOST_EXPLANATIONS = 3  # number of explanations printed
 
-# "share": of the tolerance, the largest of any number of the quantity; above 1 it disagrees.
+# "share": difference / tolerance, the largest of all numbers of the quantity; above 1 the quantity disagrees.
 HEAD = ("quantity", "where", "largest difference", "tolerance", "at", "share", "limited by", "verdict")
 
-# Verdicts from the one that tells least of a quantity to the one that tells most.
+# Verdicts in order of increasing importance for the row of a quantity.
 OF_EVERYTHING = ("agrees", "not tested", "not given", "disagrees")
 OF_WHAT_IS_GIVEN = ("not given", "agrees", "not tested", "disagrees")
 
 
 def with_unit(value: float, unit: str, digits: int = 1) -> str:
-    """Two significant digits, or more, as tolerances deserve."""
+    """A number with two significant digits, or `digits` + 1, and its unit."""
     return f"{value:.{digits}e} {unit}".rstrip() if math.isfinite(value) else "not a number"
 
 
 def in_degrees(value: float, unit: str) -> str:
-    """The same with angles in degrees, as users read them; a dash where there is no number."""
+    """A number with two significant digits and its unit, angles in degrees; a dash for no number."""
     factor, unit = degrees_of(unit)
     return "-" if math.isnan(value) else f"{factor * value:.1e} {unit}"
 
 
 def used(share: float) -> str:
     """How much of its tolerance a number uses: 37% of its tolerance, 18,000 times its tolerance."""
-    told = share_of(share)
-    words = " of its tolerance" if told.endswith("%") else " its tolerance"
-    return told + words if math.isfinite(share) else told
+    text = share_of(share)
+    words = " of its tolerance" if text.endswith("%") else " its tolerance"
+    return text + words if math.isfinite(share) else text
 
 
 def share_of(share: float) -> str:
-    """The same without the words: 37%, 18,000 times."""
+    """A share of a tolerance: 37%, 18,000 times."""
     if not math.isfinite(share):
         return "not a number"
     if share <= 1.0:
@@ -58,23 +58,23 @@ def share_of(share: float) -> str:
 
 
 def when(row: Comparison, digits: int = 9) -> str:
-    """At which instant a row is worst, or where in a file of results."""
+    """The instant at which a row is worst, or the place in a file of results."""
     return row.place or f"{row.instant:.{digits}g} s"
 
 
 def heading(quantity: str, name: str) -> str:
-    """Under which quantity a number stands in a table; each number of the whole car is one of its own."""
+    """The heading of a number in a table: its quantity; for a number of the whole car its own name."""
     return name if QUANTITIES[quantity].of == "car" else QUANTITIES[quantity].words
 
 
 def about(quantity: str, name: str) -> str:
-    """What a number is, in words, such as position of a point; an angle of the wheel by its name."""
+    """A number in words, such as `position of wheel_centre`, or `camber`."""
     given = QUANTITIES[quantity]
     return name if given.of == "car" else f"{given.words} of {name}"
 
 
 def told_row(row: Comparison) -> str:
-    """What a comparison says of a number, in a sentence: in a list, in test results, in a failed test."""
+    """The comparison of a number in one sentence, for lists, test results and failed tests."""
     what = about(row.quantity, row.name)
     if not math.isfinite(row.difference):
         return f"{what}: not a number at {when(row)}"
@@ -85,18 +85,18 @@ def told_row(row: Comparison) -> str:
 
 
 def pair_of(outcome: Outcome) -> str:
-    """Which two formulations are compared."""
+    """The names of the two formulations compared, such as `pointcoord and absolute`."""
     return " and ".join(solution.formulation for solution in outcome.solutions)
 
 
 def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that uses most of its tolerance, or exceeds it the most."""
-    # A solver that states an accuracy need not give everything.
+    # A solver that states an accuracy may give only some of the numbers.
     return list(worst_of(outcome.rows, OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING).values())
 
 
 def worst_of(rows: Iterable[Comparison], order: Sequence[str] = OF_WHAT_IS_GIVEN) -> dict[str, Comparison]:
-    """By heading the row whose verdict is the last one in an order, of several the largest share."""
+    """By heading, the row with the last verdict in an order; among equal verdicts, the largest share."""
     worst: dict[str, Comparison] = {}
     for row in rows:
         key = heading(row.quantity, row.name)
@@ -106,24 +106,24 @@ def worst_of(rows: Iterable[Comparison], order: Sequence[str] = OF_WHAT_IS_GIVEN
 
 
 def severity(row: Comparison, order: Sequence[str] = OF_EVERYTHING) -> tuple[int, float]:
-    """By what the worst of rows is found: the place of its verdict in an order, then its share."""
+    """The sort key of the worst row: the place of its verdict in an order, then its share."""
     return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
 
 
 def held_to(factor: float) -> str:
-    """The tolerance of differences, in words."""
+    """The tolerances of the run, in words."""
     if factor == 1.0:
         return "tolerances as derived"
-    return f"tolerances are {factor!r} times the derived tolerance, which is no longer the derived one"
+    return f"tolerances are not as derived but {factor!r} times the derived tolerances"
 
 
 def counted_as(count: int, noun: str) -> str:
-    """A number of things: 1 instant, 2,000 instants."""
+    """A count with its noun: 1 instant, 2,000 instants."""
     return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 def share_of_all(done: Sized, every: Sized, noun: str) -> str:
-    """How much of a run is there: 3 of 20 scenes; empty where nothing is."""
+    """How much of a run is done: 3 of 20 scenes; empty if nothing is done."""
     return f"{len(done)} of {counted_as(len(every), noun)}" if done else ""
 
 
@@ -133,30 +133,31 @@ def agreeing(agreed: int, count: int) -> str:
 
 
 def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) -> tuple[Part, ...]:
-    """What came of a comparison as a table with lines around it; angles are in degrees.
+    """A comparison as a table with a heading and notes; angles are in degrees.
 
     Args:
-        over: what the rows of a file of results go over, if it is of one. absent: what such a file lacks.
+        over: for a file of results: the abscissa of its rows, such as time.
+        absent: for a file of results: the numbers that the scene asks for and the file lacks.
     """
     rows = [*quantity_rows(outcome)]
     rows += [(words, "", "-", "-", "-", "-", "-", Cell("not given")) for words in absent]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
     count = counted_as(len(outcome.solutions[0].times), "row" if over else "instant")
-    told = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
+    remarks = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
     return (
         f"{outcome.scene}: {pair_of(outcome)}, {count}{f' over {shown(over)}' if over else ''}{factor}",
         Table(HEAD, tuple(rows)),
         *silent_lines(outcome),
-        *(f"  note: {note}" for note in told),
+        *(f"  note: {note}" for note in remarks),
         *explained_lines(outcome),
     )
 
 
 def quantity_rows(outcome: Outcome) -> Iterator[tuple[str | Cell, ...]]:
-    """A row for each quantity, under `HEAD`; angles are in degrees.
+    """A row for each quantity, with the columns of `HEAD`; angles are in degrees.
 
-    It has the largest difference with its place and tolerance; the largest share of a tolerance, which may be
-    of another number; and the verdict of the row that `worst_rows` tells.
+    A row has the largest difference with its place and tolerance; the largest share of a tolerance, which may
+    be that of another number; and the verdict of the row from `worst_rows`.
     """
     of_one: dict[str, list[Comparison]] = {}
     for row in outcome.rows:
@@ -165,48 +166,48 @@ def quantity_rows(outcome: Outcome) -> Iterator[tuple[str | Cell, ...]]:
         words = heading(worst.quantity, worst.name)
         given = [row for row in of_one[words] if row.verdict != "not given"]
         largest = max(given, key=lambda row: row.difference, default=worst)
-        told = (
+        text = (
             f"DISAGREES, {with_unit(worst.share, 'times')}" if worst.verdict == "disagrees" else worst.verdict
         )
         if worst.verdict in ("disagrees", "not tested") and worst is not largest:
-            told += f": {worst.name}"
+            text += f": {worst.name}"
         numbers = ["-"] * 5
         if given:
             size, held = (in_degrees(n, largest.unit) for n in (largest.difference, largest.tolerance))
-            # The unit is that of the difference beside it.
+            # The tolerance is shown without its unit, which is that of the difference.
             numbers = [size, held.partition(" ")[0], when(largest, 4)]
             numbers += [share_of(max(row.share for row in given)), largest.rests_on]
         name = "" if QUANTITIES[largest.quantity].of == "car" else largest.name
-        yield words, name, *numbers, Cell(told, verdict=worst.verdict)
+        yield words, name, *numbers, Cell(text, verdict=worst.verdict)
 
 
 def file_parts(found: DataOutcome) -> tuple[Part, ...]:
-    """The table of a file of results, and how much was compared."""
+    """The table of a file of results, and how many numbers were compared."""
     verdicts = [row.verdict for row in found.outcome.rows]
-    # 1 agrees, 2 agree.
+    # Singular and plural: 1 agrees, 2 agree.
     counts = ", ".join(
         f"{n} {one if n == 1 else one.removesuffix('s')}" for one, n in Counter(verdicts).items()
     )
-    # What is not tested was compared with nothing, or with what could not have told it from a wrong one.
+    # A number is not tested if nothing can be compared with it, or if its tolerance hides any error.
     tested = counted_as(len(verdicts) - verdicts.count("not tested"), "number")
-    said = f"{tested} compared" if {*verdicts} - {"not tested"} else "Nothing was compared"
-    return *outcome_parts(found.outcome, found.over, found.absent), f"{said}: {counts}."
+    total = f"{tested} compared" if {*verdicts} - {"not tested"} else "Nothing was compared"
+    return *outcome_parts(found.outcome, found.over, found.absent), f"{total}: {counts}."
 
 
 def silent_lines(outcome: Outcome) -> Iterator[str]:
-    """Why there is no verdict where the rows do not say it, and what cannot be used."""
+    """Why there is no verdict if the rows do not show it, and which given data cannot be used."""
     if outcome.why_no_verdict:
         yield f"  no verdict: {outcome.why_no_verdict}"
     yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
 
 
 def explained_lines(outcome: Outcome) -> Iterator[str]:
-    """What would explain a disagreement, the likeliest first."""
-    yield from (f"  what would explain it: {one.words}" for one in outcome.explanations[:MOST_EXPLANATIONS])
+    """Possible explanations of a disagreement, the likeliest first."""
+    yield from (f"  possible explanation: {one.words}" for one in outcome.explanations[:MOST_EXPLANATIONS])
 
 
 def printed_parts(examined: Sequence[Examined], findings: Sequence[Finding]) -> Iterator[Part]:
-    """What the paper's formulas as printed get wrong, by which erratum; which scenes they cannot solve."""
+    """The errors of the paper's formulas as printed, with their errata, and the scenes they cannot solve."""
     if findings:
         rows = tuple(
             (
@@ -218,7 +219,7 @@ def printed_parts(examined: Sequence[Examined], findings: Sequence[Finding]) -> 
             for f in findings
         )
         head = ("scene", "wrong quantity", "largest difference", "erratum")
-        yield Table(head, rows, caption="The paper's formulas as printed, against the mended ones.")
+        yield Table(head, rows, caption="The paper's formulas as printed, against the corrected ones.")
     elif tried := [one.name for one in examined if one.printed is not None]:
         yield f"The paper's formulas as printed agree in {', '.join(tried)}."
     for one in examined:
@@ -244,14 +245,14 @@ def paper_tables(rows: Sequence[PaperRow]) -> Iterator[Table]:
             for row in rows
             if row.printed.table == number
         )
-        centre = ("wheel centre, printed", "ours [mm]", "apart")
-        head = ("t [s]", label, "ours", *centre, "omega apart", "alpha apart", "slip of print")
+        centre = ("wheel centre, printed", "computed [mm]", "difference")
+        head = ("t [s]", label, "computed", *centre, "omega difference", "alpha difference", "misprint")
         yield Table(head, lines, caption=f"Table {number}, printed and computed.")
 
 
 def paper_sentence(rows: Sequence[PaperRow]) -> str:
-    """How far the printed tables are from what the paper's own hardpoints give."""
-    return f"Wheel centre, both tables: {root_mean_square(rows):.1f} mm r.m.s. per coordinate."
+    """The r.m.s. difference between the printed tables and the motion of the paper's own hardpoints."""
+    return f"Wheel centre, both tables: difference {root_mean_square(rows):.1f} mm r.m.s. per coordinate."
 
 
 def _vector(vector: Sequence[float], form: str) -> str:
@@ -259,10 +260,10 @@ def _vector(vector: Sequence[float], form: str) -> str:
 
 
 def examined_data(examined: Examined, file: DataOutcome | None = None) -> dict[str, Any]:
-    """One scene as plain data: its verdict, every comparison, and every reason why there is none.
+    """One scene as plain data: its verdict, every comparison, every refusal and every failure.
 
     Args:
-        file: of results that the scene's car is compared with.
+        file: the file of results that the scene's car is compared with, if any.
     """
     return {
         "scene": examined.name,
@@ -282,7 +283,7 @@ def examined_data(examined: Examined, file: DataOutcome | None = None) -> dict[s
 
 
 def outcome_data(outcome: Outcome, file: DataOutcome | None = None) -> dict[str, Any]:
-    """One comparison as plain data; that of a file says of its rows where in the file they are worst."""
+    """One comparison as plain data; for a file of results also its accuracy, abscissa and missing numbers."""
     stated = (s.accuracy.stated for s in outcome.solutions)
     of_file = {}
     if file is not None:

@@ -1,6 +1,6 @@
-"""One table, and the ways to show it: plain text, a terminal, Markdown, and a page by its `grid.html`.
+"""A table, shown as plain text, on a terminal, in Markdown, or on the HTML page by `grid.html`.
 
-In a pipe, in a file and on a dumb terminal there is plain text, always the same.
+Pipes, files and dumb terminals get plain text, which does not depend on the width.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from typing import ClassVar, TextIO
 
 from validate.plain_text import shown
 
-# What a column of numbers may hold: its cells are read from the right.
+# The cells of a column of numbers, which is aligned to the right.
 NUMBER = re.compile(r"[-+]?\d|-?$|not a number$")
-# As such it acts nowhere inside of a line.
+# A number that Markdown shows as it is, anywhere in a line.
 PLAIN_NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]\d+)?")
-# Green, red and yellow of a terminal, by the words of verdicts; the words say it too.
+# Colours of verdicts on a terminal: green, red, yellow. The words are enough without colours.
 COLOURS = {"agrees|as expected": "32", "DISAGREES|NOT": "1;31", "not tested|not given": "33"}
 SAFE = frozenset(" ,.:;/()=-'?")
-"""Characters beside letters and digits that begin nothing inside of a line of Markdown."""
+"""Characters, in addition to letters and digits, that start no markup inside a line of Markdown."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """What a table says at one place: a word or a number.
+    """A cell of a table: a word or a number.
 
     Attributes:
-        detail: small print below it on a page.
-        verdict: the word of a verdict that gives the cell its colour; the text says it too.
+        detail: small print below the text on the HTML page.
+        verdict: the verdict that gives the cell its colour; the text states it too.
     """
 
     text: str
@@ -43,12 +43,13 @@ class Cell:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of words and numbers, under their names; the first cell of a row is its name.
+    """Columns of words and numbers with a header; the first cell of a row is the name of the row.
 
     Attributes:
-        indent: of plain text. caption: what stands above it; Markdown has none.
-        folded: whether a page shows it only to who opens it.
-        kept: how many columns stand first in each band of a table that is too wide.
+        indent: blanks before each line of plain text.
+        caption: a line above the table; not in Markdown.
+        folded: whether the HTML page shows the table only after a click.
+        kept: number of first columns that are repeated in each band of a table that is too wide.
     """
 
     template: ClassVar[str] = "grid.html"
@@ -61,19 +62,19 @@ class Table:
 
     @cached_property
     def cells(self) -> tuple[tuple[Cell, ...], ...]:
-        """Every row, cell by cell."""
+        """The rows, with every cell as a `Cell`."""
         return tuple(tuple(Cell(c) if isinstance(c, str) else c for c in row) for row in self.rows)
 
     @cached_property
     def texts(self) -> tuple[tuple[str, ...], ...]:
-        """Every row without small print."""
+        """The texts of the rows, without small print."""
         return tuple(tuple(cell.text for cell in row) for row in self.cells)
 
     def lines(self, room: int | None = None) -> list[str]:
-        """Columns of text, words to the left and numbers to the right.
+        """The table as plain text; columns of words are aligned to the left, of numbers to the right.
 
-        Where they do not fit into the room, they stand in bands one below the other, each with the first
-        columns again.
+        Columns that do not fit into `room` characters are split into bands, one below the other. Each band
+        begins with the first columns.
         """
         columns = [(name, *(row[i] for row in self.texts)) for i, name in enumerate(self.head)]
         widths = [max(map(len, column)) for column in columns]
@@ -85,11 +86,11 @@ class Table:
             bands[-1].append(i)
         found = [self.caption] if self.caption else []
         for band in bands:
-            told = [
+            padded = [
                 [cell.ljust(widths[i]) if self.to_left(i) else cell.rjust(widths[i]) for cell in columns[i]]
                 for i in band
             ]
-            head, *rows = zip(*told, strict=True)
+            head, *rows = zip(*padded, strict=True)
             rule = ["-" * widths[i] for i in band]
             found += [""] * (band is not bands[0])
             found += [(" " * self.indent + "  ".join(row)).rstrip() for row in (head, rule, *rows)]
@@ -97,7 +98,7 @@ class Table:
 
     @property
     def markdown(self) -> str:
-        """The table in Markdown, in which no cell acts; what disagrees is bold."""
+        """The table in Markdown, with cells escaped; cells that disagree or have moved are bold."""
         bold = dict.fromkeys(("disagrees", "moved"), "**")
         marked = ([(bold.get(one.verdict, ""), markdown(one.text)) for one in row] for row in self.cells)
         rows = ([f"{mark}{text}{mark}" for mark, text in row] for row in marked)
@@ -105,7 +106,7 @@ class Table:
         return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
     def to_left(self, column: int) -> bool:
-        """Whether a column is of words."""
+        """Whether a column is aligned to the left: the first, and columns of words."""
         return column == 0 or not all(NUMBER.match(row[column]) for row in self.texts)
 
 
@@ -114,12 +115,12 @@ Part = str | Table
 
 
 def text_of(parts: Sequence[Part], room: int | None = None) -> str:
-    """Parts as plain text, one below the other, in a room of so many columns."""
+    """Parts as plain text, one below the other, at most `room` characters wide."""
     return "\n".join(part if isinstance(part, str) else "\n".join(part.lines(room)) for part in parts)
 
 
 def text_for(stream: TextIO | None, parts: Sequence[Part]) -> str:
-    """The same for a stream; a terminal has tables as wide as it is, and verdicts in colours."""
+    """Parts as text for a stream: on a terminal fitted to its width, with verdicts in colours."""
     if not is_terminal(stream):
         return text_of(parts)
     text = text_of(parts, max(shutil.get_terminal_size().columns, 20))
@@ -130,7 +131,7 @@ def text_for(stream: TextIO | None, parts: Sequence[Part]) -> str:
 
 
 def csv_of(head: Iterable[str], lines: Iterable[Iterable[object]]) -> str:
-    """Lines as CSV; numbers give their bits back, a missing one is empty."""
+    """Lines as CSV; numbers read back have the same bits, NaN is an empty cell."""
     stream = io.StringIO()
     writer = csv.writer(stream)
     writer.writerow(head)
@@ -139,19 +140,19 @@ def csv_of(head: Iterable[str], lines: Iterable[Iterable[object]]) -> str:
 
 
 def markdown(text: str) -> str:
-    """Text that Markdown shows as it is, in one line: what could act is written as a character reference."""
+    """Text on one line, escaped for Markdown: characters that could be markup become character references."""
     if PLAIN_NUMBER.fullmatch(text):
         return text
     plain = shown(text)
 
     def acts(place: int, one: str) -> bool:
-        # A colon before slashes makes a link.
+        # A colon before a slash could make a link.
         return not one.isalnum() and (one not in SAFE or not place or plain[place : place + 2] == ":/")
 
     return "".join(f"&#{ord(one)};" if acts(place, one) else one for place, one in enumerate(plain))
 
 
 def is_terminal(stream: TextIO | None) -> bool:
-    """Whether a stream is a terminal that takes colours and lines that are written again."""
+    """Whether a stream is a terminal that supports colours."""
     dumb = os.environ.get("TERM", "dumb") in ("", "dumb", "unknown")
     return stream is not None and stream.isatty() and not dumb

@@ -1,1 +1,1 @@
-"""Long studies: numbered tasks for many processes or machines, and rows that a stopped run goes on from."""
+"""Long studies: numbered tasks for many processes or machines, and records to continue a stopped run."""

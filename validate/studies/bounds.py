@@ -1,16 +1,16 @@
-r"""Whether pointcoord's proven bounds hold, and how loose they are, up to the poses where a car locks.
+r"""Tests whether pointcoord's proven bounds hold, and how loose they are, up to poses where a car locks.
 
-Random poses of every mechanism (see `near_singular`), each reproducible by its number: cars held close to the
-end of an input. Motions towards an end, and rates, are among what `claims` holds to the reference.
+The poses are random poses of every mechanism (see `near_singular`), reproducible by their numbers: cars held
+close to the end of an input. Motions towards an end, and rates, are tested by `claims`.
 
     pointcoord study bounds --poses 10000
 
-The error of a pose is its distance from the reference, whose own is below 1e-40 of the car. It must never
-exceed the bound:
+The error of a pose is its distance from the reference, whose own error is below 1e-40 of the car. It must
+never exceed the bound, and a measure of lost digits must not grow towards the end:
 
-    error <= bound,    and    loss = error / (eps (condition size + far))    must not grow to the end,
+    error <= bound,        loss = error / (eps (condition size + far)),
 
-with size the power of two in which the mechanism counts lengths and far its distance from the origin.
+where size is the power of two in which the mechanism counts lengths, and far its distance from the origin.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ from validate.studies.study import Findings, Row, Study, Task
 
 Answer = TypeVar("Answer")
 
-DIGITS = 40  # of the reference: its error is 1e-20 of any error in double precision
+DIGITS = 40  # digits of the reference: its error is 1e-20 of any error in double precision
 PART = "held"
 
-# Lengths in mm. A refused pose has a suspension, a distance and a refusal alone.
+# Lengths in mm. A refused pose has only a suspension, a distance and a refusal.
 COLUMNS: Mapping[str, str] = {
     **dict.fromkeys(("suspension", "driven", "refusal"), "string"),  # driven: of the `NearPose`
     "distance": "float64",  # from the end, in parts of the input's range
@@ -48,27 +48,27 @@ COLUMNS: Mapping[str, str] = {
     "size": "float64",  # of the mechanism, a power of two
     "far": "float64",  # largest coordinate of a point in the frame of the scene
     **dict.fromkeys(("error", "bound"), "float64"),  # of the solved points
-    "share": "float64",  # the larger error, of the solved points or of those carried, in parts of its bound
+    "share": "float64",  # the larger error / bound of the solved points and of the carried points
 }
 
 
 def bounds(poses: int = 2000, seed: int = 0) -> Study:
-    """Poses held close to the end of an input."""
+    """The study of poses held close to the end of an input."""
     tasks = [Task(PART, number) for number in range(poses)]
     examine, summary = partial(examined, seed=seed), partial(found, seed=seed)
     return Study("bounds", "pose", {"seed": seed}, COLUMNS, tasks, examine, summary, chunk=8)
 
 
 def examined(task: Task, seed: int) -> list[Row]:
-    """Hold the pose of a number against the reference."""
+    """Compare the pose of a task with the reference."""
     return [held_pose(near_pose(task.number, seed))]
 
 
 def held_pose(pose: NearPose) -> Row:
-    """The check of a car whose inputs are constant."""
+    """The row of a pose: its error against its bound, or the refusal."""
     where = {"suspension": pose.variant.words, "distance": pose.distance}
     scene = Scene.from_mapping(content_of(pose.car, pose.inputs, effects=()))
-    # For the values that the laws have in double precision, as the bound is for these.
+    # The inputs as rounded to double precision, because the bound is for these.
     inputs = {name: (value, 0.0, 0.0) for name, (value, *_) in inputs_at(scene, 0.0).items()}
     motion = _answer(lambda: simulate(scene))
     reference = _answer(lambda: reference_instant(scene, inputs, digits=DIGITS))
@@ -79,8 +79,8 @@ def held_pose(pose: NearPose) -> Row:
     bound, carried = float(proof.bound[0]), float(proof.carried_bound[0])
     if not math.isfinite(bound):
         return {**where, "refusal": "pointcoord: no finite bound"}
-    # The largest component of the distance of a point from the true one, mm; where the reference has no such
-    # assembly, nothing bounds it.
+    # The largest component of the error of each point, mm; infinite if the reference proves that there is no
+    # pose.
     errors = dict.fromkeys(motion.position, math.inf)
     if isinstance(reference, Instant):
         for name, places in motion.position.items():
@@ -102,7 +102,7 @@ def held_pose(pose: NearPose) -> Row:
 
 
 def _answer(ask: Callable[[], Answer]) -> Answer | str:
-    """What is asked for, or the name of the error that refuses it."""
+    """The result of `ask`, or the name of its error."""
     try:
         return ask()
     except PointcoordError as error:
@@ -112,11 +112,12 @@ def _answer(ask: Callable[[], Answer]) -> Answer | str:
 
 
 def measured(rows: Sequence[Row]) -> pd.DataFrame:
-    """The rows that answer, with what is made of their columns.
+    """The rows of poses that were not refused, as a table.
 
     Returns:
-        Also `loss`, the error in parts of what rounding may do, eps (condition size + far); `loose`, bound
-        over error of solved points, which is infinite where the error is zero.
+        The table with further columns: `loss`, the error over the effect of rounding, eps (condition size +
+            far);
+        `loose`, bound / error of the solved points, infinite if the error is zero.
     """
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(("part", "number", *COLUMNS))))
     table = table[table["refusal"].isna()].drop(columns="refusal").reset_index(drop=True)

@@ -1,7 +1,7 @@
-"""Whether what a formulation claims of its accuracy holds, number by number, and how loose it is.
+"""Tests whether the error bounds of a formulation hold, number by number, and how loose they are.
 
-Random scenes by number (see `random_scenes`), a tenth of them close to a singular pose, each number of every
-instant held against the reference:
+The scenes are random scenes by number (see `random_scenes`), a tenth of them close to a singular pose. Each
+number at every instant is compared with the reference:
 
     pointcoord study claims --formulation absolute --count 80
 """
@@ -33,7 +33,8 @@ COLUMNS: Mapping[str, str] = {
 
 
 def claims(count: int = 300, first: int = 0, formulation: str = "pointcoord", seed: int = SEED) -> Study:
-    """Random scenes of the numbers from `first` up. A row is a number, with its error and what is claimed.
+    """The study of random scenes from number `first` up. A row is a number, with its error and error bound
+    (claim).
 
     A scene without an answer, or without a reference, has one row without a quantity.
     """
@@ -44,7 +45,7 @@ def claims(count: int = 300, first: int = 0, formulation: str = "pointcoord", se
 
 
 def scene_rows(task: Task, name: str) -> list[Row]:
-    """Every number of the scene of a number."""
+    """The rows of a scene: every component of every number at every instant."""
     car = random_scene(task.number)
     scene, of_all = car.scene, {"suspension": car.variant.words, "kind": car.kind}
     try:
@@ -55,7 +56,7 @@ def scene_rows(task: Task, name: str) -> list[Row]:
     reference = as_solution(scene, instants)
     rows: list[Row] = []
     for quantity in asked_numbers(scene):
-        # The reference's own error is that of numbers as large as the largest ones that a number is made of.
+        # The error of the reference is relative to the largest numbers from which a number is computed.
         dust, of_car = DUST * scales(reference.numbers)[quantity], QUANTITIES[quantity].of == "car"
         for one in (n for n in solution.numbers[quantity] if n in reference.numbers[quantity]):
             numbers = solution.numbers[quantity][one].reshape(len(instants), -1)
@@ -71,7 +72,7 @@ def scene_rows(task: Task, name: str) -> list[Row]:
 
 
 def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
-    """By suspension and quantity: numbers, the largest error / claim, and the median claim / error."""
+    """By suspension and quantity: count of numbers, largest error / claim, and median claim / error."""
     held = pd.DataFrame(rows, columns=["number", *COLUMNS]).dropna(subset="quantity")
     held["share"] = (held["error"] / held["claim"]).where(held["error"] != 0.0, 0.0)
     data: list[dict[str, Any]] = []

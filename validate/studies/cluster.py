@@ -1,4 +1,4 @@
-"""Who works out the tasks of a study: processes of this machine, or any Dask cluster by its address."""
+"""Runs the tasks of a study on processes of this machine, or on any Dask cluster by its address."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from validate.studies.store import Store
 from validate.studies.study import Row, Study, Task, differences, made_by
 
 LOCAL = "local"
-HERE = "127.0.0.1"  # nobody else reaches processes of this machine: what they are sent, they run
-ANSWER = 5.0  # seconds that a scheduler is given to answer
-FIRST_WORKER = 10.0  # and a cluster to have a worker
-WRITTEN = 2.0  # seconds of what is worked out that one file holds: what the end of this process can cost
-MOST = 5000  # Dask tasks of a run: a scheduler needs a millisecond for each
+HERE = "127.0.0.1"  # local processes run what they are sent, so no other machine may reach them
+ANSWER = 5.0  # time limit for the answer of a scheduler, s
+FIRST_WORKER = 10.0  # time limit for the first worker of a cluster, s
+WRITTEN = 2.0  # time between two files of results, s: the most that is lost if this process is killed
+MOST = 5000  # largest number of Dask tasks of a run: a scheduler needs a millisecond for each
 LOGGERS = ("distributed", "tornado", "asyncio")
 
 
@@ -37,16 +37,16 @@ def run(
     client: Any,
     told: Callable[[int], None] = lambda done: None,
 ) -> None:
-    """Work out tasks of a study and record them; whatever ends it, what was done before is recorded.
+    """Run tasks of a study and record their rows; finished tasks are recorded however the run ends.
 
-    A worker that dies costs the tasks that it was at: another one works them out.
+    If a worker dies, another one runs the tasks that it was running.
 
     Args:
-        told: how many of the tasks are recorded, whenever there are more.
+        told: called with the number of recorded tasks whenever it grows.
     Raises:
         UsageError: a worker runs another program, or several tasks at once.
-        NotFinished: the scheduler is gone; a task ends its workers one after the other, or raises an error;
-            the records cannot be written.
+        NotFinished: the scheduler is lost; a task kills one worker after the other, or raises an error; the
+            records cannot be written.
     """
     distributed, size = quiet_dask(), max(study.chunk, -(-len(tasks) // MOST))
     chunks = [tuple(tasks[i : i + size]) for i in range(0, len(tasks), size)]
@@ -56,17 +56,17 @@ def run(
     def record() -> None:
         nonlocal held, last
         if held:
-            # Ctrl-C may come between any two steps: the same rows are then written again to the same file.
+            # Ctrl-C may come between any two steps: then the same rows are written again to the same file.
             store.write(held)
             held, last = [], time.monotonic()
         told(done)
 
-    # Not pure: a scheduler gives what it still has of another run otherwise.
+    # pure=False, because otherwise a scheduler may return results of another run.
     futures = client.map(partial(_work_out, study.examine, made_by()), chunks, pure=False)
     try:
         for future in distributed.as_completed(futures, loop=client.loop):
             rows = _result(future)
-            # What is handed over is not to be worked out again when the worker that still has it dies.
+            # Released, so that the task is not run again if the worker that keeps its result dies.
             future.release()
             held, done = [*held, *rows], done + len({(row["part"], row["number"]) for row in rows})
             if time.monotonic() - last >= WRITTEN:
@@ -78,24 +78,26 @@ def run(
 def _work_out(
     examine: Callable[[Task], list[Row]], program: Mapping[str, str], tasks: Sequence[Task]
 ) -> list[Row]:
-    """The rows of some tasks, worked out in the process of a worker by one thread."""
+    """The rows of some tasks, computed in the process of a worker by one thread."""
     worker = import_module("distributed").get_worker()
-    if told := differences(made_by(), program):
-        raise UsageError(f"the worker {worker.address} runs something else: {told}; install the same there")
-    if worker.state.nthreads != 1:
-        # What tasks share, such as the filter of warnings, they would share unguarded.
+    if found := differences(made_by(), program):
         raise UsageError(
-            f"the worker {worker.address} takes {worker.state.nthreads} tasks at once, a study takes workers "
-            "of one; start it with --nthreads 1"
+            f"the worker {worker.address} has other versions: {found}; install the same versions there"
+        )
+    if worker.state.nthreads != 1:
+        # Threads would share global state without locks, such as the filter of warnings.
+        raise UsageError(
+            f"the worker {worker.address} runs {worker.state.nthreads} tasks at once, allowed: 1; start it "
+            "with --nthreads 1"
         )
     return [row for task in tasks for row in rows_of(examine, task, worker.address)]
 
 
 def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> list[Row]:
-    """The rows of a task, worked out here by one thread.
+    """The rows of a task, computed in this process by one thread.
 
     Raises:
-        UsageError: a package is not there. NotFinished: the task raised an error.
+        UsageError: a package is missing. NotFinished: the task raised an error.
     """
     began = time.perf_counter()
     try:
@@ -111,31 +113,31 @@ def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> li
 
 
 def _result(future: Any) -> list[Row]:
-    """What came of a future that is finished; it is worked out again if its worker has died since."""
+    """The rows of a finished future; Dask computes them again if its worker has died since."""
     try:
         return list(future.result())
     except (UsageError, NotFinished):
         raise
-    # Whatever Dask says: of a scheduler that is gone, a task that ended its workers one after the other, or a
-    # worker that has no such program.
+    # Any error of Dask: the scheduler is lost, a task kills one worker after the other, or a worker lacks
+    # this program.
     except Exception as error:
-        said = one_line(f"{type(error).__name__}: {error}")
+        message = one_line(f"{type(error).__name__}: {error}")
         raise NotFinished(
             "the cluster",
-            f"it does not work any more ({said}); each worker needs pip install "
-            "'pointcoord[validate,cluster]', of this version; the same command goes on",
+            f"has failed ({message}); each worker needs pip install 'pointcoord[validate,cluster]' of this "
+            "version; the same command continues the study",
         ) from None
 
 
 @contextmanager
 def opened(address: str, workers: int | None = None) -> Iterator[Any]:
-    """Dask's client of the cluster at an address, or for `local` of processes of this machine.
+    """A Dask client of the cluster at an address, or, for `local`, of processes of this machine.
 
     Args:
-        workers: how many processes of this machine; as many as it has processors for us, if not given.
+        workers: number of local processes; if not given, the number of processors available to this process.
     Raises:
-        MissingLibrary: Dask is not there.
-        UsageError: nothing answers, or there is no worker.
+        MissingLibrary: Dask is not installed.
+        UsageError: no scheduler answers, or there is no worker.
     """
     distributed, cluster = quiet_dask(), address
     with ExitStack() as stack:
@@ -145,7 +147,8 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
         else:
             _require_scheduler(distributed, address)
         with warnings.catch_warnings():
-            # Of other versions; those that matter are refused.
+            # Warnings of different versions: workers with different versions of what matters are refused
+            # later.
             warnings.simplefilter("ignore")
             client = distributed.Client(cluster, set_as_default=False)
         stack.callback(_quietly, client.close)
@@ -161,10 +164,10 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
 
 
 def quiet_dask() -> Any:
-    """The package `distributed`, which says nothing by itself: what matters is said by this program.
+    """The package `distributed`, with its logging turned off: this program reports the errors.
 
     Raises:
-        MissingLibrary: it is not there.
+        MissingLibrary: the package is not installed.
     """
     needed("study", "dask", "cluster").config.set({"logging": dict.fromkeys(LOGGERS, "critical")})
     distributed = needed("study", "distributed", "cluster")
@@ -174,9 +177,10 @@ def quiet_dask() -> Any:
 
 
 def _local(distributed: Any, workers: int | None) -> Any:
-    """Processes of this machine, one thread each; one that dies is started again."""
-    # A terminal sends Ctrl-C to all; who ends the workers is this program. Threads and processes that begin
-    # here, and theirs, never see it. Whoever starts the tracker of multiprocessing would hear again.
+    """A cluster of local processes with one thread each; a process that dies is started again."""
+    # A terminal sends Ctrl-C to all processes, but this program ends the workers. SIGINT is blocked here, so
+    # that threads and processes started here never receive it. multiprocessing's resource tracker is started
+    # before, because starting it would unblock the signal.
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -185,7 +189,7 @@ def _local(distributed: Any, workers: int | None) -> Any:
             threads_per_worker=1,
             processes=True,
             host=HERE,
-            # No pages of its own; the port of those that any other cluster here may have is left alone.
+            # No dashboard; port 0, so that it does not take the port of another cluster's dashboard.
             dashboard_address=None,
             scheduler_kwargs={"dashboard": False, "dashboard_address": f"{HERE}:0"},
             memory_limit=0,
@@ -196,20 +200,20 @@ def _local(distributed: Any, workers: int | None) -> Any:
 
 
 def _require_scheduler(distributed: Any, address: str) -> None:
-    """See that a scheduler answers: a client of something else waits for ever.
+    """Check that a scheduler answers at an address; a Dask client of anything else would wait for ever.
 
     Raises:
-        UsageError: none does.
+        UsageError: no scheduler answers.
     """
 
     async def identity() -> Any:
         how = distributed.Security().get_connection_args("client")
         async with distributed.rpc(address, timeout=ANSWER, connection_args=how) as scheduler:
-            return await scheduler.identity(n_workers=0)  # a worker knows no such argument
+            return await scheduler.identity(n_workers=0)  # a worker does not accept this argument
 
     try:
         asyncio.run(asyncio.wait_for(identity(), ANSWER))
-    except Exception as error:  # also of what another program says, taken for the size of an answer
+    except Exception as error:  # of any class: another program's answer may be read as a huge message size
         problem = one_line(str(error)) or f"no answer in {ANSWER:g} s"
         raise UsageError(
             f"the scheduler {shown(address)} does not answer as a Dask scheduler ({problem}); give "
@@ -218,6 +222,6 @@ def _require_scheduler(distributed: Any, address: str) -> None:
 
 
 def _quietly(close: Callable[..., object]) -> None:
-    """End a client or a cluster, also one that is gone."""
+    """Close a client or a cluster, also if it is lost."""
     with suppress(Exception):
         close(timeout=ANSWER)

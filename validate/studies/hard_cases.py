@@ -1,4 +1,4 @@
-"""The hard cases worked out value by value: `pointcoord study hard`."""
+"""`pointcoord study hard`: the hard cases, value by value."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ ANSWER = {
 
 
 def hard(cases: Sequence[str] = ()) -> Study:
-    """Hard cases, by name or all of them: a task is one value of the parameter of one case.
+    """The study of hard cases, by name or all: a task is one value of the parameter of one case.
 
-    A row is what one formulation answers at one value: the value, an `Answer`, and as JSON the facts, what
-    else was measured there.
+    A row is the answer of one formulation at one value: the value, the fields of `Answer`, and further facts
+        as
+    JSON.
 
     Raises:
         UsageError: there is no such case.
@@ -36,7 +37,7 @@ def hard(cases: Sequence[str] = ()) -> Study:
 
 
 def answers(task: Task) -> list[Row]:
-    """Try one value by every formulation of its case."""
+    """The rows of one value: the answers of every formulation of its case."""
     (case,) = chosen([task.part])
     trial = tried(case, case.values[task.number])
     every = {"value": trial.value, "facts": json.dumps(dict(trial.facts))}
@@ -44,7 +45,7 @@ def answers(task: Task) -> list[Row]:
 
 
 def found(rows: Sequence[Row]) -> Findings:
-    """What `pointcoord hard` says of the same cases."""
+    """The findings, as `pointcoord hard` prints them for these cases."""
     by_case: dict[str, dict[int, list[Row]]] = {}
     for row in rows:
         by_case.setdefault(row["part"], {}).setdefault(row["number"], []).append(row)
@@ -59,7 +60,7 @@ def found(rows: Sequence[Row]) -> Findings:
 
 
 def _examined(case: Case, rows: dict[int, list[Row]]) -> Examined:
-    """A case with the values that were tried."""
+    """A case with the values and answers that are recorded."""
     values = tuple(case.values[i] for i in rows)
     answers = ([Answer(**{name: row[name] for name in ANSWER}) for row in of] for of in rows.values())
     facts = (json.loads(of[0]["facts"]) for of in rows.values())

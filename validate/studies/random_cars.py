@@ -1,8 +1,8 @@
-"""Random scenes by the hundred thousand through both models: `pointcoord study random`.
+"""`pointcoord study random`: random scenes, up to hundreds of thousands, solved by both models.
 
 Every scene has one outcome: both models agree, both refuse, one refuses, they disagree, or one of them fails
-in a way it should not. Two models may agree on a wrong car, so where they agree one scene in twenty is held
-to the reference, in every quantity. Nothing is folded away: the table at the end counts them all.
+with an error that is no refusal. Two models may agree on a wrong car, so of the scenes that agree one in
+twenty is compared with the reference, in every quantity. The table at the end counts all scenes.
 """
 
 from __future__ import annotations
@@ -30,33 +30,34 @@ from validate.studies.verdicts import NO_OBSTACLE, NONE_WRONG, judged, obstacle,
 PART = "scenes"
 OURS = "pointcoord"
 OTHER = "absolute"
-ALONE = 1.0 - 1e-9  # a part of a tolerance that is all of it
-HELD = 20  # every so many scenes are held to the reference although both models agree
-# What makes the status 1; an answer that stands alone and is wrong is one of them.
+ALONE = 1.0 - 1e-9  # from this part up, one model's bound is the whole tolerance
+HELD = 20  # of the scenes that agree, one in so many is compared with the reference
+# Parts of outcomes that make the exit status 1, such as a wrong answer of the only model that answers.
 FAULTY = ("disagreed", " fails: ", " wrong", "agreed, the reference: no such pose")
 COLUMNS = dict.fromkeys(("suspension", "kind", "outcome", "reason", "scene", "shares"), "string")
-# How outcomes begin, in the order in which they are shown.
+# The beginnings of outcomes, in the order of the tables.
 HEADS = ("agreed", "not tested", "not given", "both refuse", "only", "disagreed")
 
 
 def random_cars(count: int = 20_000) -> Study:
-    """Random scenes of the numbers from 0 up through two models.
+    """The study of random scenes from number 0 up, solved by both models.
 
-    A row is a scene: suspension, kind of scene, outcome, and where there is more to say reason and scene, as
-    JSON; where both models agree shares, as JSON: the largest part of its tolerance that each quantity used.
+    A row is a scene: suspension, kind of scene and outcome; for some outcomes the reason and the scene as
+        JSON; if
+    both models agree, the shares as JSON: the largest share of its tolerance for each quantity.
     """
     tasks = [Task(PART, number) for number in range(count)]
     return Study("random", "scene", {"seed": SEED}, COLUMNS, tasks, scene_row, found, chunk=4)
 
 
 def scene_row(task: Task) -> list[Row]:
-    """Solve the scene of a number by both models."""
+    """The row of a scene, solved by both models."""
     car = random_scene(task.number)
     return [{"suspension": car.variant.words, "kind": car.kind, **examined(car)}]
 
 
 def examined(car: RandomScene) -> Row:
-    """Solve one scene by both models and say what came of it: the outcome and what there is to say of it."""
+    """Solve one scene by both models; returns the outcome and further columns of its row."""
     answers: list[Solution] = []
     refusals: list[FormulationError] = []
     for name in (OURS, OTHER):
@@ -64,26 +65,26 @@ def examined(car: RandomScene) -> Row:
             answers.append(_solved(name, car))
         except FormulationError as error:
             refusals.append(error)
-        # Any other error is a defect of a model: it is counted and written down, and the run goes on.
+        # Any other error is a defect of a model: it is recorded, and the run continues.
         except Exception as error:
             return _kept(car, f"{name} fails: {type(error).__name__}", " ".join(str(error).split()))
     if not refusals:
         return _compared(car, *answers)
-    told, reasons = " ".join(str(refusals[0].reason).split()), [why_refused(one) for one in refusals]
+    message, reasons = " ".join(str(refusals[0].reason).split()), [why_refused(one) for one in refusals]
     if answers:
-        # Of what stands alone the positions count: they say which of the two is right.
+        # Only one model answers: its positions are enough to decide which model is right.
         verdict = judged(car.scene.model_copy(update={"effects": ()}), *answers)
         if verdict == NONE_WRONG:
             verdict = f"answer right, {obstacle(car.scene)}"
-        return _kept(car, f"only {refusals[0].formulation} refuses, {reasons[0]}: {verdict}", told)
+        return _kept(car, f"only {refusals[0].formulation} refuses, {reasons[0]}: {verdict}", message)
     alike, why = "same reason" if same_reason(*reasons) else "different reasons", unanswered(car.scene)
     outcome = f"both refuse, {alike}: {' | '.join(dict.fromkeys(reasons))}: {why}"
-    # A refusal that nothing explains is worth a look, even if both models agree in it.
-    return _kept(car, outcome, told) if why == NO_OBSTACLE else {"outcome": outcome, "reason": told}
+    # The scene of an unexplained refusal is recorded for inspection, even if both models refuse.
+    return _kept(car, outcome, message) if why == NO_OBSTACLE else {"outcome": outcome, "reason": message}
 
 
 def _kept(car: RandomScene, outcome: str, reason: str | None = None) -> Row:
-    """An outcome whose whole scene is recorded, to be looked into."""
+    """The columns of an outcome, with the whole scene for inspection."""
     content = car.scene.model_dump(mode="json", exclude_none=True)
     return {"outcome": outcome, "reason": reason or None, "scene": json.dumps(content)}
 
@@ -111,15 +112,15 @@ def _compared(car: RandomScene, first: Solution, second: Solution) -> Row:
         f"tolerance {worst.tolerance:.3g}, at t = {worst.instant:.6g} s"
     )
     if worst.verdict != "disagrees":
-        said = f", {worst.part:.6f} of it the error bound of {worst.rests_on}"
-        return _kept(car, f"{worst.verdict}: {worst.quantity}", reason + said)
+        limit = f", {worst.part:.6f} of it the error bound of {worst.rests_on}"
+        return _kept(car, f"{worst.verdict}: {worst.quantity}", reason + limit)
     return _kept(car, f"disagreed in {worst.quantity}: {judged(car.scene, first, second)}", reason)
 
 
 def _shares(outcome: Outcome) -> str:
-    """Largest share of each quantity, and of each number of the car, whichever wheel it is of.
+    """The largest share of each quantity, and of each number of the car over all its wheels.
 
-    Where one model claims nothing, as of a point at rest, a share says nothing of what both claim.
+    Rows in which only one model has an error bound, as for a point at rest, are left out.
     """
     largest: dict[str, float] = {}
     for row in outcome.rows:
@@ -131,7 +132,7 @@ def _shares(outcome: Outcome) -> str:
 
 
 def found(rows: Sequence[Row]) -> Findings:
-    """Every outcome counted, and the largest share of each tolerance."""
+    """The findings: counts of all outcomes, and the largest share of each tolerance."""
     table = pd.DataFrame(rows, columns=["number", "seconds", *COLUMNS])
     kept = [row for row in rows if row.get("scene") is not None]
     counts = table.groupby(["suspension", "kind", "outcome"]).size().reset_index(name="scenes")
@@ -157,8 +158,8 @@ def found(rows: Sequence[Row]) -> Findings:
         head = ("quantity", "largest share of tolerance", "scene")
         parts += ["", "Where both agreed:", Table(head, tuple(lines))]
     last = (
-        f"{counted_as(len(table), 'scene')} recorded, {len(kept):,} of them as a whole scene, to be looked "
-        f"into; {table['seconds'].sum():.0f} s of work, of all runs and processes."
+        f"{counted_as(len(table), 'scene')} recorded, {len(kept):,} of them with the whole scene for "
+        f"inspection; {table['seconds'].sum():.0f} s of work in all runs and processes."
     )
     status = ExitStatus.DISAGREE if table["outcome"].map(_is_faulty).any() else ExitStatus.AGREE
     return Findings((*parts, "", last), data, status)
@@ -179,7 +180,7 @@ def _summary(table: pd.DataFrame) -> Table:
 
 
 def _outcomes(here: pd.DataFrame) -> Table:
-    """How often each outcome came, by kind of scene."""
+    """Counts of the outcomes by kind of scene."""
     counts = pd.crosstab(here["outcome"], here["kind"]).reindex(columns=KINDS, fill_value=0)
     counts = counts.loc[sorted(counts.index, key=_order)]
     counts.loc["mechanisms tried"] = counts.sum()

@@ -1,14 +1,14 @@
-"""The records of a study: a folder of Parquet files to which files are added and nothing else is done.
+"""The records of a study: a folder of Parquet files; files are added and never changed.
 
-`_study.json` says what the records are of. Each other file holds all rows of some tasks, and is there whole
-or not at all, so that the folder can be read at any time, also while the study runs:
+`_study.json` has the study, its settings and the versions. Each other file has all rows of some tasks. Files
+appear only when they are complete, so the folder can be read at any time, also while the study runs:
 
     import pandas
     pandas.read_parquet("pointcoord-random")
 
-Names that begin with `_` or `.` are left out there, as what is being written does. The columns that every
-study has: part and number are the task, seconds how long it took (the same in all of its rows), worker who
-did it. What the others are stands with the study.
+pandas skips names that begin with `_` or `.`, such as those of unfinished files. Every study has the columns
+part and number, which are the task; seconds, the run time of the task (equal in all its rows); and worker,
+the address of its worker. Each study documents its other columns.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from validate.studies.study import Row, Study, Task, differences, made_by
 
 HEAD = "_study.json"
 EVERY = {"part": "string", "number": "int64", "seconds": "float64", "worker": "string"}
-ANOTHER = "give another folder by --records, or delete this one to begin again"
+ANOTHER = "give another folder with --records, or delete this folder to begin again"
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Store:
     """A folder of records.
 
     Attributes:
-        run: who writes, so that two runs never write the same file.
+        run: random part of file names, so that two runs never write the same file.
     """
 
     folder: Path
@@ -44,15 +44,15 @@ class Store:
 
     @property
     def head(self) -> Mapping[str, str | int]:
-        """What the rows depend on beside their task."""
+        """The study, settings and versions on which the rows depend, in addition to their task."""
         return {"study": self.study.name, **self.study.settings, **made_by()}
 
     def files(self) -> list[Path]:
-        """What holds rows."""
+        """The files of rows."""
         return sorted(path for path in self.folder.glob("*.parquet") if path.name[0] not in "_.")
 
     def rows(self) -> dict[Task, list[Row]]:
-        """The rows of every task that is recorded.
+        """The rows of every recorded task.
 
         Raises:
             UsageError: a file cannot be read.
@@ -65,20 +65,20 @@ class Store:
                 for row in parquet.read_table(file, columns=columns, partitioning=None).to_pylist():
                     here.setdefault(Task(row["part"], row["number"]), []).append(row)
             except (OSError, ValueError, KeyError) as error:
-                told = " ".join(str(error).split())
+                problem = " ".join(str(error).split())
                 raise self.unusable(
-                    f"{file.name} cannot be read as what this study records ({told}); delete this file to "
-                    "work out its tasks again"
+                    f"{file.name} cannot be read as a record of this study ({problem}); delete this file to "
+                    "run its tasks again"
                 ) from None
-            # Two runs may have worked out the same task: it counts once.
+            # Two runs may have recorded the same task: it counts once.
             found = here | found
         return found
 
     def write(self, rows: Sequence[Row]) -> None:
-        """Write a file: all rows of some tasks; who was interrupted writes the same again, to the same file.
+        """Write a file with all rows of some tasks. Writing the same rows again replaces the same file.
 
         Raises:
-            NotFinished: it cannot be written.
+            NotFinished: the file cannot be written.
         """
         pa, parquet = (needed("study", name, "cluster") for name in ("pyarrow", "pyarrow.parquet"))
         columns = {**EVERY, **self.study.columns}
@@ -94,30 +94,31 @@ class Store:
         write_whole(str(self.folder / name), lambda stream: parquet.write_table(table, stream))
 
     def unusable(self, problem: str) -> UsageError:
-        """The error of a folder that records cannot be in."""
+        """The error for a folder that cannot be used for records."""
         return UsageError(f"--records {shown(str(self.folder))}: {problem}")
 
 
 def records(folder: Path, study: Study) -> Store:
-    """The records in a folder, to be gone on with, or begun: the folder is made when something is recorded.
+    """The records in a folder, old ones to be continued or new ones. A new folder is made at the first
+    record.
 
     Raises:
-        UsageError: they are of something else, or there is no room.
+        UsageError: the records are of another study or version, or the folder cannot be used.
     """
     needed("study", "pyarrow.parquet", "cluster")
     store = Store(folder, study)
     try:
         if folder.exists() and not folder.is_dir():
-            raise store.unusable("is a file, and records take a folder; give another name")
-        # A run that ended before anything was recorded left nothing to be held to.
+            raise store.unusable("is a file; allowed: a folder; give another name")
+        # Without files of rows, an old head requires nothing of the new run.
         if not store.files():
             if folder.is_dir() and set(os.listdir(folder)) - {HEAD}:
-                raise store.unusable("holds something else than records of a study; give another folder")
+                raise store.unusable("contains files that are no records of a study; give another folder")
             return store
         there = json.loads((folder / HEAD).read_text(encoding="utf-8"))
-        told = differences(there, store.head)
+        found = differences(there, store.head)
     except (OSError, ValueError, TypeError) as error:
-        raise store.unusable(f"{HEAD} does not say what the records are of ({error}); {ANOTHER}") from None
-    if told:
-        raise store.unusable(f"was begun with something else: {told}; {ANOTHER}")
+        raise store.unusable(f"{HEAD} cannot be read as a study's head ({error}); {ANOTHER}") from None
+    if found:
+        raise store.unusable(f"has records of another study or version: {found}; {ANOTHER}")
     return store

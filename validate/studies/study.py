@@ -1,6 +1,6 @@
-"""What a long study is: numbered tasks whose rows follow from the number and the study's settings alone.
+"""A long study: numbered tasks. The rows of a task depend only on its number and on the study's settings.
 
-So it does not matter who works a task out, when, or beside what else.
+So any worker may run a task, at any time and in any order.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from validate.output.document import code_digest, machine, program_version
 from validate.output.table import Part
 
 Row = dict[str, Any]
-"""A value for each column of its study; None, or no key, where it has none."""
+"""A value for each column of the study; None, or no key, for no value."""
 PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint")
 
 
 class Task(NamedTuple):
-    """One thing to work out: its number in a part of the study."""
+    """One task: a number in a part of the study."""
 
     part: str
     number: int
@@ -28,10 +28,10 @@ class Task(NamedTuple):
 
 @dataclass(frozen=True)
 class Findings:
-    """What the rows of a study come to.
+    """The findings from the rows of a study.
 
     Attributes:
-        parts: for people. data: the same as plain data. status: of a run that ends with them.
+        parts: lines and tables to print. data: the findings as plain data. status: exit status of the run.
     """
 
     parts: tuple[Part, ...]
@@ -45,13 +45,13 @@ class Study:
 
     Attributes:
         name: on the command line, and in the records.
-        noun: what a task is about, such as scene; its plural has an s.
-        settings: all that a row depends on beside its task.
-        columns: of its rows, with what pyarrow calls their types.
-        tasks: all that are to be worked out, in this order.
-        examine: the rows of a task, at least one; it is sent to other processes.
-        summary: what rows come to, those of a task beside each other, in the order of the tasks.
-        chunk: how many tasks take some tenths of a second.
+        noun: what a task is, such as `scene`; its plural has an s.
+        settings: all that a row depends on in addition to its task.
+        columns: columns of the rows, with the names of their types in pyarrow.
+        tasks: all tasks, in the order in which they are run.
+        examine: returns the rows of a task, at least one; it is sent to other processes.
+        summary: returns the findings from all rows, in the order of the tasks.
+        chunk: number of tasks that take some tenths of a second.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Study:
 
 @cache
 def made_by() -> Mapping[str, str]:
-    """What makes rows in this process: the program, a digest of its code, and the packages it rests on."""
+    """The versions in this process: the program, a digest of its code, and the packages that it uses."""
     code = code_digest(("pointcoord", "absolute", "validate"))
     installed = machine()["packages"]
     return {
@@ -76,6 +76,6 @@ def made_by() -> Mapping[str, str]:
 
 
 def differences(there: Mapping[str, Any], here: Mapping[str, Any]) -> str:
-    """What is another there than here, in words; empty if nothing is."""
+    """The differing values of two mappings, in words; empty if there are none."""
     pairs = [(n, there.get(n, "not known"), here.get(n, "not known")) for n in dict.fromkeys((*there, *here))]
     return "; ".join(f"{name} {theirs}, here {ours}" for name, theirs, ours in pairs if theirs != ours)

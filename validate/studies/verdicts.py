@@ -1,4 +1,4 @@
-"""Who is right when two models differ, or when only one of them answers: both are held to the reference."""
+"""Decides by the reference which model is right if two models differ, or if only one of them answers."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from validate.reference import InfeasibleError, NoReferenceError, instants_of
 
 NO_OBSTACLE = "no obstacle found"
 NONE_WRONG = "none wrong by its own tolerance"
-DIGITS = 15  # of the reference where only whether there is a pose counts
-BETWEEN = 24  # instants between the first and the last at which a pose is looked for
+DIGITS = 15  # digits of the reference if only the existence of a pose matters
+BETWEEN = 24  # number of instants between the first and the last at which a pose is looked for
 
 
 def judged(scene: Scene, *answers: Solution) -> str:
-    """Which of some solutions the reference contradicts, or why that cannot be said."""
+    """The solutions that the reference contradicts, in words, or why this is not known."""
     try:
         reference = reference_solution(scene)
     except NoReferenceError as error:
@@ -38,7 +38,7 @@ def judged(scene: Scene, *answers: Solution) -> str:
 
 
 def unanswered(scene: Scene) -> str:
-    """Why a scene that nobody answers has no answer, as far as the reference can say."""
+    """Why a scene that all models refuse has no answer, as far as the reference can tell."""
     try:
         for time in scene.instants.tolist():
             reference_instant(scene, inputs_at(scene, time))
@@ -50,10 +50,10 @@ def unanswered(scene: Scene) -> str:
 
 
 def obstacle(scene: Scene) -> str:
-    """Where, between its drawing and its last instant, a scene has no pose: why a path cannot go on.
+    """Where between its drawing and its last instant a scene has no pose, so that a path cannot continue.
 
-    The way from the drawing to the first instant is straight in the numbers that the reference's equations
-    take of the inputs.
+    The path from the drawing to the first instant is straight in the functions of the inputs that the
+    reference's equations contain.
     """
     times = np.linspace(scene.time.start, scene.time.stop, BETWEEN + 2)
     instants = instants_of(design_of(scene), (inputs_at(scene, t) for t in times.tolist()), DIGITS)

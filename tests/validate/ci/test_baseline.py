@@ -109,7 +109,7 @@ def test_numbers_that_are_new_or_gone_are_named(tmp_path: Path) -> None:
     assert set(odd.values()) == {"gone"}
     assert since.status is ExitStatus.DISAGREE
     record = record_of(since, baseline)
-    assert "; given then and not now: steer: velocity of " in sentence(record)
+    assert "; given in the baseline and not now: steer: velocity of " in sentence(record)
     (suite,) = (s for s in checked(junit(record)) if s.get("name") == "steer: since the baseline")
     assert {failure.get("type") for failure in suite.iter("failure")} == {"gone"}
     # More than then is no loss.
@@ -126,7 +126,7 @@ def test_a_formulation_in_the_place_of_another_is_no_verdict_and_one_that_is_not
     baseline = saved(tmp_path)
     since = baseline.since("steer", SCENE, [other])
     assert (since.lost, since.status) == ((), ExitStatus.NO_VERDICT)
-    assert "another formulation than in the baseline: another in the place of absolute" in since.words
+    assert "another formulation than in the baseline, another instead of absolute" in since.words
     errors = checked(junit(record_of(since, baseline))).iter("error")
     assert [case.get("type") for case in errors] == ["another formulation"]
     fewer = saved(tmp_path, OUTCOME, third).since("steer", SCENE, [OUTCOME])
@@ -137,12 +137,15 @@ def test_a_formulation_in_the_place_of_another_is_no_verdict_and_one_that_is_not
 DAMAGES: dict[str, tuple[Any, str]] = {
     "newer": (
         lambda found: found | {"version": np.array(VERSION + 1)},
-        "is of version 2; allowed: version",
+        "has version 2; allowed: version",
     ),
-    "lost array": (lambda found: {k: v for k, v in found.items() if k != "a3"}, "hold a whole baseline"),
+    "lost array": (
+        lambda found: {k: v for k, v in found.items() if k != "a3"},
+        "contains no complete baseline",
+    ),
     "another shape": (
         lambda found: found | {name: array[:1] for name, array in found.items() if array.ndim > 1},
-        "hold a whole baseline",
+        "contains no complete baseline",
     ),
 }
 
@@ -152,7 +155,7 @@ def test_a_file_that_is_no_whole_baseline_is_refused_in_one_line(
     how: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     saved(tmp_path)
-    path, words = tmp_path / "b.npz", "no npz file, or a damaged one"
+    path, words = tmp_path / "b.npz", "not an npz file, or a damaged one"
     data = path.read_bytes()
     if how == "cut":
         path.write_bytes(data[: len(data) // 2])
@@ -195,7 +198,7 @@ def test_the_program_says_what_moved_what_is_new_and_what_is_gone(
     (row,) = (line for line in out.splitlines() if "MOVED" in line)
     assert row.startswith("  MOVED, solved by absolute: position of wheel_centre: difference 1e-09 mm")
     assert f"moved since the baseline {kept}: {one}; gone, in the baseline and not in this run: {two}." in out
-    assert out.splitlines()[-1] == "Next: if the new numbers are right, keep them by --save-baseline FILE."
+    assert out.splitlines()[-1] == "Next: if the new numbers are right, save them with --save-baseline FILE."
     document = json.loads(data.read_text())
     held = document["baseline"]
     assert [scene["exit_status"] for scene in document["scenes"]] == [0, 0]

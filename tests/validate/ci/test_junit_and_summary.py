@@ -212,5 +212,5 @@ def test_a_long_run_stays_below_what_a_service_shows(monkeypatch: pytest.MonkeyP
     ]
     text = text_of(*scenes)
     assert len(text.encode()) < 2**20
-    assert f"and {len(scenes) - module.ROWS} scenes more: " in text
+    assert f"and {len(scenes) - module.ROWS} more scenes: " in text
     assert len(text.splitlines()) < 2 * module.ROWS

@@ -84,7 +84,7 @@ def test_a_factor_is_what_a_difference_of_twice_the_tolerance_needs_and_every_re
     assert data["tolerance_factor"] == data["scenes"][0]["comparisons"][0]["tolerance_factor"] == held
     properties = {one.get("name"): one.get("value") for one in root.iter("property")}
     assert float(properties["tolerance_factor"] or "") == held
-    told = f"{held!r} times the derived tolerance, which is no longer the derived one"
+    told = f"tolerances are not as derived but {held!r} times the derived tolerances"
     assert (told in out) == (held != 1.0)
     assert (told in Path(places[2]).read_text()) == (held != 1.0)
     rows = {(r["quantity"], r["name"]): r for r in data["scenes"][0]["comparisons"][0]["rows"]}
@@ -139,7 +139,7 @@ def test_ctrl_c_leaves_the_test_results_of_what_was_done_and_no_baseline(
     assert "**Interrupted**" in files["--summary"].read_text()
     assert not files["--save-baseline"].exists()
     kept, interrupted = capsys.readouterr().err.splitlines()
-    assert "not written, because the run did not come to its end" in kept
+    assert "not written, because the run did not finish" in kept
     assert f"{files['--junit']} holds 1 of 2 scenes" in interrupted
 
 

@@ -230,7 +230,7 @@ def test_without_pinocchio_what_is_there_is_the_second_model_and_that_is_said(
     assert f"pointcoord and {second}; pointcoord-newton and {second}: 2 scenes" in done.stdout
     assert "2 of 2 scenes agree" in done.stdout
     why = "'absolute' needs the package 'pinocchio'"
-    assert f"absolute is missing, {second} stands in for it: {why}" in done.stderr
+    assert f"absolute is not available, {second} is used instead: {why}" in done.stderr
 
 
 def test_without_pinocchio_hard_cases_are_tried_by_what_is_there(tmp_path: Path) -> None:
@@ -246,8 +246,8 @@ def test_where_pinocchio_lacks_a_library_of_the_system_that_is_asked_for(tmp_pat
     lacking = "libgomp.so.1: cannot open shared object file"
     (tmp_path / "pinocchio.py").write_text(f"raise ImportError({lacking!r})\n")
     said = with_fake(tmp_path, "validate", "steer", "--second", "absolute").stderr
-    assert f"there and does not load ({lacking})" in said
-    assert "install the system's package" in said
+    assert f"is installed but does not load ({lacking})" in said
+    assert "install the system package of the library" in said
     assert "pip install" not in said
 
 

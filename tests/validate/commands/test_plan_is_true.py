@@ -12,7 +12,7 @@ from validate.cli import main
 TAKES = re.compile(
     r"accuracy: positions to (?P<tolerance>\S+) mm(?:, rates to (?P<part>\S+) of their size)?\n"
     r"solved at each step: .*\n"
-    r"takes: (?P<segments>\d+) power series of orders? (?P<few>\d+)(?: to (?P<many>\d+))?, "
+    r"effort: (?P<segments>\d+) power series of orders? (?P<few>\d+)(?: to (?P<many>\d+))?, "
     r"(?P<orders>\d+) orders in all; (?P<all>\d+) factorisations, (?P<start>\d+) of them to assemble "
     r"the start\n"
 )
@@ -70,7 +70,7 @@ def test_a_long_table_is_planned_by_a_map_and_says_why(
     assert main(["plan", "steer"]) == 0
     told = capsys.readouterr().out
     assert "solved by a map of the inputs: series in time would be about 2.1e+03, and 2000 are" in told
-    assert "in the inputs, each proven on a patch of their way, of order" in told
+    assert "in the inputs, each proven on a patch of their path, of order" in told
 
 
 @pytest.mark.parametrize("scene", ["slider-crank", "andrews-squeezer", "spatial-four-bar"])
@@ -80,7 +80,7 @@ def test_a_crank_that_turns_round_has_no_end_that_a_scene_could_go_beyond(
     assert Scene.load(scene).functions["crank"].series(np.array([2.0]), 0)[0, 0] > 2.0 * np.pi
     assert main(["plan", scene]) == 0
     said = capsys.readouterr()
-    assert "the other inputs held, it goes all the way round" in said.out
+    assert "with the other inputs as drawn it goes all the way round" in said.out
     assert said.err == ""
 
 

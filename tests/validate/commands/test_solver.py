@@ -95,13 +95,13 @@ def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_sum
     solvers: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert run("wrong", "off-axis-strut.toml", "--junit", "t.xml", "--summary", "s.md") == 1
-    why = capfd.readouterr().out.partition("  what would explain it: ")[2].splitlines()[0]
+    why = capfd.readouterr().out.partition("  possible explanation: ")[2].splitlines()[0]
     assert "camber" in why
     assert "sign" in why
     (failure,) = ElementTree.parse("t.xml").getroot().iter("failure")
-    assert f"; what would explain it: {why}" in failure.get("message", "")
-    (line,) = (one for one in Path("s.md").read_text("utf-8").splitlines() if "what would explain" in one)
-    assert line.endswith(f"what would explain it: {markdown(why)}")
+    assert f"; possible explanation: {why}" in failure.get("message", "")
+    (line,) = (one for one in Path("s.md").read_text("utf-8").splitlines() if "possible explanation" in one)
+    assert line.endswith(f"possible explanation: {markdown(why)}")
 
 
 def test_json_is_alone_on_standard_output(solvers: Path) -> None:
@@ -151,7 +151,7 @@ def test_a_traceback_is_shown_where_it_is_asked_for(solvers: Path, capfd: pytest
         out, err = capfd.readouterr()
         assert "off-axis-strut.toml: KeyError: 'strut' at raises.py:2" in err
         # No input goes too far: what is to be mended is the solver.
-        assert out.splitlines()[-1] == "Next: mend own.raises:solve as the message about it says."
+        assert out.splitlines()[-1] == "Next: correct own.raises:solve as its message says."
         assert ("Traceback (most recent call last)" in err) == bool(more)
 
 

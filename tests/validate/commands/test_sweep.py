@@ -41,7 +41,7 @@ def test_every_kind_of_table_holds_the_designs_one_by_one(
     assert main(["sweep", SCENE, *VARY, *INSTANTS, "-o", "-"]) == 3
     out, err = capsys.readouterr()
     assert out.encode() == (tmp_path / "t.csv").read_bytes()
-    assert "2 of 6 designs failed, the mechanism cannot be assembled; design 4 for one: " in err
+    assert "2 of 6 designs failed, the mechanism cannot be assembled; such as design 4: " in err
     rows = list(csv.DictReader(out.splitlines()))
     table, arrays = pyarrow.parquet.read_table(tmp_path / "t.parquet"), np.load(tmp_path / "t.npz")
     assert len(rows) == table.num_rows == 6 * 5
@@ -69,7 +69,7 @@ def test_the_summary_says_what_failed_and_how_far_numbers_range(capsys: pytest.C
     assert main(["sweep", SCENE, *VARY, *INSTANTS]) == 3
     out = capsys.readouterr().out
     assert "solved: 4 of 6 designs, at 5 instants each" in out
-    assert "2 of 6 designs failed, the mechanism cannot be assembled; design 4 for one: the mech" in out
+    assert "2 of 6 designs failed, the mechanism cannot be assembled; such as design 4: the mech" in out
     camber = [np.degrees(simulate(design(number)).wheel["camber"]) for number in range(4)]
     ends = []
     for of, end in ((np.argmin, np.min), (np.argmax, np.max)):

@@ -335,7 +335,7 @@ def test_the_program_prints_at_most_three_and_writes_all_of_them() -> None:
     outcome = compare_solutions(scene, held, given, "degrees")
     found = explain_outcome(scene, outcome)
     text = text_of(report.outcome_parts(replace(outcome, explanations=found * 5)))
-    assert text.count("what would explain it: ") == 3
+    assert text.count("possible explanation: ") == 3
     assert text.splitlines()[-1].endswith("camber: degrees for radians")
     (one,) = report.outcome_data(replace(outcome, explanations=found))["explanations"]
     assert one == {

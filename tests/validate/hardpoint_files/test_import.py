@@ -36,8 +36,8 @@ def test_the_scene_that_is_written_is_the_one_that_is_returned_and_validates(
     assert main(["import", str(source), "-o", str(target)]) == 0
     out, err = capsys.readouterr()
     assert "caster: the file prints 4.94 deg, its points give 4.9360: agrees" in out
-    assert "no point of ours: Part 1 C of G, line 19" in out
-    told = "no points of ours: Part 1 C of G, line 19, Bracket of our own, line 20"
+    assert "point not recognised: Part 1 C of G, line 19" in out
+    told = "points not recognised: Part 1 C of G, line 19, Bracket of our own, line 20"
     assert err.splitlines() == [f"pointcoord: note: {source}: {told}"]
     found = import_hardpoints(source)
     assert (Scene.load(target), drawn(found)) == (found.scene, CAR)

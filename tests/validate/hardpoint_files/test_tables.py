@@ -177,7 +177,7 @@ def test_a_file_of_names_that_is_not_there_is_written_to_be_filled_in(
     table.write_text(text.replace(WORDS["lower_ball_joint"], "Traggelenk"))
     words = ["import", str(table), "--names", str(names), "--axes", OURS, "-o", str(scene)]
     assert main(words) == 2
-    assert "names.toml was not there: it is written" in capsys.readouterr().err
+    assert "names.toml did not exist, so a form is written" in capsys.readouterr().err
     filled = names.read_text().replace("# [table]", "[table]").replace('# name = "Point"', "name = 1")
     for axis, title in (("x", "Hoch"), ("y", "Quer"), ("z", "Laengs")):
         filled = filled.replace(f'# {axis} = "{axis.upper()}"', f'{axis} = "{title}"')

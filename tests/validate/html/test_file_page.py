@@ -55,7 +55,7 @@ def test_the_verdicts_of_the_page_are_those_of_the_json(folder: Path) -> None:
     # Names of a file show as text.
     assert "b" not in {tag for tag, _ in read.tags}
     assert not [script for script in read.scripts if "alert(1)" in script]
-    assert "Drawn are 0" not in read.text
+    assert "0 of 1 scenes are drawn" not in read.text
 
 
 def test_what_is_drawn_is_the_file_and_the_car_at_the_files_own_travel(folder: Path) -> None:

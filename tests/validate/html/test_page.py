@@ -240,9 +240,9 @@ def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_sm
     # The numbers of the others are let go: hundreds of scenes fit into memory.
     assert not any(solution.numbers for outcome in record.outcomes for solution in outcome.solutions)
     shown = Read(text)
-    assert f"Drawn are {FIRST + FURTHER} of {count - 8} scenes" in shown.text
+    assert f"{FIRST + FURTHER} of {count - 8} scenes are drawn" in shown.text
     assert len(shown.motions) == FIRST + FURTHER
-    assert "rows more are in the data beside this page" in shown.text
+    assert "more rows are in the data files of this page" in shown.text
     # What does not agree has its row and its reason, however far down it stands.
     for i in (13, 393):
         rows = shown.of(names[i])
@@ -363,7 +363,7 @@ def test_hard_cases_of_an_earlier_run_say_so_and_decide_with_the_scenes(tmp_path
         file.write_text(json.dumps(hard_document(*unexpected)))
         assert main(["report", "-q", str(out), "steer", "--hard", str(file)]) == status
         shown = read_file(out)
-        assert "Tried by `pointcoord hard`. 1 hard case" in shown.text
+        assert "Run by `pointcoord hard`. 1 hard case" in shown.text
         assert shown.verdict[0] == ("verdict disagrees" if status else "verdict agrees")
         assert ("near-a-fold" in shown.verdict[1]) == bool(status)
         told = [row[-1] for row in shown.of("near-a-fold")]

@@ -187,7 +187,7 @@ def test_a_map_that_is_not_there_is_written_to_be_filled_in(
     words = [command, "double-wishbone", "--data", str(data), "--map", str(map), "--quiet", *free]
     words += ["--json", str(tmp_path / "x.json")]
     assert main(words) == 2
-    assert "map.toml was not there: it is written" in capsys.readouterr().err
+    assert "map.toml did not exist, so a form is written" in capsys.readouterr().err
     text = map.read_text()
     assert '\ntoe = { is = "wheel.toe", unit = "deg" }' in text
     line = '# Lenkung = { is = "", unit = "" }'
@@ -244,7 +244,7 @@ def test_a_disagreement_is_explained_and_stands_in_every_file(
     Path("steer.csv").write_text(steered(EVEN, digits=5), encoding="utf-8")
     files = ["--json", "x.json", "--junit", "x.xml", "--summary", "x.md"]
     assert main(["validate", "--data", "steer.csv", "--map", "map.toml", "double-wishbone", *files]) == 1
-    assert f"what would explain it: {words}" in capsys.readouterr().out
+    assert f"possible explanation: {words}" in capsys.readouterr().out
     (comparison,) = document(Path("x.json"))["scenes"][0]["comparisons"]
     first = comparison["explanations"][0]
     assert first["words"].startswith(words)

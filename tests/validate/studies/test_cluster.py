@@ -84,7 +84,7 @@ def test_a_worker_of_another_version_records_nothing(
     assert main(["study", "random", "--scheduler", address, "--records", str(folder), "--count", "2"]) == 2
     *_, line = capsys.readouterr().err.splitlines()
     assert line.startswith("pointcoord: the worker tcp://127.0.0.1:")
-    assert f"runs something else: numpy {mine['numpy']}, here 1.0; install the same there" in line
+    assert f"has other versions: numpy {mine['numpy']}, here 1.0; install the same versions there" in line
     assert not folder.exists()
 
 
@@ -130,7 +130,7 @@ def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
             if done:
                 gone.close()
 
-        with pytest.raises(NotFinished, match=r"does not work any more .* the same command goes on"):
+        with pytest.raises(NotFinished, match=r"has failed .* the same command continues"):
             ran(study, tmp_path / "records", gone, tell)
     assert 0 < len(records(tmp_path / "records", study).rows()) < 40
 
@@ -158,7 +158,7 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
         (["random", "--count", "0"], "no scene is asked for"),
         (["random", "--records", " "], "names no folder"),
         (["bounds", "--seed", "-1"], "--seed: -1 is no whole number; allowed: 0 or more"),
-        (["hard", "at-rests"], "near names: at-rest"),
+        (["hard", "at-rests"], "similar names: at-rest"),
     ],
 )
 def test_a_mistake_of_the_command_line_is_one_line(
@@ -208,7 +208,7 @@ def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(
     # Before it may stand how far the study was.
     *_, line = err.splitlines()
     assert (
-        line == f"pointcoord: interrupted; kept holds {count} of {every:,} scenes; the same command goes on"
+        line == f"pointcoord: interrupted; kept holds {count} of {every:,} scenes; the same command continues"
     )
     assert out == ""
     # What is asked for may change.

@@ -61,7 +61,7 @@ def test_records_of_something_else_are_not_gone_on_with(
     recorded(tmp_path, [0])
     mine = dict(made_by())
     monkeypatch.setattr(store, "made_by", lambda: {**mine, **program})
-    with pytest.raises(UsageError, match="give another folder by --records") as caught:
+    with pytest.raises(UsageError, match="give another folder with --records") as caught:
         recorded(tmp_path, [1], study=other)
     assert words in str(caught.value)
     assert not program or next(iter(program)) in str(caught.value)
@@ -69,7 +69,7 @@ def test_records_of_something_else_are_not_gone_on_with(
 
 def test_nothing_is_put_beside_other_peoples_files(tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("mine")
-    with pytest.raises(UsageError, match="something else than records"):
+    with pytest.raises(UsageError, match="files that are no records"):
         recorded(tmp_path, [0])
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
     with pytest.raises(UsageError, match="is a file"):

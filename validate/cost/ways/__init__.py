@@ -1,1 +1,1 @@
-"""The ways that are raced, a file for each family."""
+"""The methods of the study, one file for each family."""

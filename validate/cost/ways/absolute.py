@@ -1,6 +1,6 @@
-"""The absolute-coordinate model, without what is made of its stated accuracy.
+"""The absolute-coordinate model, without the conversion of its accuracy to error bounds.
 
-The set-up describes the bodies and their rows and assembles the drawing.
+The set-up compiles the bodies and constraints, and assembles the drawing.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""The suspension as a tree of joints with loops: in Pinocchio, and in MuJoCo and Exudyn (extra `peers`).
+"""The suspension as a spanning tree with loop closures: in Pinocchio, MuJoCo and Exudyn (extra `peers`).
 
-The set-up makes the program's model, closes its drawing and brings it to where the scene starts. The setting
-is the last correction of Newton's method on its loops, in rad and sizes of the car.
+The set-up makes the model of the program, closes its drawing and moves it to the scene's start. The setting
+is the size of the last Newton correction of the loop closures, in rad and in car sizes.
 """
 
 from __future__ import annotations
@@ -25,7 +25,12 @@ Array = NDArray[np.float64]
 
 
 def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
-    """The car in a program, by its formulation's name."""
+    """Solve the car in a peer program.
+
+    Args:
+        name: the formulation of the program.
+        tolerance: size of the last Newton correction.
+    """
     linkage = linkage_in(scene)
     program = program_of(name)(linkage)
     closed = program.closed(tolerance)

@@ -1,7 +1,8 @@
-"""The library's own methods. What is timed is what `simulate` does, without the proofs that nobody asks for.
+"""The methods of pointcoord. The timed work is that of `simulate`, without the proofs that a caller can ask
+for.
 
-The set-up reads and checks the drawing, closes it and assembles the start. Of the map it makes the map too,
-as any law can be composed with it; the others make what they need of the instants.
+The set-up reads, checks and closes the drawing, and assembles the start. For the map method the set-up
+includes making the map, which serves any law of the inputs; other methods solve after the instants are known.
 """
 
 from __future__ import annotations
@@ -25,16 +26,16 @@ COUNTED = ("factorisations", "residuals", "segments", "series_orders")
 
 
 def task_of(scene: Scene, method: Method, tolerance: float) -> Task:
-    """A scene made ready for a method, to a tolerance of positions, mm.
+    """A scene prepared for a method, with a tolerance of positions, mm.
 
     Raises:
-        PointcoordError: the library refuses the scene.
+        PointcoordError: pointcoord refuses the scene.
     """
     return checked_task(scene.model_copy(update={"tolerance": tolerance}), method)
 
 
 def by_method(method: Method, scene: Scene, tolerance: float) -> Solve:
-    """A method of `simulate`, or one that is made like these; it begins at the scene's start."""
+    """Solve by a method of `simulate`, or by one with the same interface; it begins at the scene's start."""
     task = task_of(scene, method, tolerance)
 
     def solve(instants: Array) -> Answer:
@@ -47,7 +48,7 @@ def by_method(method: Method, scene: Scene, tolerance: float) -> Solve:
 
 
 def by_map(scene: Scene, tolerance: float) -> Solve:
-    """The map of the inputs along their way."""
+    """Solve by a map of the inputs along their path."""
     solved = solve_by_map(task_of(scene, MAP, tolerance))
     error = solved.status.error(None)
     if error is not None:
@@ -56,7 +57,7 @@ def by_map(scene: Scene, tolerance: float) -> Solve:
 
 
 def numbers_of(samples: Samples, last: int) -> Mapping[str, Mapping[str, Array]]:
-    """What was computed at so many of the last instants."""
+    """The computed numbers at the `last` last instants."""
     return {
         quantity: {name: array[-last:] for name, array in channel.items()}
         for quantity, channel in samples.numbers.items()

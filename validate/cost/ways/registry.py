@@ -1,4 +1,4 @@
-"""The ways that are raced, in the order in which tables show them."""
+"""The methods of the study, in the order of the tables."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ WAYS: tuple[Way, ...] = (
 )
 NAMES = tuple(way.name for way in WAYS)
 OURS = tuple(way.name for way in point_coordinates.WAYS)
-"""The ways of this project's solver; every other way is a contestant."""
+"""The methods of pointcoord; all others are competitors."""
 
 
 def ways_named(names: Sequence[str]) -> tuple[Way, ...]:
-    """Some of them, in the order of the registry.
+    """The methods with these names, in the order of the registry.
 
     Raises:
-        UnknownName: there is no such way.
+        UnknownName: there is no such method.
     """
     for name in names:
         if name not in NAMES:

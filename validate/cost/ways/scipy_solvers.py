@@ -1,7 +1,7 @@
-"""What a user would write: a solver of SciPy on pointcoord's equations, at each instant from the one before.
+"""A SciPy solver on pointcoord's equations, as a user would write it: at each instant, from the one before.
 
-It is a method of `simulate` of one's own: the drawing and the start, the rates (two linear solves with the
-Jacobian, eqs. 19 and 22 of the paper) and what is read off the coordinates are as in every other.
+It replaces only the position solver of `simulate`. The drawing, the start, the rates (two linear solves with
+the Jacobian, eqs. 19 and 22 of the paper) and the effects are computed as by the other methods.
 """
 
 from __future__ import annotations
@@ -27,9 +27,10 @@ from validate.errors import NoAnswer
 
 Array = NDArray[np.float64]
 
-# Of the equations, whose terms are up to 1: a thousand times what differences for a Jacobian leave.
+# Residual of the equations, whose terms are up to 1: a thousand times the residual with a difference
+# Jacobian.
 NOISE = 1e-9
-TOLERANCE = 1e-9  # mm, of the start, which is assembled before
+TOLERANCE = 1e-9  # mm, of the start, which pointcoord assembles
 
 
 def in_scipy(
@@ -45,15 +46,15 @@ def in_scipy(
     tolerance: float,
     /,
 ) -> Solved:
-    """Poses and their rates, the first pose being given; what is proven of them is nothing.
+    """Poses and their rates, without error bounds; the first pose is given.
 
     Args:
-        solver: `root`, by Powell's hybrid method, or `least_squares`, by a trust region.
-        with_jacobian: whether it is given the Jacobian, or takes differences of the equations for it.
-        size: its relative tolerance; of least_squares all three.
+        solver: `root`, Powell's hybrid method, or `least_squares`, a trust-region method.
+        with_jacobian: whether the solver gets the Jacobian, or approximates it by differences.
+        size: relative tolerance of the solver; for least_squares all three tolerances.
     Raises:
-        NoAnswer: it ends without success, or came to another assembly: the sign of the Jacobian's
-            determinant changes where two of them meet.
+        NoAnswer: the solver fails, or converges to another assembly mode: the sign of the Jacobian's
+            determinant changes where two modes meet.
     """
     system, n = mechanism.map, mechanism.map.unknowns
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
@@ -73,25 +74,25 @@ def in_scipy(
         here[n:] = known[i, 0]
         found = solve(lambda u: system.residual(at(u)), here[:n].copy())
         left = float(np.abs(found.fun).max())
-        # A least sum of squares may be none of the equations' roots.
+        # A minimum of the sum of squares may not be a root of the equations.
         if not (found.success and left <= 10.0 * size + NOISE):
-            words = f"leaves the equations at {left:.3g}"
+            words = f"ends with a residual of {left:.3g}"
             if not found.success:
-                words = f"gives up: {' '.join(str(found.message).split())}"
+                words = f"fails: {' '.join(str(found.message).split())}"
             who = f"scipy.optimize.{solver} at t = {instant:.6g} s"
-            raise NoAnswer(who, words, f"an end with the equations below {10.0 * size + NOISE:.3g}")
+            raise NoAnswer(who, words, f"a residual below {10.0 * size + NOISE:.3g}")
         y[i] = at(found.x)
         residuals, jacobians = residuals + int(found.nfev), jacobians + int(found.get("njev") or 0)
     signs = np.linalg.slogdet(system.jacobian(y))[0]
     for instant in times[signs != signs[0]][:1]:
-        who, allowed = f"scipy.optimize.{solver} at t = {instant:.6g} s", "the one that is drawn"
-        raise NoAnswer(who, "comes to another assembly than is drawn", allowed)
+        who, allowed = f"scipy.optimize.{solver} at t = {instant:.6g} s", "the assembly mode of the drawing"
+        raise NoAnswer(who, "converges to another assembly mode", allowed)
     work = Work(residuals=residuals, factorisations=jacobians)
     return with_rates(system, y, known, times, derivative, term, work, np.full(len(times), np.inf))
 
 
 def by_scipy(solver: str, with_jacobian: bool, scene: Scene, size: float) -> Solve:
-    """The equations solved by SciPy."""
+    """Solve pointcoord's equations by SciPy."""
     method = Method("scipy", at_instants=partial(in_scipy, solver, with_jacobian, size))
     return by_method(method, scene, TOLERANCE)
 

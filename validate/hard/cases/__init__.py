@@ -1,1 +1,1 @@
-"""The hard cases, a family a file."""
+"""The hard cases, one file for each group."""

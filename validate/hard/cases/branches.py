@@ -1,14 +1,15 @@
-"""Two assemblies close together, drawings near their mirror image, large steps: the branch is the drawing's.
+"""Two assembly modes close together, drawings near their mirror image, large steps: the drawn branch is kept.
 
-Of the assemblies of a pose the one that is meant is reached from the drawing without a singular pose on the
-way. The reference is that assembly, so a solution that has jumped to another one is wrong however well its
-links close. How many assemblies there are is counted by `pointcoord hard --assemblies`.
+The right assembly mode of a pose is the one that can be reached from the drawing without passing a singular
+pose. The reference is this mode, so a solution that has jumped to another one is wrong even if its links
+close. `pointcoord hard --assemblies` counts the modes.
 
-Some mechanisms are hard by nature. With cranks and couplers in one line, the parallelograms of a coupled
-four-bar meet the assemblies with crossed cranks: beyond that pose there are poses of both, and none that is
-reached from the drawing without a singular one. Bricard's ring of six hinges has as many rows as coordinates
-and yet moves: a model that cannot hold such a mechanism has to refuse it with the reason. Where no reference
-is to be had of it nothing is judged here, and the tests of mechanisms hold it to its closed form.
+Some mechanisms are hard by nature. When cranks and couplers of a coupled four-bar lie in one line, its
+parallelogram branches meet branches with crossed cranks: beyond this pose both kinds exist, and neither can
+be reached from the drawing without passing the singular pose. Bricard's ring of six hinges has as many
+equations as coordinates and still moves: a model that cannot solve such a mechanism must refuse it with the
+reason. Where the reference finds no proof, nothing is judged here; the tests of mechanisms compare it with
+its closed form.
 """
 
 from __future__ import annotations
@@ -25,18 +26,18 @@ from validate.hard.cases.points import assembled, upper_arm_flat
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
 
-# Arm angle, rad, and rack travel, mm, at which the two sides of the tie rod just meet: at less rack travel
-# the arm cannot pass this angle, at more it can. And half the motion through there, rad; a dead point is
-# 0.05 rad below it.
+# Arm angle, rad, and rack travel, mm, at which the two assembly modes of the tie rod just meet: with less
+# rack travel the arm cannot pass this angle, with more it can. Third, half the range of the motion, rad; a
+# dead point is 0.05 rad below the meeting.
 MEETING = (0.6129246396239625, -0.00292320063271574, 0.05)
-APPROACH = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
+APPROACH = "Two assembly modes of the tie rod come near each other as the arm passes 35 degrees"
 CLEAR = right_from(1e-6)
 CASES: list[Case] = []
 _branch = partial(family, CASES, "Branches")
 
 
 def through_the_meeting(side: float, subject: Subject, share: float) -> Content:
-    """The arm runs through the angle of the meeting, the rack `share` of 10 mm on one side of it."""
+    """The arm moves through the angle of the meeting; the rack is `share` of 10 mm on one side of it."""
     angle, rack, wide = MEETING
     inputs: dict[str, Law] = {"arm_angle": (angle + wide, -2.0 * wide), "rack": rack + side * 10.0 * share}
     return subject.absolute(inputs, stop=1.0, samples=5)
@@ -45,17 +46,17 @@ def through_the_meeting(side: float, subject: Subject, share: float) -> Content:
 _branch(
     *("rack travel beyond the meeting, in parts of 10 mm", (1.0, 1e-6, 1e-12), CLEAR, [PAPER]),
     name="branches-nearly-meet",
-    why=f"{APPROACH}, and a step may end on the other one.",
+    why=f"{APPROACH}: a step may end in the wrong mode.",
 )(partial(through_the_meeting, 1.0))
 _branch(
     *("rack travel short of the meeting, in parts of 10 mm", (1e-1, 1e-7, 1e-12), REFUSED, [PAPER]),
     name="branches-met",
-    why=f"{APPROACH} and meet, so that there is a gap that a large step may leap.",
+    why=f"{APPROACH} and meet: a large step may jump over the gap without a pose.",
 )(partial(through_the_meeting, -1.0))
 
 
 def whole_range(driven: str, subject: Subject, share: float) -> Content:
-    """Two instants, and between them the whole range of an input: one step could leap over it."""
+    """The whole range of an input lies between two instants: one large step could reach a wrong branch."""
     low, high = (last_value(subject, driven, ahead).beyond(-0.5 * share) for ahead in (False, True))
     return subject.absolute({**subject.home, driven: (high, low - high)}, stop=1.0, samples=2)
 
@@ -72,10 +73,10 @@ for subject in (PAPER, WISHBONE, *OTHERS):
 
 
 def flat_drawing(side: float, subject: Subject, share: float) -> Content:
-    """From a drawing where the rack is all but locked it runs to where it is not.
+    """The rack moves away from a drawing in which it is nearly locked.
 
-    The tie rod's outer end is near the plane of kingpin and rack, on its own side or on the other. Of a
-    wishbone the arm does: its upper ball joint is drawn near the plane of its pivots and the lower one.
+    The tie rod's outer end is near the plane of kingpin and rack, on either side. For a wishbone the arm
+    moves: its upper ball joint is drawn near the plane of its pivots and the lower ball joint.
     """
     p = assembled(subject.name)
     if subject is PAPER:
@@ -94,13 +95,13 @@ for label, side in (("", 1.0), ("-mirrored", -1.0)):
     _branch(
         *("height over the plane, in parts of the car's", decades(), CLEAR, (PAPER, WISHBONE)),
         name=f"flat-drawing{label}",
-        why="The tie rod's outer end, or a wishbone's upper ball joint, is drawn near the plane in which it "
-        "has a mirror image: rounding may choose.",
+        why="The tie rod's outer end, or a wishbone's upper ball joint, is drawn close to its mirror image: "
+        "rounding may choose the wrong side.",
     )(partial(flat_drawing, side))
 
 
 def to_the_line(turn: float, beyond: bool, moving: bool, subject: Subject, value: float) -> Content:
-    """A share of the way from the drawing short of a turn, or beyond it: at rest there, or there in 1 s."""
+    """A pose short of a turn of the input or beyond it, by a share of it: at rest, or reached in 1 s."""
     (driven,) = subject.driven
     goal = turn * (1.0 - (-value if beyond else value))
     if moving:
@@ -108,16 +109,16 @@ def to_the_line(turn: float, beyond: bool, moving: bool, subject: Subject, value
     return subject.absolute({driven: goal})
 
 
-# Turn of the drawing, rad, at which branches cross, or beyond which there is none.
+# The turn from the drawing, rad, at which branches cross or beyond which there is no pose.
 for mechanism, turn, what in (
-    ("bricard", -math.pi / 6.0, "its ring goes no further."),
+    ("bricard", -math.pi / 6.0, "its ring reaches its end."),
     ("n_four_bar", -0.5 * math.pi, "its branches cross."),
 ):
     for name, why, beyond, moving in (
-        ("held-near-the-line", "It rests near the pose where", False, False),
-        ("swept-near-the-line", "It moves from the drawing to near the pose where", False, True),
-        ("held-beyond-the-line", "It is to be beyond the pose where", True, False),
-        ("swept-through-the-line", "It is to move through the pose where", True, True),
+        ("held-near-the-line", "The mechanism rests near the pose where", False, False),
+        ("swept-near-the-line", "The mechanism moves from the drawing to near the pose where", False, True),
+        ("held-beyond-the-line", "The mechanism is to rest beyond the pose where", True, False),
+        ("swept-through-the-line", "The mechanism is to move through the pose where", True, True),
     ):
         family(
             *(CASES, "Mechanisms that are hard by nature"),

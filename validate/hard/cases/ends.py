@@ -1,8 +1,10 @@
-"""The ends of the inputs, where arm, tie rod or the knuckle's upper end lock: near each, and beyond it.
+"""The ends of the inputs, where arm, tie rod or the knuckle's upper end lock: values near each end, and
+beyond.
 
-An end is a fold: two assemblies meet there as the root of the distance, rates grow as its inverse root and
-the condition number with them. A value held inside an end has a pose, one beyond it has none: the refusal of
-what is driven beyond it, or is to be there at the first instant, is compared with the true end (see `reach`).
+An end is a fold: two assembly modes meet there. Their distance is the square root of the distance from the
+end; rates and the condition number grow as its inverse root. A value before the end has a pose, a value
+beyond it has none. If an input is driven beyond its end, or starts beyond it, the refusal is compared with
+the true end (see `reach`).
 """
 
 from __future__ import annotations
@@ -15,18 +17,18 @@ from validate.hard.cases.reach import End, Lock
 from validate.hard.last_values import ends_of
 from validate.hard.subjects import NAMED, OTHERS, ROLLING, hyphens
 
-# Down to where each model has to be right; nearer it may refuse with a reason.
-# pointcoord, held: a path is followed until its steps shrink below 1e-13 of it, which is at 1e-12 of the way
-# to the end from the drawing, half a range away; ten times that is always reached. Moving: a motion goes on
-# while a segment, some tenth of the time that is left, is 1e-15 of the whole. Two branches 1e-6 of the car
-# apart, the root of 1e-12, are told apart where the condition number, 1e6 or some ten times that, leaves half
-# of the digits; ten times that always is.
-# The absolute model stops where its condition number exceeds 6.7e7, the inverse root of the rounding unit. In
-# its own scaling that is 10 to 40 over the root of the distance, so it stops below (40 / 6.7e7)^2 = 4e-13 of
-# the range, and at ten times the nearest decade above that no end is near enough to be a reason.
-# The relative model stops where the error that rounding may make of a pose changes its Jacobian by an eighth.
-# At the share d of the range from an end that is 2e-15 / d, times five deviations and a factor of the car
-# that is a few: some 1e-12, and ten times that is always reached.
+# The distance down to which each model must be right, as a share of the range; nearer, it may refuse with a
+# reason. pointcoord, held: a path is followed until its steps shrink below 1e-13 of it, which happens at
+# 1e-12 of the way from the drawing to the end, half a range; ten times this distance is always reached.
+# Moving: a motion continues while a segment, some tenth of the remaining time, is at least 1e-15 of the
+# whole. Two branches at a distance of 1e-6 of the car, the root of 1e-12, are distinguished if the condition
+# number, 1e6 to 1e7, leaves half of the digits; at ten times this distance they always are. The absolute
+# model stops where its condition number exceeds 6.7e7, the inverse root of the rounding unit. In its scaling
+# the condition number is 10 to 40 over the root of the distance, so it stops below (40 / 6.7e7)^2 = 4e-13 of
+# the range. At ten times the next decade above, no end is near enough to justify a refusal. The relative
+# model stops where the error of a pose by rounding changes its Jacobian by an eighth. At the share d of the
+# range from an end this change is 2e-15 / d, times five deviations and a factor of a few that depends on the
+# car. So it stops at some 1e-12, and ten times this distance is always reached.
 NEAR_END = dict.fromkeys(("pointcoord", "absolute", "relative"), right_from(1e-11))
 LAWS = {"held": "", "moving": "; the motion ends near it, with rates as the inverse root of the distance"}
 near_ends: list[Case] = []
@@ -52,12 +54,12 @@ def _beyond(end: End, name: str, moving: Values, start: Values) -> None:
 
 
 def _all_of(*links: str) -> Lock:
-    """These links limit it, before all others."""
+    """A test that these links are among the first three that limit the motion."""
     return lambda limits: set(limits[:3]) >= set(links)
 
 
 def tie_rod_within(first: int) -> Lock:
-    """The tie rod does, and another link of its outer end."""
+    """A test that the tie rod limits the motion, and another link of its outer end among the `first` ones."""
     rod = "link tie_rod_inner - tie_rod_outer"
     return lambda limits: (
         rod in limits[:3] and any("tie_rod_outer" in limit and limit != rod for limit in limits[:first])
@@ -66,7 +68,7 @@ def tie_rod_within(first: int) -> Lock:
 
 UPPER = "The knuckle's upper end out of reach"
 DEAD, IN_LINE = "The arm at its dead points", "Tie rod and steering arm in line"
-BALL_JOINT = "The ball joint is {} on its circle, where height says no more"
+BALL_JOINT = "The ball joint is {} on its circle, where its height is stationary"
 LIE_IN_LINE = "Tie rod and steering arm lie in line"
 ARM = _all_of("link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear")
 UPPER_ARM = _all_of(
@@ -74,7 +76,7 @@ UPPER_ARM = _all_of(
     "link upper_ball_joint - upper_arm_front",
     "link upper_ball_joint - upper_arm_rear",
 )
-# Group, input, whether the upper end, what lies in line, and in words.
+# Group, input, whether the upper end, the test of the links that lie in line, and why it ends there.
 ENDS: dict[str, tuple[str, str, bool, Lock, str]] = {
     "arm-highest": (DEAD, "arm_angle", False, ARM, BALL_JOINT.format("highest")),
     "arm-lowest": (DEAD, "arm_angle", True, ARM, BALL_JOINT.format("lowest")),
@@ -82,13 +84,14 @@ ENDS: dict[str, tuple[str, str, bool, Lock, str]] = {
     "rack-greatest": (IN_LINE, "rack", True, tie_rod_within(3), LIE_IN_LINE),
     "slide-runs-out": (
         *(UPPER, "arm_angle", False, lambda limits: "strut_top on the strut axis" in limits),
-        "The ball joint is as near to the strut's top as it lies beside the axis: the slide has no more way",
+        "The ball joint is as near to the strut's top as it lies beside the axis: the slide is at its end",
     ),
     "upper-arm-locks": (
         *(UPPER, "arm_angle", True, UPPER_ARM),
         "Upper arm and kingpin of a double wishbone lie in one plane with the upper pivots",
     ),
-    # Where the arm drives, what holds the knuckle's upper end is under the same force as the steering arm.
+    # If the arm drives, the links of the knuckle's upper end carry forces as large as those of the steering
+    # arm.
     "tie-rod-locks-the-arm": (
         *(UPPER, "arm_angle", False, tie_rod_within(5)),
         "The arm turns until tie rod and steering arm lie in line",
@@ -96,9 +99,9 @@ ENDS: dict[str, tuple[str, str, bool, Lock, str]] = {
 }
 ARMS, RACKS = ("arm-highest", "arm-lowest"), ("rack-least", "rack-greatest")
 FULL, SPARSE = (1e-4, 1e-11, 1e-12), (1e-1, 1e-4, 1e-8, 1e-12)
-# Every refusal is a whole motion towards a fold, so few values must do.
+# Every refusal is a whole motion towards a fold and takes long, so there are only two values.
 TWO = (1.0, 1e-12)
-# Ends, car, what the name adds; values near the end, and of a first instant beyond it.
+# Ends, car, suffix of the name; values near the end, and values for a first instant beyond it.
 for names, car, added, near, start in (
     (ARMS, "paper", "", FULL, TWO),
     (ARMS, "short-arm", "-wishbone", SPARSE, ()),
@@ -118,7 +121,7 @@ for subject in (*OTHERS, ROLLING):
         size = "greatest" if ahead else "least"
         name, parts = f"{hyphens(driven)}-{size}", subject.of_parts
         end = End(subject, driven, ahead, f"{driven} is at its {size}, the others as drawn")
-        # An axle's right corner is its left one in a mirror; what each corner does is tried of the corner.
+        # The right corner of an axle mirrors the left one, so only the left one is run.
         if not driven.startswith("right"):
             of_all = "Inputs at their ends, of every mechanism"
             _near(end, name, subject.suffix, of_all, (1e-4,), ("moving",) if parts else LAWS)

@@ -1,8 +1,8 @@
-"""Inputs that are very fast, very slow, very long, not smooth, or small beside the terms they are made of.
+"""Inputs that are very fast, very slow, very long, not smooth, or small compared with their terms.
 
-Where terms all but cancel, the input itself is an ordinary one. The reference, and the absolute model, take
-each law in many digits and round it once; pointcoord sums in twice the working precision and counts what that
-may be off into its bound.
+Where terms nearly cancel, the input itself is an ordinary one. The reference and the absolute model evaluate
+each law in many digits and round it once; pointcoord sums in twice the working precision and adds the error
+of the sum to its error bound.
 """
 
 from __future__ import annotations
@@ -19,32 +19,32 @@ from validate.hard.case import RIGHT, SOLVERS, Case, decades, family, right_from
 from validate.hard.subjects import HEAVING, PAPER, Content, Subject, moved_by
 
 OURS = dict.fromkeys(SOLVERS, RIGHT)
-# Values of a table are rounded by 2e-16 rad, which within a jump of time h is an acceleration of 2e-16 / h^2.
-# A step of a tenth of h about t = 0.5 s, known to 1e-16 s, keeps nine digits of itself down to h = 1e-6 s.
-# With still smaller ones a motion by series may need steps below the rounding of time, and has to say so;
-# solving at its instants needs no steps.
+# Values of a table are rounded by 2e-16 rad, which in a jump of duration h changes the acceleration by 2e-16
+# / h^2. A step of a tenth of h about t = 0.5 s, known to 1e-16 s, has nine digits down to h = 1e-6 s. For a
+# shorter jump a motion by series may need steps below the rounding of time, and must be refused with this
+# reason; methods that solve at the instants need no steps.
 JUMP = OURS | {"pointcoord": right_from(1e-6)}
 TURN = 2.0 * math.pi
-# First, amid and last.
+# The first, the middle and the last value.
 RISING, FALLING, WITHIN = decades(0, 12)[::-2], decades(-12, 0)[::2], decades(-12, -1)[::2]
 CASES: list[Case] = []
 _laws = partial(family, CASES, "Laws of the inputs")
 
 
 def at_a_rate(subject: Subject, rate: float) -> Content:
-    """The same way in another time."""
+    """The same path of the inputs in another time."""
     return subject.content([-0.1, rate], [0.0, 100.0 * rate], stop=0.2 / rate)
 
 
 for name, values, why in (
-    ("slow", FALLING, "The same way in ever longer time: rates lie far below the lengths."),
-    ("fast", RISING, "The same way in ever shorter time: rates and their squares lie far above the lengths."),
+    ("slow", FALLING, "A motion gets ever slower: rates are far smaller than lengths."),
+    ("fast", RISING, "A motion gets ever faster: rates and their squares are far larger than lengths."),
 ):
     _laws("rate of the arm, rad/s", values, name=f"{name}-inputs", why=why)(at_a_rate)
 
 
 def stopping(subject: Subject, start: float, stop: float, size: float = 1.0) -> Content:
-    """Part of the way 16 t^2 (1 - t)^2, from rest to 1 and back to rest in a second, times some size."""
+    """Part of the motion 16 t^2 (1 - t)^2, from rest to 1 and back to rest in one second, times a size."""
     laws = ([amount * size * c for c in (0.0, 0.0, 16.0, -32.0, 16.0)] for amount in (0.2, 30.0))
     return subject.content(*laws, start=start, stop=stop)
 
@@ -57,13 +57,13 @@ def start_from_rest(subject: Subject, value: float) -> Content:
 
 @_laws("time to the end, s", WITHIN)
 def come_to_rest(subject: Subject, value: float) -> Content:
-    """The inputs come to rest: rates tend to zero as a difference of large terms."""
+    """The inputs come to rest: rates tend to zero as the difference of large terms."""
     return stopping(subject, 1.0 - value, 1.0)
 
 
 @_laws("duration, s", lambda one: (1.0, 1e6) if one is PAPER else (1.0,))
 def long_sine(subject: Subject, duration: float) -> Content:
-    """A swing a second for ever longer: a motion by series needs some segments for each swing."""
+    """One swing per second for a very long time: a motion by series needs several segments per swing."""
     swing = {"amplitude": 0.2, "angular_frequency": TURN}
     other = {"amplitude": 30.0, "angular_frequency": 1.5 * TURN, "phase": 0.3}
     return subject.content({"sine": swing}, {"sine": other}, stop=duration, samples=4)
@@ -71,7 +71,7 @@ def long_sine(subject: Subject, duration: float) -> Content:
 
 @_laws("turns in the phase of a sine", RISING)
 def phase_of_many_turns(subject: Subject, turns: float) -> Content:
-    """Added to the angle, a large phase would swallow the digits of time."""
+    """A large phase, added to the angle of a sine, would take the digits of the time."""
     wave = {"amplitude": 0.2, "angular_frequency": TURN, "phase": TURN * turns + 0.3}
     if "rad" in subject.units.values():
         return subject.content({"sine": wave}, [0.0, 20.0], stop=0.5)
@@ -80,7 +80,7 @@ def phase_of_many_turns(subject: Subject, turns: float) -> Content:
 
 @_laws("size of the motion: 0.2 rad and 30 mm times this", FALLING)
 def seen_at_rest_only(subject: Subject, size: float) -> Content:
-    """Every instant of the scene is one where the inputs rest for a moment, between which they move."""
+    """At every instant of the scene the inputs are momentarily at rest; between the instants they move."""
     return stopping(subject, 0.0, 1.0, size)
 
 
@@ -90,7 +90,7 @@ def _table(times: Sequence[float], values: Sequence[float]) -> dict[str, Any]:
 
 @_laws("time before and after the kink, s", WITHIN)
 def kink_of_a_table(subject: Subject, value: float) -> Content:
-    """The third derivative jumps at a time of a spline."""
+    """The third derivative jumps at an inner time of a spline."""
     # Up, down and up again, with a sharp bend of the acceleration at each inner time.
     times, bends = (0.0, 0.2, 0.4, 0.5, 0.7, 1.0), (0.0, 1.0, -1.0, 1.0, -0.5, 0.0)
     laws = (_table(times, [size * bend for bend in bends]) for size in (0.1, 20.0))
@@ -99,16 +99,16 @@ def kink_of_a_table(subject: Subject, value: float) -> Content:
 
 @_laws("distance of the times, s", WITHIN)
 def close_times_of_a_table(subject: Subject, value: float) -> Content:
-    """Two times of a spline lie close together: rounding of their values is divided by their distance."""
+    """Two times of a spline are close together: the rounding of their values is divided by their distance."""
     times = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0)
     laws = (_table(times, [size * math.sin(3.0 * t) for t in times]) for size in (0.1, 20.0))
     return subject.content(*laws, stop=1.0, samples=5)
 
 
 def told_as_rough(subject: Subject, _: float, __: Trial, answer: Answer) -> Answer:
-    """A refusal is wrong that does not name the first input as what the series cannot follow.
+    """A refusal must name the first input as the law that the series cannot follow; otherwise it is wrong.
 
-    The mechanism is nowhere near a singular pose, and must not be given as the reason.
+    The mechanism is not near a singular pose, so singularity must not be given as the reason.
     """
     rough = answer.reason.startswith(f"NotFollowed: input '{subject.driven[0]}'")
     if answer.outcome != "refused" or (rough and "singular" not in answer.reason):
@@ -118,7 +118,7 @@ def told_as_rough(subject: Subject, _: float, __: Trial, answer: Answer) -> Answ
 
 @_laws("time of the jump, s", WITHIN, JUMP, judge=told_as_rough)
 def jump_of_a_table(subject: Subject, value: float) -> Content:
-    """An input moves within a very short time: accelerations grow as its inverse square."""
+    """An input moves within a very short time: accelerations grow as the inverse square of this time."""
     times, first = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0), subject.driven[0]
     step = 0.01 if subject.units[first] == "rad" else 1.0
     jump = moved_by(_table(times, [step if t > 0.5 else 0.0 for t in times]), subject.home[first])
@@ -128,47 +128,47 @@ def jump_of_a_table(subject: Subject, value: float) -> Content:
 
 @_laws("start of a second of a sine, s", RISING)
 def far_in_time(subject: Subject, start: float) -> Content:
-    """Time itself has few digits left for the swing."""
+    """Late times have few digits left for the swing."""
     swings = ({"sine": {"amplitude": size, "angular_frequency": 1.0}} for size in (0.2, 20.0))
     return subject.content(*swings, start=start, stop=start + 1.0)
 
 
 @_laws("amplitude of the heave, 100 mm", (1.0, 1e-9, 0.0), RIGHT, HEAVING)
 def only_heave(subject: Subject, value: float) -> Content:
-    """The whole car moves while arm and rack rest: the knuckle must not turn."""
+    """The whole car moves while arm and rack are at rest: the knuckle must not turn."""
     wave = {"amplitude": 100.0 * value, "angular_frequency": 3.0}
     return subject.content(heave={"sine": wave}, stop=1.0)
 
 
 @_laws("duration, s", (1.0, 1e-225, 5e-324))
 def short_scene(subject: Subject, value: float) -> Content:
-    """Every instant must stay inside a scene however short."""
+    """Every instant must stay inside the scene, however short it is."""
     return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], stop=value, samples=4)
 
 
 @_laws("duration after t = 1 s, s", (1e-1, 1e-10, 2.0**-52))
 def short_scene_late(subject: Subject, value: float) -> Content:
-    """A scene of a few roundings of its time."""
+    """A scene whose duration is a few roundings of its time."""
     return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], start=1.0, stop=1.0 + value, samples=4)
 
 
 def to_a_tolerance(subject: Subject, value: float) -> Content:
-    """A motion to some tolerance."""
+    """A motion with the scene's tolerance set to the value."""
     return subject.content([-0.1, 0.5], [0.0, 40.0], stop=0.4, tolerance=value)
 
 
 for name, values, expected, why in (
-    ("fine", (1e-75, 1e-225, 1e-300), OURS, "A tolerance below what rounding allows."),
+    ("fine", (1e-75, 1e-225, 1e-300), OURS, "The tolerance is far below rounding errors."),
     (
         *("loose", (1.0, 1e150, 1e300), OURS | {"pointcoord-as-asked": RIGHT}),
-        "A tolerance above the size of the car.",
+        "The tolerance is larger than the car.",
     ),
 ):
     _laws("tolerance of the scene, mm", values, expected, name=f"{name}-tolerance", why=why)(to_a_tolerance)
 
 
 def _cancelling(value: float, wanted: float, rate: float) -> Law:
-    """A sine that passes `wanted` at this rate at time 0, its amplitude the reciprocal of a value."""
+    """A sine with the value `wanted` and this rate at time 0; its amplitude is the reciprocal of `value`."""
     phase, amplitude = 0.5, 1.0 / value  # rad: neither the sine nor its slope is near zero
     wave = {
         "amplitude": amplitude,
@@ -181,14 +181,14 @@ def _cancelling(value: float, wanted: float, rate: float) -> Law:
 
 @_laws("1 rad or 1 mm over the amplitude", (1.0, 1e-6, 1e-9))
 def cancelling_sine(subject: Subject, value: float) -> Content:
-    """A large swing is all but cancelled by its offset, and what is left drives every input."""
+    """A large swing is nearly cancelled by its offset; the difference drives every input."""
     length = _cancelling(value, 10.0, 20.0)
     return subject.content(_cancelling(value, 0.0, 0.1), length, length if subject.heaves else None, stop=0.5)
 
 
 POWER = 6
-# The sum of the seven terms is off by 4 7^2 u^2 of their magnitudes (Graillat, Langlois, Louvet), which add
-# up to 16 (2 start)^6: that stays below a rounding of 16 mm up to the start 2^6 s.
+# The error of the sum of the seven terms is 4 7^2 u^2 times their magnitudes (Graillat, Langlois, Louvet),
+# which add up to 16 (2 start)^6: it is below a rounding of 16 mm up to the start 2^6 s.
 LATE = dict.fromkeys(("pointcoord", "pointcoord-newton"), right_from(2.0**-6))
 
 

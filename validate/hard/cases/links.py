@@ -1,9 +1,9 @@
-"""Links that are missing, given twice or contradictory: one change of a mechanism's tables each.
+"""Links that are missing, given twice or contradictory: each case changes a mechanism's tables in one way.
 
-What is left has no pose, or none that the inputs determine, and has to be refused before anything is said of
-it; pointcoord names what is wrong. A rod that is there twice holds nothing more than one: a model may leave
-it out and answer, or refuse it. Two constraints of one coordinate that agree in the drawing and nowhere else
-leave no motion, however near to each other they are.
+The changed mechanism has no pose, or the inputs do not determine its pose. It must be refused before any
+number is given; pointcoord must name the fault. A rod that is given twice constrains no more than one rod: a
+model may leave the second out and answer, or refuse it. Two constraints of one coordinate that agree in the
+drawing and nowhere else leave no motion, however close they are.
 """
 
 from __future__ import annotations
@@ -40,16 +40,16 @@ SOLVERS = ("pointcoord", "absolute")
 AGAIN, PIVOT = "again", "second_pivot"
 Tables = dict[str, Any]
 Piece = tuple[str, ...]
-"""A rod or a slide, or a point of a body: the keys of its tables."""
+"""A rod, a slide, or a point of a body: its keys in the tables."""
 Changed = tuple[Content, frozenset[str], dict[str, str]]
-"""A changed mechanism at rest, what an error has to name one of, and the change as facts."""
+"""A changed mechanism at rest, names of which an error must give one, and the change as facts."""
 Change = Callable[[Subject, float], Changed]
 CASES: list[Case] = []
 _links = partial(family, CASES, GROUP, given=False)
 
 
 def joints(plain: Mapping[str, Any]) -> dict[str, list[str]]:
-    """Points of each moving body that another body, a rod or a slide has as well."""
+    """The points of each moving body that another body, a rod or a slide uses too."""
     slides = plain["slides"].values()
     users = [*plain["bodies"].values(), *plain["rods"].values()]
     users += [(*slide["points"], slide["through"]) for slide in slides]
@@ -62,10 +62,10 @@ def joints(plain: Mapping[str, Any]) -> dict[str, list[str]]:
 
 
 def pieces(plain: Mapping[str, Any]) -> dict[Piece, tuple[frozenset[str], int]]:
-    """Everything without which a mechanism is another one, or none: rods, slides, points that hold a body.
+    """The constraints of a mechanism: rods, slides, and points that join a body to others.
 
     Returns:
-        Of each the names of which an error has to give one, and how many rods hold as much.
+        For each piece, names of which an error must give one, and the number of rods that constrain as much.
     """
     bodies = plain["bodies"]
     found: dict[Piece, tuple[frozenset[str], int]] = {}
@@ -82,7 +82,7 @@ def pieces(plain: Mapping[str, Any]) -> dict[Piece, tuple[frozenset[str], int]]:
 
 
 def without(tables: Tables, piece: Piece) -> str:
-    """Take a piece out of some tables; what it was, such as `rod tie_rod`, or `tie_rod_outer of knuckle`."""
+    """Remove a piece from the tables; returns its name: `rod tie_rod`, or `tie_rod_outer of knuckle`."""
     table, key, *point = piece
     if point:
         tables[table][key].remove(*point)
@@ -92,21 +92,21 @@ def without(tables: Tables, piece: Piece) -> str:
 
 
 def held_apart(plain: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Pairs of points at a fixed distance: points by which a moving body is held, and a rod's ends."""
+    """Pairs of points at a fixed distance: joints of a moving body, and the ends of a rod."""
     rods = ((first, last) for first, last in plain["rods"].values())
     within = (pair for points in joints(plain).values() for pair in itertools.combinations(points, 2))
     return tuple({frozenset(pair): pair for pair in (*within, *rods)}.values())
 
 
 def tables_of(subject: Subject) -> Tables:
-    """A mechanism's tables, to be changed."""
+    """A copy of the mechanism's tables that may be changed."""
     plain = subject.plain
     return {name: plain[name] for name in ("bodies", "rods", "slides", "inputs", "roles")}
 
 
 @cache
 def closed(subject: Subject) -> Car:
-    """The car with its drawing closed and every point in it, so that its tables can be changed."""
+    """The car with a closed drawing and all its points given, so that its tables can be changed."""
     car = subject.car if subject.car.closure == "drawn" else drawn_at(subject.car, subject.drawn)
     scene = Scene.from_mapping(subject.absolute(dict.fromkeys(subject.driven, 0.0), car))
     points = scene.mechanism.plain(subject.driven)["points"]
@@ -116,7 +116,7 @@ def closed(subject: Subject) -> Car:
 def changed(
     subject: Subject, tables: Tables, inputs: Mapping[str, Any] | None = None, **more: Point
 ) -> Content:
-    """The scene of a mechanism with other tables and more points, and its inputs, as drawn if not given."""
+    """The scene of a mechanism with changed tables and further points; inputs as drawn if not given."""
     car = closed(subject)
     there = replace(car, points={**car.points, **more}, tables=tables)
     laws = {n: law for n, law in (inputs or subject.drawn).items() if n in tables["inputs"]}
@@ -124,7 +124,7 @@ def changed(
 
 
 def named(answer: Answer, names: frozenset[str]) -> Answer:
-    """A refusal of pointcoord is wrong that names nothing of what is at fault."""
+    """A refusal by pointcoord that names nothing at fault is wrong; other answers are unchanged."""
     if (answer.formulation, answer.outcome) != ("pointcoord", "refused") or any(
         name in answer.reason for name in names
     ):
@@ -136,7 +136,7 @@ def named(answer: Answer, names: frozenset[str]) -> Answer:
 def _changes(
     parameter: str, values: Values | Every, subjects: Sequence[Subject], expected: Expected = REFUSED
 ) -> Callable[[Change], Change]:
-    """Changes of mechanisms, of which pointcoord has to name what is at fault."""
+    """A decorator of a change: adds its cases, in which pointcoord must name the fault."""
 
     def rows(change: Change) -> Change:
         _links(
@@ -152,13 +152,13 @@ def _changes(
 
 
 PIECE = "number of the piece"
-PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
+PIVOT_AT = "distance of its pivot from the first pivot, in parts of the first link"
 WITH_RODS = [subject for subject in ALL if subject.plain["rods"]]
 
 
 @_changes(PIECE, every(lambda subject: list(pieces(subject.plain))), ALL)
 def link_missing(subject: Subject, number: float) -> Changed:
-    """A point, or a body, is free to move although all inputs are held."""
+    """A constraint is missing: a point or a body can move although all inputs are held."""
     tables = tables_of(subject)
     piece, (names, _) = list(pieces(subject.plain).items())[int(number) - 1]
     missing = without(tables, piece)
@@ -171,9 +171,9 @@ def link_missing(subject: Subject, number: float) -> Changed:
     *(ALL, IF_ANY),
 )
 def link_twice(subject: Subject, number: float) -> Changed:
-    """There are more rows than unknowns, and two of them say the same.
+    """There are more equations than unknowns, and two of them are equivalent.
 
-    Two points that are held apart are held by a rod once more.
+    An additional rod joins two points that are already at a fixed distance.
     """
     pair, tables = held_apart(subject.plain)[int(number) - 1], tables_of(subject)
     tables["rods"][AGAIN] = list(pair)
@@ -181,15 +181,15 @@ def link_twice(subject: Subject, number: float) -> Changed:
 
 
 def exchangeable(subject: Subject) -> list[Piece]:
-    """The pieces without which there is another rod left."""
+    """The pieces without which at least one rod is left."""
     return [piece for piece in pieces(subject.plain) if set(subject.plain["rods"]) - {piece[1]}]
 
 
 @_changes(PIECE, every(exchangeable), [one for one in ALL if exchangeable(one)])
 def link_twice_for_another(subject: Subject, number: float) -> Changed:
-    """There are as many rows as unknowns, but some say nothing new and some are missing.
+    """There are as many equations as unknowns, but some are redundant and some are missing.
 
-    A rod is there as often again as makes up for a piece that is missing.
+    A piece is removed, and a rod is repeated to make up for the number of its equations.
     """
     tables, piece = tables_of(subject), exchangeable(subject)[int(number) - 1]
     names, rows = pieces(subject.plain)[piece]
@@ -201,7 +201,7 @@ def link_twice_for_another(subject: Subject, number: float) -> Changed:
 
 @_changes("difference of their values, rad or mm", (*decades(), 0.0), WITH_RODS)
 def input_twice(subject: Subject, gap: float) -> Changed:
-    """Two inputs drive one coordinate and contradict each other by less and less; at last they agree."""
+    """Two inputs drive one coordinate and contradict each other, by less and less until they agree."""
     tables, first = tables_of(subject), subject.driven[0]
     tables["inputs"][AGAIN] = dict(tables["inputs"][first])
     inputs = {**subject.drawn, AGAIN: subject.drawn[first] + gap}
@@ -209,7 +209,7 @@ def input_twice(subject: Subject, gap: float) -> Changed:
 
 
 def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, Any]]:
-    """A rod beside one that holds a moving point to the chassis, its pivot a share of its length above."""
+    """A rod next to a link from the chassis to a moving point, its pivot a share of the length above."""
     tables, places = tables_of(subject), {n: np.array(p) for n, p in closed(subject).points.items()}
     chassis = tables["bodies"]["chassis"]
     ground, moving = next(
@@ -217,7 +217,7 @@ def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, 
         for pair in held_apart(subject.plain)
         if (pair[0] in chassis) != (pair[1] in chassis)
     )
-    # Along the hinge of a plane mechanism it would be the same link.
+    # In a plane mechanism a pivot moved along the hinge axis would make an equivalent link.
     along_up = any(
         not np.cross(places[first] - places[last], subject.car.up).any()
         for points in tables["bodies"].values()
@@ -231,28 +231,28 @@ def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, 
     return tables, {PIVOT: as_tuple(pivot)}
 
 
-# Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is nearer
-# to another than this is that one again, as in `link_twice`.
+# Two rows of n = 40 unknowns are distinguished down to 64 n EPS = 6e-13 of their size: a link closer to
+# another than this is a copy of it, as in `link_twice`.
 @_changes(PIVOT_AT, decades(low=-11), WITH_RODS)
 def contradictory_links(subject: Subject, share: float) -> Changed:
-    """A further link agrees with the others as drawn and nowhere else."""
+    """A further link agrees with the other links as drawn and nowhere else."""
     rates = {"rad": 0.5, "mm": 50.0}
     inputs = {name: [value, rates[subject.units[name]]] for name, value in subject.drawn.items()}
     tables, pivot = _with_third_link(subject, share)
     return changed(subject, tables, inputs, **pivot), frozenset((AGAIN, PIVOT, *subject.driven)), {}
 
 
-# Two links that are nearly one differ by the distance of their pivots, and the condition number grows as its
-# inverse from some 30 on: at 1e-6 half of the digits are left.
+# Two nearly equal links differ by the distance of their pivots, and the condition number is some 30 over this
+# distance: at 1e-6 half of the digits are left.
 @_links(
     f"{PIVOT_AT}; then a copy of it",
     (*decades(), 0.0),
     dict.fromkeys(SOLVERS, right_from(1e-6)),
-    # What is held by a link in place of its only input is driven by none.
+    # If the link replaces the only input, nothing drives the mechanism.
     [one for one in WITH_RODS if len(one.driven) > 1],
 )
 def arm_held_by_a_third_link(subject: Subject, share: float) -> Content:
-    """A further link in place of an input holds the mechanism, by less and less; at last it is a copy."""
+    """A further link replaces an input and constrains the mechanism less and less, until it is a copy."""
     tables, pivot = _with_third_link(subject, share)
     del tables["inputs"][subject.driven[0]]
     return changed(subject, tables, **pivot)

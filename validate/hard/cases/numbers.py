@@ -1,9 +1,8 @@
-"""Numbers that no computation survives, one at a time, at every place of a scene, and points in one place.
+"""Invalid and extreme numbers, one at a time, at every place of a scene; and coincident points.
 
-A number that is none, infinite, huge or below the smallest normal one must be refused with a reason, or the
-answer must be right. Every place of a scene that holds a number is tried, with the other numbers left alone.
-Heave is tried by a law of every kind: it drives no coordinate, but is added to what was solved, so that
-nothing else meets its numbers and refuses them.
+With a NaN, an infinite, huge or subnormal number the scene must be refused with a reason, or the answer must
+be right. Every number of a scene is replaced in turn. Heave is run with every kind of law: it drives no
+coordinate but is added to the solution, so no other check meets its numbers.
 """
 
 from __future__ import annotations
@@ -29,19 +28,19 @@ CASES: list[Case] = []
 
 
 def apart(subject: Subject) -> Pairs:
-    """Pairs of drawn points that a link or an axis holds apart."""
+    """Pairs of drawn points that a link or an axis keeps at a distance."""
     held = {frozenset(pair) for pair in held_apart(subject.plain)}
     return [pair for pair in itertools.combinations(subject.car.points, 2) if frozenset(pair) in held]
 
 
 def loose(subject: Subject) -> Pairs:
-    """Pairs of drawn points without a link."""
+    """Pairs of drawn points without a link between them."""
     held = apart(subject)
     return [pair for pair in itertools.combinations(subject.car.points, 2) if pair not in held]
 
 
 def in_one_place(pairs: Callable[[Subject], Pairs], subject: Subject, value: float) -> Content:
-    """The scene with the second point of a pair put on the first."""
+    """The scene with the second point of a pair moved onto the first."""
     onto, moved = pairs(subject)[int(value) - 1]
     points = {**subject.car.points, moved: subject.car.points[onto]}
     inputs = {**subject.home, "arm_angle": 1.65} if subject.level else subject.home
@@ -58,23 +57,23 @@ def _pairs(pairs: Callable[[Subject], Pairs], step: int = 1, **more: Any) -> Non
 
 _pairs(
     apart,
-    # Elsewhere two rods may meet in one point of a body, and a crank have no length.
+    # In other mechanisms two rods may meet at one point of a body, and a crank may have no length.
     expected=lambda one: REFUSED if one.level else IF_ANY,
     given=False,
     name="link-without-length",
-    why="Two points that a link or an axis holds apart are drawn in one place.",
+    why="Two points that a link or an axis keeps at a distance are drawn in one place.",
 )
 _pairs(
     loose,
     step=3,
     expected=RIGHT_OR_REFUSED,
     name="points-in-one-place",
-    why="Two points without a link are drawn in one place, which may be a mechanism or not.",
+    why="Two points without a link are drawn in one place; the result may be a mechanism or not.",
 )
 
 
 def content(subject: Subject, heave: Content = TABLE) -> Content:
-    """A short motion of a car with a law of every kind, in which every number has a place."""
+    """A short motion of a car with a law of every kind."""
     law = heave if subject.heaves else None
     return deepcopy(subject.content((0.0, 0.1, 0.05), SINE, law, stop=0.2, samples=2))
 
@@ -88,7 +87,7 @@ def _places(part: Any, here: Place = ()) -> list[Place]:
 
 @cache
 def places(subject: Subject) -> list[tuple[Content, Place]]:
-    """Every place of the scene that holds a number, and of every other law of heave, with that law."""
+    """Every place of a number in the scene, and in the scene with every other law of heave, with this law."""
     of_heave = [
         (law, place)
         for law in (OF_HEAVE if subject.heaves else ())
@@ -99,7 +98,7 @@ def places(subject: Subject) -> list[tuple[Content, Place]]:
 
 
 def with_number(number: object, subject: Subject, value: float) -> Content:
-    """A scene with another number at one place."""
+    """The scene with the number at one place replaced."""
     heave, place = places(subject)[int(value) - 1]
     whole = content(subject, heave)
     part: Any = whole
@@ -114,17 +113,16 @@ def place_of(subject: Subject, value: float) -> dict[str, str]:
     return {"place": ".".join(str(key) for key in places(subject)[int(value) - 1][1])}
 
 
-# Name, the number, what has to come of it, why; the step between places: scenes with a number that is mostly
-# solved take time.
+# Name, number, expected outcome, why, and step between places: scenes that are mostly solved take time.
 NUMBERS: tuple[tuple[str, object, Expected, str, int], ...] = (
-    ("not-a-number", math.nan, REFUSED, "A NaN spreads through everything that it meets.", 1),
-    ("minus-infinity", -math.inf, REFUSED, "It passes every check for too large.", 1),
+    ("not-a-number", math.nan, REFUSED, "A NaN spreads through all computations.", 1),
+    ("minus-infinity", -math.inf, REFUSED, "It passes every check for too large numbers.", 1),
     ("huge", 1e308, RIGHT_OR_REFUSED, "The square of 1e308 overflows.", 3),
     ("tiny", 1e-308, RIGHT_OR_REFUSED, "The square of 1e-308 is 0.", 3),
-    ("whole-number-too-large", 10**400, REFUSED, "401 digits fit no floating-point number.", 1),
+    ("whole-number-too-large", 10**400, REFUSED, "A number of 401 digits is no floating-point number.", 1),
 )
 for name, number, expected, why, step in NUMBERS:
-    # What has to be refused is no scene, and cannot be given to a solver.
+    # A scene that must be refused cannot be given to other solvers.
     more: dict[str, Any] = {"name": name, "why": why, "facts": place_of, "given": expected != REFUSED}
     numbered = CASES, GROUP, "number of the place in the scene", every(places, step), expected
     family(*numbered, **more)(partial(with_number, number))

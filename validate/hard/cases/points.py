@@ -1,12 +1,13 @@
-"""Cars in motion whose points are drawn out of proportion: nearly in line, nearly coincident, or far away.
+"""Cars in motion whose points have extreme proportions: nearly in line, nearly coincident, or far away.
 
-Links between near points lose digits when coordinates are subtracted, and directions through them turn by
-rounding. A case takes an assembled car and changes nothing else; the ways to draw it are in `points.toml`.
+Links between close points lose digits when coordinates are subtracted, and rounding turns directions through
+them. A case takes an assembled car and changes only these points; the changes are in `points.toml`.
 
-A strut's axis is fixed in the knuckle, and so it may stand in any way to the three points that carry the
-knuckle: through any of them, in their plane or at right angles to it, with its own two points far off or
-close together. None of this makes the mechanism singular. What does is a slide that runs out: the ball joint
-comes as near to the strut's top as it lies beside the axis, and two places of the top on the axis meet.
+A strut's axis is fixed in the knuckle, so it may have any position relative to the three points that carry
+the knuckle: through any of them, in their plane or at right angles to it, with its two points far away or
+close together. None of these makes the mechanism singular. It is singular when the slide reaches its end: the
+ball joint is as near to the strut's top as it lies beside the axis, and two positions of the top on the axis
+meet.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ LOWER, TOP, ROD_END = "strut_lower", "strut_top", "strut_rod_end"
 
 @cache
 def assembled(car: str = "paper") -> dict[str, Array]:
-    """A car at its own inputs, each coordinate the nearest number to the true one, mm."""
+    """The points of a car assembled at its drawn inputs, each coordinate correctly rounded, mm."""
     if CARS[car].closure == "drawn":
         return CARS[car].array
     return drawn_at(CARS[car], NAMED[car].drawn).array
@@ -42,40 +43,43 @@ def assembled(car: str = "paper") -> dict[str, Array]:
 def put(
     p: Points, value: float, *, points: Sequence[str], power: int = 1, times: float = 1.0, **at: str
 ) -> Points:
-    """Points at a share of their distance from another, on their lines through it."""
+    """Points moved along their lines through another point, to `times value^power` of their distance."""
     start = p[at["from"]]
     return {n: start + times * value**power * (x - start) if n in points else x for n, x in p.items()}
 
 
 def aside(p: Points, value: float, *, point: str, way: Sequence[float]) -> Points:
-    """A point that the drawing has beside its line, mm."""
+    """A point moved off its line by `value` times a direction, mm."""
     return {**p, point: p[point] + value * np.array(way)}
 
 
 def thin_knuckle(p: Points, value: float, *, upper: str) -> Points:
-    """The tie rod's outer end nearly on the line through the knuckle's other two points."""
+    """The tie rod's outer end moved towards the line through the knuckle's other two points."""
     line = unit(p[upper] - p[BALL])
     foot = p[BALL] + ((p[OUTER] - p[BALL]) @ line) * line
     return {**p, OUTER: foot + value * (p[OUTER] - foot)}
 
 
 def upper_arm_flat(p: Points, value: float) -> Points:
-    """The upper ball joint near the plane of its pivots and the lower one."""
+    """The upper ball joint moved towards the plane of its pivots and the lower ball joint."""
     front, upper = p["upper_arm_front"], p["upper_ball_joint"]
     normal = unit(np.cross(p["upper_arm_rear"] - front, p[BALL] - front))
     return {**p, "upper_ball_joint": upper - (1.0 - value) * float((upper - front) @ normal) * normal}
 
 
 def tie_rod_short(p: Points, value: float) -> Points:
-    """The tie rod's inner end, and the rack's middle there, near the outer one."""
+    """The tie rod's inner end, with the rack centre, moved towards the outer end."""
     inner = p[OUTER] + value * (p[INNER] - p[OUTER])
     return {**p, INNER: inner, "rack_centre": inner}
 
 
 def axis(p: Points, value: float, *, weights: Mapping[str, float], off: float, way: str) -> Points:
-    """The axis through a weighed mean of points, and `off` mm along a way from it at the value 1.
+    """The strut axis through a weighted mean of points, moved from it by `value` times `off` mm in a
+    direction.
 
-    Ways are from the ball joint to strut_lower, of that what is off the line to the top, and off the plane.
+    Directions `way`: `foot` is from the ball joint to strut_lower; `inboard` is its component normal to the
+        line
+    from ball joint to top; `upright` is normal to the plane of ball joint, top and tie rod end.
     """
     mean: Array = np.add.reduce([share * p[name] for name, share in weights.items()])
     foot, along = p[LOWER] - p[BALL], unit(p[TOP] - p[BALL])
@@ -89,7 +93,7 @@ def axis(p: Points, value: float, *, weights: Mapping[str, float], off: float, w
 
 
 def slide_run_out(p: Points, value: float) -> Points:
-    """The line from top to ball joint is at a right angle to the axis, but for this."""
+    """The strut axis at a right angle to the line from top to ball joint, except for `value`, rad."""
     down = unit(p[BALL] - p[TOP])
     along = unit(unit(np.cross(down, (1.0, 0.0, 0.0))) + value * down)
     return {**p, LOWER: p[TOP] + 300.0 * along, ROD_END: p[TOP] + 100.0 * along}
@@ -100,7 +104,7 @@ DRAWS: Mapping[str, Callable[..., Points]] = {draw.__name__: draw for draw in DR
 
 
 def in_motion(row: Mapping[str, Any], subject: Subject, value: float) -> Content:
-    """The car of a row, driven from no rack travel."""
+    """The scene of a row: its car in motion, starting at zero rack travel."""
     ((draw, given),) = row["draw"].items()
     there = subject.car.drawn_as(DRAWS[draw](assembled(subject.name), value, **given))
     size, angle = value if row.get("shrinks") else 1.0, subject.drawn["arm_angle"]

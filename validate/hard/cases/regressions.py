@@ -1,4 +1,4 @@
-"""Found by searches: places that nobody thought of, each with the search that found it."""
+"""Cases that searches found."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from validate.hard.subjects import NAMED, PAPER, Content, Subject
 SEARCHED = NAMED["searched"]
 HELD = 27.68275866007217  # mm, where its rack was held
 BY_ANGLE = {"absolute": RIGHT_OR_REFUSED, "relative": RIGHT_OR_REFUSED}
-# The branch is kept at any tolerance: the sign of the Jacobian's determinant is followed.
+# The branch is kept at any tolerance, because the sign of the Jacobian's determinant is checked.
 AT_A_TURN = dict.fromkeys(("pointcoord", "pointcoord-as-asked", "pointcoord-newton"), right_from(1e-12))
 CASES: list[Case] = []
 _found = partial(family, CASES, "Found by searches", subjects=[PAPER])
@@ -26,8 +26,8 @@ _found = partial(family, CASES, "Found by searches", subjects=[PAPER])
     {"pointcoord": right_from(1e-11), **BY_ANGLE},
 )
 def error_all_but_its_bound(_: Subject, value: float) -> Content:
-    """A search for the largest error / bound came here: the last step of Newton's method is nearly all of
-    the error, and the bound measures it, so that nothing is left to spare.
+    """A search for the largest error / bound found this pose: the last Newton step is nearly the whole error,
+    and the bound is nearly this step, so it has no margin.
     """
     last = last_value(SEARCHED, "arm_angle", True, {"arm_angle": drawn_angle(SEARCHED.car), "rack": HELD})
     return SEARCHED.absolute({"arm_angle": last.beyond(-value), "rack": HELD})
@@ -39,10 +39,10 @@ def error_all_but_its_bound(_: Subject, value: float) -> Content:
     AT_A_TURN | BY_ANGLE,
 )
 def turn_at_a_coarse_tolerance(_: Subject, value: float) -> Content:
-    """The rack turns just before its end: a series too coarse to see the other branch, which comes within
-    the root of the distance, runs smoothly over to it and every residual stays zero.
+    """The rack reverses just before its end: a coarse series may cross over smoothly to the other branch,
+    which is as near as the root of the distance, with zero residuals.
 
-    From the middle to near the greatest travel and back; instants on both sides of the turn.
+    The rack moves from the middle to near its greatest travel and back; there are instants before and after.
     """
     low, high = (float(last_value(PAPER, "rack", ahead).value) for ahead in (False, True))
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
@@ -56,7 +56,7 @@ def turn_at_a_coarse_tolerance(_: Subject, value: float) -> Content:
     {"pointcoord": right_from(1e-2), **BY_ANGLE},
 )
 def strut_drawn_folded(_: Subject, value: float) -> Content:
-    """Random scenes drew the rod end behind the strut's top: their line points the other way."""
+    """Random scenes had the end of the strut rod drawn beyond the strut's top: their line is reversed."""
     top, lower = PAPER_CAR.points["strut_top"], PAPER_CAR.points["strut_lower"]
     x, y, z = (t + value * (t - p) for t, p in zip(top, lower, strict=True))
     points = {**PAPER_CAR.points, "strut_rod_end": (x, y, z)}

@@ -1,4 +1,4 @@
-"""The sections of the page, from its top to its end."""
+"""The sections of the page, from top to bottom."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Section:
 
     Attributes:
         name: anchor on the page. title: heading.
-        blocks: what it is made of; a section that has nothing to show of a run makes none and is left out.
-        folded: whether it is seen only by who opens it.
+        blocks: makes the blocks from a run; a section without blocks is left out of the page.
+        folded: whether the section is shown only after a click.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Section:
 
 SECTIONS = (
     Section("verdict", "Verdict", verdict),
-    Section("file", "The file beside the car", files),
+    Section("file", "The file compared with the car", files),
     Section("agreement", "Agreement", agreement),
     Section("motion", "The suspension in motion", motions),
     Section("cost", "Accuracy against time", cost),

@@ -1,4 +1,4 @@
-"""What the scenes of a run come to: the verdict, who agrees in what, differences over time, and by what."""
+"""Sections on the scenes of a run: verdict, agreement by quantity, differences over time, and machine."""
 
 from __future__ import annotations
 
@@ -31,35 +31,35 @@ from validate.plain_text import shown
 
 Array = NDArray[np.float64]
 
-LINES = 150  # about all scenes together, at most: there may be hundreds of scenes
-DRAWN = 60  # rows of the picture
+LINES = 150  # largest number of remarks on all scenes together: there may be hundreds of scenes
+DRAWN = 60  # largest number of rows of the heat map
 WORDS = (
-    "Share of the tolerance used: the darker the green, the more; red disagrees, amber is not tested, "
-    "empty is not asked for"
+    "Share of the tolerance used: the darker the green, the larger. Red: disagrees. Amber: not tested. "
+    "Empty: not asked for"
 )
-INK = "#000"  # stands out of each of the colours, in light and in dark
-# From -1, not tested, over 0 to 1, shares of the tolerance, to 2, beyond it.
+INK = "#000"  # readable on each of the colours, in light and in dark mode
+# Scale: -1 is not tested; 0 to 1 is the share of the tolerance; 2 disagrees.
 AMBER, PALE, GREEN, RED = "#e0a92e", "#dff2ea", "#2a9d78", "#d9481c"
 COLOURS = ((0.0, AMBER), (0.33, AMBER), (0.33, PALE), (0.67, GREEN), (0.67, RED), (1.0, RED))
-ROW, EDGE = 1.4, 8.0  # rem, of a row of the picture and of what stands around it
+ROW, EDGE = 1.4, 8.0  # height of a row of the heat map, and of its labels and margins, rem
 
 
 def verdict(run: Run) -> Iterator[Block]:
-    """The verdict in a sentence, and what each scene has to say beside its numbers."""
-    # Times compare nothing that could be right or wrong.
+    """The verdict in a sentence, then the explanations, refusals, warnings and notes of the scenes."""
+    # Measured times are neither right nor wrong.
     times = run.head.kind == "cost" and run.status is ExitStatus.AGREE
     status = f"Exit status {run.status.value}: {run.head.verdict(run.status)}"
     yield Paragraph(run.sentence, "measured" if times else word(run.status), status)
-    # What concerns the verdict goes first, and what several scenes have to say is said once.
+    # Remarks that affect the verdict come first; a remark on several scenes is printed once.
     lines = by_scene(run.record, disagreements, complaints, undecided, notes)
     yield from map(Paragraph, lines[:LINES])
     if len(lines) > LINES:
-        yield Paragraph(f"{len(lines) - LINES} more such lines are in the data beside this page.")
+        yield Paragraph(f"{len(lines) - LINES} more remarks are in the data files of this page.")
 
 
 def agreement(run: Run) -> Iterator[Block]:
-    """Scenes by quantities: who agrees, and how much of a tolerance is used."""
-    # Where something is not as wanted it is seen however many scenes there are.
+    """The heat map and the table of scenes and quantities, with verdicts and shares of the tolerance."""
+    # Scenes that do not agree come first, so that they are shown however many scenes there are.
     compared = sorted(run.record.examined, key=lambda one: one.status == 0)
     agrees = Cell("agrees", verdict="agrees")
     rows = sorted((row for one in compared for row in _rows(one)), key=lambda row: row[-1] == agrees)
@@ -67,12 +67,12 @@ def agreement(run: Run) -> Iterator[Block]:
     if drawn:
         yield _heat_map(drawn)
     if rows:
-        caption = "For each quantity the verdict, and the number that is closest to its tolerance."
+        caption = "For each quantity: the verdict, and the number with the largest share of its tolerance."
         yield Table(("scene", "compared", *HEAD), tuple(rows), caption=caption, folded=bool(drawn))
 
 
 def _rows(one: Examined) -> Iterator[tuple[str | Cell, ...]]:
-    """A row for each quantity of each pair that was compared; of a scene without one, why there is none."""
+    """A row for each quantity of each compared pair; for a scene that was not compared, the reason."""
     if why := ": ".join(complaints(one)):
         yield one.name, *("-" for _ in HEAD), Cell(standing(one)[0], why, standing(one)[0])
     for outcome in one.outcomes:
@@ -80,7 +80,7 @@ def _rows(one: Examined) -> Iterator[tuple[str | Cell, ...]]:
 
 
 def _heat_map(drawn: Sequence[Examined]) -> Block:
-    """The share of each scene and quantity; of several pairs of formulations the one that uses most."""
+    """The heat map of shares by scene and quantity: the largest share of all pairs of formulations."""
     cells = [worst_of(row for outcome in one.outcomes for row in outcome.rows) for one in drawn]
     quantities = list(dict.fromkeys(name for row in cells for name in row))
     seen = [[_seen(row[name]) if name in row else (None, "", "") for name in quantities] for row in cells]
@@ -111,18 +111,18 @@ def _heat_map(drawn: Sequence[Examined]) -> Block:
 
 
 def _seen(row: Comparison) -> tuple[float, str, str]:
-    """The place of a cell among the colours, what stands in it, and what the pointer brings."""
-    told = f"{about(row.quantity, row.name)}: {row.verdict}"
+    """A cell of the heat map: its value on the colour scale, its text, and its hover text."""
+    text = f"{about(row.quantity, row.name)}: {row.verdict}"
     if row.verdict == "not given":
-        return -1.0, row.verdict, plain(told)
-    words = plain(f"{told}, {used(row.share)} at {when(row, 4)}")
+        return -1.0, row.verdict, plain(text)
+    words = plain(f"{text}, {used(row.share)} at {when(row, 4)}")
     if row.verdict == "agrees":
         return float(f"{row.share:.2g}"), f"{100.0 * row.share:.0f}%", words
     return (2.0 if row.verdict == "disagrees" else -1.0), row.verdict, words
 
 
 def differences(run: Run) -> Iterator[Block]:
-    """Differences over time against their tolerances."""
+    """Differences over time with their tolerances."""
     blocks = []
     for one in run.drawn:
         for outcome in one.examined.outcomes:
@@ -137,17 +137,17 @@ def differences(run: Run) -> Iterator[Block]:
 
 
 def _panels(outcome: Outcome, row: Comparison, instants: Array) -> Iterator[Panel]:
-    """A row over time; none where one of both gives no such numbers."""
+    """The differences of a row over time; nothing if one of the two formulations does not give the number."""
     if (found := over_time(outcome, row, instants)) is not None:
         at = fewer(found.share, POINTS)
-        words = f"{about(row.quantity, row.name)}: {row.verdict}, at most {row.share:.2g} of its tolerance"
+        words = f"{about(row.quantity, row.name)}: {row.verdict}, at most {used(row.share)}"
         yield gaps(words, "time [s]", found.times[at], found.difference[at], found.tolerance[at], row.unit)
 
 
 def machine(run: Run) -> Iterator[Block]:
-    """Where the numbers come from: command, versions, machine, settings."""
+    """The command, versions, machine and settings of the run."""
     rows = tuple((name, shown(value)) for name, value in _made_by(run))
-    yield Table(("what", "value"), rows, caption="What this page was made by.")
+    yield Table(("what", "value"), rows, caption="How this page was made.")
 
 
 def _made_by(run: Run) -> Iterator[tuple[str, str]]:
@@ -161,15 +161,15 @@ def _made_by(run: Run) -> Iterator[tuple[str, str]]:
         yield "compared", "; ".join(pairs)
     if run.record.examined:
         yield "differences", held_to(run.record.factor)
-    # Where times were measured stands with them; where the page is made tells nothing of them.
+    # The machine that measured the times is in the cost section; the page may be made on another machine.
     if run.head.kind != "cost":
         yield from _flat(document["machine"])
 
 
 def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Names and values of plain data; a value that is a mapping stands for its own."""
+    """Names and values of nested mappings, flattened."""
     for name, value in data.items():
         if isinstance(value, Mapping):
             yield from _flat(value)
         else:
-            yield name, "not there" if value is None else str(value)
+            yield name, "not installed or not set" if value is None else str(value)

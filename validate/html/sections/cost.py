@@ -1,4 +1,4 @@
-"""Accuracy against time: the error of each way to solve a scene over what a pose takes."""
+"""Accuracy against time: the error of each solution method over its time for a pose."""
 
 from __future__ import annotations
 
@@ -15,35 +15,35 @@ if TYPE_CHECKING:
 
     from validate.cost.looks import Look
 
-SCENES = 8  # whose curves are drawn, at most: a page stays small
-LINE = 1.5  # pixels, of a curve
+SCENES = 8  # largest number of scenes with curves, so that the page stays small
+LINE = 1.5  # width of a curve, pixels
 
 
 def cost(run: Run) -> Iterator[Block]:
-    """What accuracy costs, in a sentence and one picture, then the rest."""
+    """Run time against accuracy: first a sentence and one picture, then all others."""
     if (found := run.cost) is None:
         return
-    # Imported here: pandas takes half a second, and most pages tell of no cost.
+    # Imported here: pandas takes half a second, and most pages have no cost section.
     from validate.cost.findings import timed
     from validate.cost.looks import KEY, looks
 
-    accuracy, said = timed(found.table), [*map(Paragraph, found.sentences)]
+    accuracy, sentences = timed(found.table), [*map(Paragraph, found.sentences)]
     ways, scenes = looks(accuracy.way), list(dict.fromkeys(accuracy.scene))
     pictures = []
     for scene in scenes[:SCENES]:
         here = accuracy[accuracy.scene == scene]
         panels = tuple(_panel(of, q, ways) for q, of in here.groupby("quantity", sort=False))
-        pictures.append(Plots(f"{scene}: error against time, a line for each way", panels))
-    yield from said[:1]
+        pictures.append(Plots(f"{scene}: error against time, a line for each method", panels))
+    yield from sentences[:1]
     for picture in pictures[:1]:
         yield Plots(picture.caption, (replace(picture.panels[0], rem=20.0),), at_once=True)
     if ways:
         yield Paragraph(KEY)
     yield Table(("what", "value"), tuple(found.head()), caption="How it was measured.", folded=True)
-    yield from said[1:]
+    yield from sentences[1:]
     yield from pictures
     if len(scenes) > SCENES:
-        yield Paragraph(f"Drawn are the first {SCENES} of {len(scenes)} scenes.")
+        yield Paragraph(f"The first {SCENES} of {len(scenes)} scenes are drawn.")
     for row in found.rows:
         if row.verdict == "failed":
             yield Paragraph(f"{row.scene}, {row.way} {row.setting}: failed: {row.reason}")
@@ -63,11 +63,11 @@ def _panel(here: pd.DataFrame, quantity: str, ways: Mapping[str, Look]) -> Panel
 
 
 def _trace(way: str, look: Look, line: pd.DataFrame) -> Trace:
-    """As in the pictures: filled markers and a star for a way whose one solve serves any instant."""
+    """A curve in the style of the pictures: filled markers and a star if one solve serves any instant."""
     dash, dense = ",".join(f"{LINE * length:g}px" for length in look.dash), bool(line.dense.any())
     name, symbol = (f"{plain(way)}*", look.symbol) if dense else (plain(way), f"{look.symbol}-open")
     trace = marks(name, 1e6 * line.time.to_numpy(), line.error.to_numpy(), look.colour, symbol, 8)
-    # Thin symbols have no inside.
+    # Thin symbols have no fill colour, only a line.
     trace["marker"]["line"] = {"width": LINE, "color": look.colour}
     drawn = {"color": look.colour, "width": LINE, **({"dash": dash} if dash else {})}
     return trace | {"mode": "lines+markers", "line": drawn}

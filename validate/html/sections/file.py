@@ -1,4 +1,4 @@
-"""A file of results beside the car: what each of its columns says, ours, and how far they are apart."""
+"""A file of results compared with the car: values of each column, computed values, and differences."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ from validate.html.blocks import (
 )
 from validate.html.run import POINTS, Run
 from validate.measured.comparing import DataOutcome
-from validate.output.report import about, counted_as, held_to, in_degrees, when, worst_rows
+from validate.output.report import about, counted_as, held_to, in_degrees, used, when, worst_rows
 from validate.output.table import Cell, Table
 from validate.tables.units import degrees_of
 
-HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "what would explain it, or why not")
+HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "possible explanation, or reason")
 
 
 def files(run: Run) -> Iterator[Block]:
-    """Every number that a file gives, with its verdict; then the worst of each quantity over the rows."""
+    """Every number that a file gives, with its verdict; then plots of the worst number of each quantity."""
     for name, file in run.record.files.items():
         outcome, source = file.outcome, file.outcome.solutions[0].formulation
-        # A file may give every number of every point: those that do not agree are seen first.
+        # A file may give every number of every point, so numbers that disagree come first.
         rows = sorted(outcome.rows, key=lambda row: row.verdict != "disagrees")
         yield Paragraph(
-            f"{source} beside the car of {name}: {counted_as(len(file.rows), 'row')} over "
+            f"{source} compared with the car of {name}: {counted_as(len(file.rows), 'row')} over "
             f"{file.over}, {held_to(run.record.factor)}."
         )
         caption = "Each point, body or angle that the file gives; angles in degrees."
@@ -55,7 +55,7 @@ def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
     there = not math.isnan(row.difference)
     return (
         Cell(about(row.quantity, row.name), ", ".join(h.series.column for h in file.columns_of(row))),
-        Cell(row.verdict, f"{row.share:.1e} of its tolerance" if there else "", row.verdict),
+        Cell(row.verdict, used(row.share) if there else "", row.verdict),
         in_degrees(row.difference, row.unit),
         in_degrees(row.tolerance, row.unit),
         when(row, 4) if there else "",
@@ -64,22 +64,22 @@ def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
 
 
 def _panels(file: DataOutcome, row: Comparison) -> Iterator[Panel]:
-    """The worst column of a row beside ours, and how far it is apart; none where nothing is of ours."""
+    """The worst column of a row with computed values, and its differences; nothing if none is computed."""
     columns = [held for held in file.columns_of(row) if np.isfinite(held.gap).any()]
     if not columns:
         return
     held = max(columns, key=lambda held: float(np.nanmax(held.share)))
-    # Rows of a file are in any order; of two at the same value, which inputs tell apart, both are drawn.
+    # Rows of a file may be in any order. Two rows at the same value, with different inputs, are both drawn.
     order = np.argsort(file.at, kind="stable")
     share = np.nan_to_num(held.share[order], nan=-1.0)
     at = order[np.asarray(fewer(share, POINTS), dtype=np.intp)]
     turn = math.degrees(1.0) if file.over.endswith("[rad]") else 1.0
     over, x = plain(file.over.replace("[rad]", "[deg]")), turn * file.at[at]
     factor, unit = degrees_of(held.series.meaning.unit)
-    told = f"{plain(held.series.column)} ({held.series.meaning.words})"
+    title = f"{plain(held.series.column)} ({held.series.meaning.words})"
     ours, theirs = factor * held.ours[at], factor * held.series.values[at]
     traces = curve("pointcoord", x, ours, OURS), marks("file", x, theirs, OTHER)
-    yield panel(f"{told} over {over}: {row.verdict}", over, f"[{unit}]", traces)
-    words = f"{told}, difference: at most {row.share:.1e} of its tolerance"
+    yield panel(f"{title} over {over}: {row.verdict}", over, f"[{unit}]", traces)
+    words = f"{title}, difference: at most {used(row.share)}"
     limit = factor * file.outcome.factor * held.tolerance[at]
     yield gaps(words, over, x, factor * held.gap[at], limit, unit)

@@ -1,4 +1,4 @@
-"""Hard cases: what came of each, and errors against the distance to what is singular."""
+"""Hard cases: the results of each, and errors over the distance to the singular pose."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from validate.html.run import Run
 from validate.output.table import Cell, Table
 
 WORDS = (
-    "Every answer is compared with a reference in 60 digits that is proven. It has to be right within "
-    "its own error bound, or refused with a reason. In the plots crosses at the lower edge are refused. "
-    "Toward the left it gets harder."
+    "Every answer is compared with a proven reference of 60 digits. An answer must be right within "
+    "its error bound, or refused with a reason. In the plots, crosses at the lower edge are refusals. "
+    "Cases get harder towards the left."
 )
-# In the order in which a case names its formulations.
+# Colours of the formulations, in the order of the case.
 COLOURS = ("#2f86c9", "#d9641c", "#2a9d78", "#b266b2", "#8c8c1f", "#7a7a7a", "#c04848")
 SYMBOLS = {"refused": "x-thin-open", "right": "circle", "wrong": "diamond-open", "unjudged": "diamond-open"}
-# Values of a curve, at least, and cases that are drawn, at most; where something is wrong they come first.
+# Smallest number of values of a curve; largest number of cases drawn, those with unexpected answers first.
 FEWEST, MOST = 3, 60
 
 
 def hard(run: Run) -> Iterator[Block]:
-    """Answers by formulation, errors of each case, and its verdict."""
+    """Numbers of answers by formulation, errors of the cases, and their verdicts."""
     if (found := run.hard) is None:
         return
-    # A run whose results say nothing of times has not noted when it began.
+    # A run without times in its results has no start time.
     when = "" if found.started is None else f", {found.started}"
-    yield Paragraph(f"Tried by `{found.command_line}`{when}. {found.sentence}. {WORDS}")
+    yield Paragraph(f"Run by `{found.command_line}`{when}. {found.sentence}. {WORDS}")
     outcomes = dict.fromkeys(outcome for counts in found.counts.values() for outcome in counts)
     rows = tuple((n, *(str(counts.get(one, 0)) for one in outcomes)) for n, counts in found.counts.items())
     yield Table(("formulation", *outcomes), rows, caption="Answers by formulation.")
@@ -40,7 +40,7 @@ def hard(run: Run) -> Iterator[Block]:
 
 
 def _panel(case: Case) -> Panel:
-    """The errors of each formulation by their outcome; what has no number stands below the least error."""
+    """The errors of each formulation by outcome; an answer without one is drawn below the least error."""
     floor = min(a.error for _, a in case.answers if a.error) / 10.0
     colours = dict(zip(dict.fromkeys(a.formulation for _, a in case.answers), cycle(COLOURS)))
     points: dict[tuple[str, str], list[tuple[float, float]]] = {}
@@ -56,8 +56,8 @@ def _panel(case: Case) -> Panel:
 
 
 def _row(case: Case) -> tuple[str | Cell, ...]:
-    verdict, told = "agrees", "as expected"
+    verdict, detail = "agrees", "as expected"
     if case.unexpected:
         wrong = (f"{u.formulation} is {u.outcome} at {u.value:g}: {u.reason}" for u in case.unexpected)
-        verdict, told = "disagrees", f"not as expected: {'; '.join(wrong)}"
-    return Cell(case.name, case.group), case.why, Cell(verdict, told, verdict)
+        verdict, detail = "disagrees", f"not as expected: {'; '.join(wrong)}"
+    return Cell(case.name, case.group), case.why, Cell(verdict, detail, verdict)

@@ -1,4 +1,4 @@
-"""The suspension in space as it moves, both models over each other, beside the angles of its wheel."""
+"""The suspension as an animated 3D drawing, both models superimposed, with plots of the wheel angles."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ from validate.html.run import FRAMES, POINTS, Drawn, Run
 
 Array = NDArray[np.float64]
 
-DIGITS = 2  # behind the point of places, mm
-# Marks of the other model on a curve: more would hide the line that they are to be seen beside.
+DIGITS = 2  # decimals of positions, mm
+# Markers of the second model on a curve: more would hide the line of the first model.
 MARKS = 25
 PLACE = ALWAYS[0].quantities[0].name
 
 
 def motions(run: Run) -> Iterator[Block]:
-    """A drawing for each scene that is drawn."""
+    """An animation of each drawn scene."""
     yield from map(Paragraph, run.not_drawn)
     yield from map(_of_scene, run.drawn)
 
@@ -78,9 +78,9 @@ def _of_scene(one: Drawn) -> Block:
 
 
 def _frames(one: Drawn, model: Solution, known: Mapping[str, Array], shown: Array) -> Any:
-    """Of each instant that is shown a place for each point, None for one that is not given.
+    """The position of each point at each shown instant, or None where the model does not give it.
 
-    Points of the chassis are given to every model: they are where the chassis is moved to.
+    Points of the chassis are data for every model; their positions follow from the motion of the chassis.
     """
     there, chassis = np.isin(one.motion.times, model.times), one.scene.mechanism.topology.chassis
     places = {name: one.motion.numbers[PLACE][name][there] for name in chassis}
@@ -103,9 +103,9 @@ def _rounded(places: Array) -> Any:
 
 def _caption(one: Drawn) -> str:
     first, second = (model.formulation for model in one.models)
-    called = f"{one.examined.title}. " if one.examined.title else ""
-    lines = f"{first} in wide blue lines, {second} in narrow orange lines; dashed: the drawing"
-    return f"{called}{lines}; {one.motion.closing.words}"
+    title = f"{one.examined.title}. " if one.examined.title else ""
+    lines = f"{first}: wide blue lines, {second}: narrow orange lines; dashed: the drawing"
+    return f"{title}{lines}; {one.motion.closing.words}"
 
 
 def _wheel_angles(one: Drawn) -> tuple[Plots | None, str]:
@@ -115,16 +115,16 @@ def _wheel_angles(one: Drawn) -> tuple[Plots | None, str]:
     if panels := tuple(drawn for pair in pairs if (drawn := _angle_panel(pair, one))):
         return Plots(f"line: {first.formulation}; dots: {second.formulation}", panels), ""
     names = dict.fromkeys(n.words for pair in pairs for n in pair if len(n.path) > 1)
-    return None, f"no curves: {first.formulation} gives no {' and no '.join(names)}"
+    return None, f"no curves, because {first.formulation} does not give {' or '.join(names)}"
 
 
 def _angle_panel(pair: tuple[Number, Number], one: Drawn) -> Panel | None:
-    """The line of the first model and the dots of the second; None where the first does not give it."""
+    """The line of the first model and the dots of the second; None if the first does not give the numbers."""
     first, second = (_given(pair, one, model) for model in one.models)
     if first is None:
         return None
     x, y = first
-    # Of a stretch of a curve the place farthest out is kept.
+    # The extreme value of each stretch of the curve is kept.
     at = fewer(np.abs(np.nan_to_num(x - np.nanmean(x))), POINTS) if np.isfinite(x).any() else range(0)
     line, dots = (plain(model.formulation) for model in one.models)
     traces = [curve(line, x[at], y[at], OURS)]
@@ -136,7 +136,7 @@ def _angle_panel(pair: tuple[Number, Number], one: Drawn) -> Panel | None:
 
 
 def _given(pair: tuple[Number, Number], one: Drawn, model: Solution) -> list[Array] | None:
-    """Two numbers by a model, if it gives both; time, inputs and the travel of the wheel are pointcoord's."""
+    """Two numbers by a model, or None if it lacks one; time, inputs and wheel travel are from pointcoord."""
     there, own = np.isin(one.motion.times, model.times), one.motion
     try:
         return [n.shown(own, own)[there] if len(n.path) == 1 else n.shown(own, model) for n in pair]

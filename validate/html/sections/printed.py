@@ -1,4 +1,4 @@
-"""What others printed, beside ours: the paper with its errata, and other programs' tables."""
+"""Printed numbers compared with computed ones: the paper with its errata, and other programs' tables."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DASHES = ("solid", "dash")
 
 
 def paper(run: Run) -> Iterator[Block]:
-    """The paper as its own equations give it, and what is wrong in it by how much."""
+    """The figures and tables of the paper, printed and computed, and its errata with their effects."""
     record = run.record
     if rows := record.paper:
         drawn = tuple(map(_figure, figures()))
@@ -32,8 +32,8 @@ def paper(run: Run) -> Iterator[Block]:
             (str(number), one.where, one.wrong, one.measures or "changes no number")
             for number, one in enumerate(ERRATA, start=1)
         )
-        caption = "What is wrong in the paper, and what it measures."
-        yield Table(("no.", "where", "what", "measures"), lines, caption=caption)
+        caption = "Errata of the paper, and how much each changes."
+        yield Table(("no.", "where", "erratum", "change"), lines, caption=caption)
     for part in printed_parts(record.examined, record.findings):
         yield Paragraph(part) if isinstance(part, str) else part
 
@@ -61,33 +61,33 @@ def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
 
 
 def published(run: Run) -> Iterator[Block]:
-    """Each number of other programs' tables, ours below it, and the verdict on each column."""
+    """Other programs' tables: each number with the computed numbers below, and a verdict for each column."""
     for one in run.published:
         table, notes = one.table, one.outcomes[0].notes
-        told = f"{table.title}, beside the car of {table.scene}. "
-        told += f"Source: {table.source}; licence: {table.licence}."
-        told += f" Note: {'; '.join(notes)}." if notes else ""
-        yield Paragraph(told + (f" Left out: {table.left_out}." if table.left_out else ""))
+        text = f"{table.title}, compared with the car of {table.scene}. "
+        text += f"Source: {table.source}; licence: {table.licence}."
+        text += f" Note: {'; '.join(notes)}." if notes else ""
+        yield Paragraph(text + (f" Left out: {table.left_out}." if table.left_out else ""))
         head = (one.over, *(f"{column.name} [{column.unit}]" for column in one.columns))
         models = " and ".join(MODELS)
-        caption = f"{table.title}: printed, below it what {models} compute; held to printed digits"
+        caption = f"{table.title}: printed, and below it as computed by {models}; tolerance: printed digits"
         yield Table(head, tuple(_rows(one)), caption=caption)
 
 
 def _rows(one: Published) -> Iterator[tuple[Cell, ...]]:
-    """A line for each printed one; the last says the verdicts."""
+    """A row for each printed row; the last row has the verdicts."""
     for i, at in enumerate(one.at):
         yield Cell(f"{at:g}"), *(_numbers(column, i) for column in one.columns)
     yield Cell("verdict"), *(_verdict(column) for column in one.columns)
 
 
 def _numbers(column: Column, row: int) -> Cell:
-    # Rounding of a nothing is none, and adding 0 turns -0 into 0.
+    # Rounding to 14 decimals turns rounding errors about zero into zero; adding 0.0 turns -0 into 0.
     printed, *ours = (round(values[row] / column.per, 14) + 0.0 for values in (column.printed, *column.ours))
     return Cell(f"{printed:.9g}", ", ".join(f"{value:.9g}" for value in ours))
 
 
 def _verdict(column: Column) -> Cell:
     share = max(row.share for row in column.rows)
-    words = f"at most {share:.2f} of what is allowed"
+    words = f"at most {share:.2f} of the tolerance"
     return Cell(column.verdict, words, "" if column.open else column.verdict)

@@ -1,5 +1,5 @@
 "use strict";
-// A table that is wider than its window says so, and where more of it is.
+// A table wider than its window shows a hint, and on which side it continues.
 (() => {
   function look(one) {
     const beyond = one.scrollWidth - one.clientWidth;

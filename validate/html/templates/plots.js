@@ -1,11 +1,11 @@
 "use strict";
 (() => {
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  // A finger that moves over a plot moves the page.
+  // With touch, a swipe over a plot scrolls the page.
   const finger = matchMedia("(pointer: coarse)");
   const PRINTED = { width: 320, height: 200 }, LETTER = 6.2, ROW = 19;
   const places = document.querySelectorAll("[data-plot]");
-  // Those near the window, and for what each was drawn last.
+  // The plots near the window; the size and colour scheme for which each plot was drawn last.
   const near = new Set(), drawn = new Map();
   let printing = false;
 
@@ -13,7 +13,7 @@
     return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   }
 
-  // Text in lines of at most so many letters.
+  // Text wrapped to lines of at most `letters` characters.
   function folded(text, letters) {
     const lines = [""];
     for (const word of text.split(" ")) {
@@ -28,8 +28,8 @@
     return data.flatMap((trace) => trace[letter] ?? []).filter((value) => typeof value === "number");
   }
 
-  // Whole decades, not more than there is room for; over less than one and a half 1, 2 and 5 of each. Plotly
-  // writes powers larger by a quarter than other numbers.
+  // Ticks at whole decades, as many as fit; for less than 1.5 decades at 1, 2 and 5 of each. The font is smaller
+  // for powers, because plotly writes them larger by a quarter.
   function decades(values) {
     const above = values.filter((value) => value > 0);
     if (!above.length) return {};
@@ -42,8 +42,8 @@
     return { tickmode: "array", tickvals, ticktext: tickvals.map(told) };
   }
 
-  // Pixels that the lines of a legend need beyond the first: it stands above its plot, in columns as wide as
-  // its longest name.
+  // Height of the legend beyond its first line, px. The legend is above its plot, in columns as wide as the
+  // longest name.
   function beyondOne(data, width) {
     const names = data.filter((trace) => trace.name && trace.showlegend !== false).map((trace) => trace.name.length);
     const columns = Math.max(1, Math.floor((width - 60) / (LETTER * Math.max(0, ...names) + 50)));
@@ -73,19 +73,19 @@
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", width, height,
       font: { color: ink, size: 11, family: getComputedStyle(place).fontFamily },
       margin: { l: 50, r: 10, t: 10, b: 40 },
-      // Plotly would give it half of the height, and hide the rest.
+        // Without maxheight plotly would limit the legend to half of the height, and hide the rest.
       legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", maxheight: beyond + 2 * ROW },
       dragmode: finger.matches ? false : "zoom",
       hoverlabel: { bgcolor: colour("--paper"), bordercolor: line, font: { color: ink } },
     });
     Plotly.react(place, data, layout, { displaylogo: false, displayModeBar: false });
-    // The place itself is the picture, and says in words what is in it.
+    // For screen readers the enclosing element is the image and has the description; its parts are hidden.
     place.querySelector(".plot-container").setAttribute("aria-hidden", "true");
-    // A place outside the page in which plotly measures letters.
+    // An element outside the visible page, in which plotly measures text.
     document.getElementById("js-plotly-tester")?.setAttribute("aria-hidden", "true");
   }
 
-  // What a plot shows, for those who do not see it.
+  // Numbers in the description of a plot for screen readers.
   function told(value) {
     return String(Number(value.toPrecision(3)));
   }
@@ -93,7 +93,7 @@
   function describe(place) {
     const { data, layout } = JSON.parse(place.dataset.plot);
     const words = data.flatMap((trace) => {
-      // The numbers of a picture of cells stand in a table.
+      // The numbers of a heat map are also in a table.
       if (trace.z) return [`Rows from ${trace.y[0]} to ${trace.y.at(-1)}, columns from ${trace.x[0]} to ${trace.x.at(-1)}`];
       const values = numbers([trace], "y");
       if (!values.length) return [];
@@ -105,8 +105,8 @@
     place.setAttribute("aria-label", `${parts.join(". ")}.`);
   }
 
-  // A plot is drawn when it is near the window, so that a long page is there at once, and again when it comes
-  // near as it is no more: in another width, by another light.
+  // A plot is drawn when it comes near the window, so that a long page opens at once. It is drawn again if its
+  // width or the colour scheme has changed.
   function refresh(place) {
     const how = `${place.clientWidth} ${dark.matches} ${printing}`;
     if (!place.clientWidth || !(printing || near.has(place)) || drawn.get(place) === how) return;
@@ -129,7 +129,7 @@
   });
   dark.addEventListener("change", () => near.forEach(refresh));
 
-  // Paper shows all of it, in ink on white.
+  // For printing everything is unfolded and drawn on white.
   let closed = [];
   addEventListener("beforeprint", () => {
     closed = [...document.querySelectorAll("details:not([open])")];

@@ -3,10 +3,10 @@
   const SVG = "http://www.w3.org/2000/svg";
   const STEP = 0.1;
   const KEYS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] };
-  // Turn about the car's upward axis, from where the eye is behind the car, then tilt toward the eye.
+  // Rotation about the car's vertical axis, from the view from behind, then tilt towards the viewer.
   const VIEWS = { Oblique: [0.6, 0.35], Rear: [0, 0], Right: [Math.PI / 2, 0], Top: [0, Math.PI / 2] };
   const WIDE = 480, NEAR = 24, ROW = 14, PAD = 40, TRIAD = 26;
-  // Where a name may stand: on the outer side of its point or the inner, and how many rows below it.
+  // Possible positions of a label: on the outer or inner side of its point, and rows below it.
   const STANDS = [0, -0.8, 0.8, -1.6, 1.6, -2.4, 2.4, -3.2, 3.2].flatMap((down) => [[1, down], [-1, down]]);
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -36,7 +36,7 @@
     let [turn, tilt] = VIEWS.Oblique;
     let timer = null, near = null, scale = 1, size = [1, 1];
 
-    // The first model is a tube and the second a thread in it, so that both are seen where they agree.
+    // The first model has wide lines and the second narrow ones on top, so that both are visible where they agree.
     const ways = [["tube", "core"], ["thread"]];
     const sets = motion.models.map((model, i) => ({
       name: model.name, strokes: ways[i] ?? ["thread"], places: (frame) => model.frames[frame],
@@ -47,7 +47,7 @@
       one.group = add(svg, "g", {});
       one.lines = one.strokes.map((stroke) => motion.lines.map(() => add(one.group, "line", { class: stroke })));
     }
-    // A model need not give every point: a joint is where the first that has it puts it, else as drawn.
+    // A model may not give every point: a joint is placed by the first model that gives it, or else as drawn.
     const places = (frame) => motion.drawn.map((place, i) =>
       motion.models.map((model) => model.frames[frame][i]).find((given) => given) ?? place);
     const joints = motion.points.map((name, i) => {
@@ -91,8 +91,7 @@
     const named = choice("names", (figure.clientWidth || innerWidth) >= WIDE, () => draw());
     named.parentElement.className = "names";
 
-    // The middle of all points of all instants, and how far out the farthest lies: a ball that is in the window
-    // from every side.
+    // Centre and radius of a sphere around all points at all instants: it fits the window in every view.
     const all = [motion.drawn, ...motion.models.flatMap((model) => model.frames)].flat().filter((place) => place);
     const low = [0, 1, 2].map((i) => all.reduce((m, p) => Math.min(m, p[i]), Infinity));
     const high = [0, 1, 2].map((i) => all.reduce((m, p) => Math.max(m, p[i]), -Infinity));
@@ -110,8 +109,8 @@
       return flat(place.map((value, i) => value - middle[i])).map((value) => scale * value);
     }
 
-    // A name stands where it covers no joint and no other name, if it can no line either, and stays there as
-    // long as that is so. Where there is no room for it only the pointer brings it.
+    // A label is placed where it covers no joint and no other label, and no line if possible. It stays there as
+    // long as the place is free. If there is no free place, the label is shown only under the pointer.
     function drawNames(at, corner) {
       const taken = [...at.map((place) => around(place, 4)), around(corner, 1.4 * TRIAD)];
       const lines = motion.lines.flatMap(([a, b]) => {

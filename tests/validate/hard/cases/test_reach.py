@@ -41,8 +41,8 @@ def broken(**changes: Any) -> Callable[[FormulationError], FormulationError]:
     ("change", "says"),
     [
         (broken(reached=lambda r: r | {"rack": r["rack"] * (1.0 - 1e-8)}), "stops at rack"),
-        (broken(reduce=lambda _: "arm_angle"), "'arm_angle' is to be reduced"),
-        (broken(limits=lambda limits: limits[3:]), "not what lies in line"),
+        (broken(reduce=lambda _: "arm_angle"), "advises to reduce 'arm_angle'"),
+        (broken(limits=lambda limits: limits[3:]), "not those that lie in line"),
         (lambda refusal: FormulationError(refusal.formulation, refusal.reason), "is not kept"),
         (
             lambda refusal: FormulationError(refusal.formulation, ValueError("no way on")),
