@@ -18,7 +18,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from plain_mechanisms import solve_car
+from changed_scenes import content_of
+from mechanism_drawings import CARS
 
 import absolute.backend
 import pointcoord
@@ -48,8 +49,8 @@ IN_LINE = {name: np.array([1.0, 2.0, 3.0]) * i for i, name in enumerate("abc")}
 
 
 def changed(**sections: Mapping[str, Any]) -> pointcoord.Scene:
-    """The built-in bounce with other inputs, times or points."""
-    content = BOUNCE.model_dump(exclude_none=True)
+    """The built-in bounce with other inputs and times."""
+    content = content_of("bounce")
     for section, changes in sections.items():
         content[section].update(changes)
     return pointcoord.Scene.from_mapping(content, "mine")
@@ -219,7 +220,7 @@ def test_an_error_is_one_line_that_says_what_to_try_and_comes_back_from_another_
 def test_a_way_of_the_reference_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(validate.reference.route, "MOST_STEPS", 0)
     with pytest.raises(NoReferenceError, match=r"is given up after.*nothing is said of the pose") as caught:
-        solve_car(TABLE, {"arm_angle": (1.1, 0, 0)})
+        CARS["collinear strut"].solve({"arm_angle": (1.1, 0, 0)})
     assert caught.value.value == 0
 
 

@@ -83,20 +83,3 @@ def test_every_name_of_pointcoord_is_what_it_says_whatever_was_imported_first() 
         "assert not hasattr(pointcoord, 'simulates')\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT)
-
-
-def test_pointcoord_works_without_pinocchio() -> None:
-    program = (
-        "import sys; sys.modules['pinocchio'] = None; sys.modules['absolute'] = None\n"
-        "from pointcoord import Scene, simulate\n"
-        "from validate.cli import main\n"
-        "print(simulate(Scene.load('steer')).position['wheel_centre'].shape)\n"
-        "raise SystemExit(main(['validate', 'steer', '--second', 'absolute']))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=False, cwd=ROOT
-    )
-    assert done.stdout.startswith("(81, 3)")
-    assert done.returncode == 2
-    assert "pip install 'pointcoord[validate]'" in done.stderr
-    assert len(done.stderr.splitlines()) == 1

@@ -2,14 +2,15 @@
 
     pytest tests/browser/page.py -n 0
 
-needs Chromium in the path of programs. The report of all built-in scenes is made and opened once; every test
-looks at the same page and leaves it as it found it. After each test the page must not have complained of
-anything, nor have asked for anything but itself.
+needs Chromium in the path of programs. The report of all built-in scenes is made, if REPORT is no folder that
+holds it, and opened once; every test looks at the same page and leaves it as it found it. After each test the
+page must not have complained of anything, nor have asked for anything but itself.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 from collections.abc import Iterator
@@ -105,8 +106,10 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="session")
 def session(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Opened:
-    folder = tmp_path_factory.mktemp("report")
-    assert main(["report", "-q", str(folder)]) == 0
+    made = os.environ.get("REPORT")
+    folder = Path(made) if made else tmp_path_factory.mktemp("report")
+    if not made:
+        assert main(["report", "-q", str(folder)]) == 0
     return opened(browser, folder, viewport=WINDOW, color_scheme="light")
 
 

@@ -7,9 +7,11 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+from changed_scenes import scene_with
 from mpmath import cos, mpf, sin, sqrt, workdps
 from three_mechanics import DIGITS, assert_exact, by_each, scene_of, solved_by
 
+from validate.comparison.compare import compare
 from validate.reference.vectors import Vector, cross, dot, minus, plus, times
 
 # A right double wishbone with a pushrod and a rocker. The contact point of its wheel, with the spin axis
@@ -253,3 +255,12 @@ def test_a_strut_holds_the_knuckle_along_its_axis_by_the_damper_and_across_it_by
             ("joint_force", "strut_top"): vector(side),
         }
     assert_forces(who, mechanism, exact, wheel_travel=0.0, rack=0.0)
+
+
+def test_forces_of_one_pose_in_which_nothing_moves_are_compared() -> None:
+    still = {"inputs": {name: {"constant": 0.0} for name in ("wheel_travel", "rack")}, "effects": ["loads"]}
+    time = {"start": 0.0, "stop": 0.0, "samples": 1}
+    outcome = compare(scene_with("pushrod", {"loads": LOAD}, **still, time=time), "pointcoord", "absolute")
+    verdicts = [row.verdict for row in outcome.rows if row.unit == "N"]
+    assert len(verdicts) >= 10
+    assert set(verdicts) == {"agrees"}

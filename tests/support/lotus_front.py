@@ -1,11 +1,10 @@
 """A front double wishbone and what Lotus Suspension Analysis prints of it.
 
 Source: printed report of Lotus Suspension Analysis (SHARK) v4.03, in the source distribution of the Python
-    package
-voila-sus 0.2.0 (MIT licence), tests/fixtures/front_type1_report.txt. It is the right wheel: x rearward, y
-outboard, z up; mm, deg. The rules of the tables were found by reproducing them: angles are projected; bump is
-the vertical travel of the contact point, the lowest point of a thin disc about the wheel centre; in the
-steering table the rack moves the tie rod's inner end along y, and the height of the contact point is held.
+package voila-sus 0.2.0 (MIT licence), tests/fixtures/front_type1_report.txt; the car is `double-wishbone`,
+mm, deg. The rules of the tables were found by reproducing them: angles are projected; bump is the vertical
+travel of the contact point, the lowest point of a thin disc about the wheel centre; in the steering table
+the rack moves the tie rod's inner end along y, and the height of the contact point is held.
 """
 
 from __future__ import annotations
@@ -15,18 +14,6 @@ from pathlib import Path
 
 from validate import published
 
-POINTS = {
-    "lower_arm_front": (-110, 257, 69),
-    "lower_arm_rear": (90, 257, 78),
-    "upper_arm_front": (-91, 388, 255),
-    "upper_arm_rear": (109, 388, 255),
-    "lower_ball_joint": (-10, 673, 95),
-    "upper_ball_joint": (9, 646, 315),
-    "tie_rod_outer": (-120, 650, 225),
-    "tie_rod_inner": (-10, 178, 154),
-    "wheel_centre": (0, 718, 210),
-    "wheel_axis_inner": (0, 658, 210),
-}
 ROLLING_RADIUS = 270
 
 

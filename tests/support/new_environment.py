@@ -11,6 +11,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 
+def settings() -> dict[str, str]:
+    """What a program of it is told: nothing of this Python's and pytest's but where modules are compiled."""
+    # Under CI pytest tells each error twice, the second time in its summary.
+    dropped, kept = ("PYTHON", "PYTEST", "HYPOTHESIS", "CI", "BUILD_NUMBER"), ("PYTHONPYCACHEPREFIX",)
+    return {k: v for k, v in os.environ.items() if k in kept or not k.startswith(dropped)}
+
+
 class Environment:
     """A new virtual environment that also sees the packages of the running Python."""
 
@@ -46,12 +53,9 @@ class Environment:
         (folder / "RECORD").write_text(record, encoding="utf-8")
 
     def run(self, *words: str, cwd: Path) -> "subprocess.CompletedProcess[str]":
-        """Run its Python with nothing of the running one's settings but the numbers of threads."""
-        # Under CI pytest tells each error twice, the second time in its summary.
-        dropped = ("PYTHON", "PYTEST", "HYPOTHESIS", "CI", "BUILD_NUMBER")
-        kept = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
+        """Run its Python."""
         return subprocess.run(
-            [str(self.python), *words], capture_output=True, text=True, check=False, cwd=cwd, env=kept
+            [str(self.python), *words], capture_output=True, text=True, check=False, cwd=cwd, env=settings()
         )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from junit_schema import checked
 from program import PAST_ITS_END, short_scene
 
@@ -85,13 +86,10 @@ def test_a_number_has_moved_beyond_twice_its_claim_and_not_below(
 
 
 def test_another_car_or_motion_under_the_name_is_told_and_not_compared(tmp_path: Path) -> None:
-    points = {**SCENE.mechanism.points, "tie_rod_outer": (560.0, -300.0, 60.001)}
-    part = SCENE.mechanism.model_copy(update={"points": points})
-    content = SCENE.model_dump(exclude_none=True)
-    content["time"]["samples"] += 1
+    moved = {"points": {"tie_rod_outer": (560.0, -300.0, 60.001)}}
     for scene, standing, words in (
-        (SCENE.model_copy(update={"mechanism": part}), "another car", "tie_rod_outer"),
-        (Scene.from_mapping(content, "steer"), "another motion", "another time"),
+        (scene_with("steer", moved), "another car", "tie_rod_outer"),
+        (scene_with("steer", samples=SCENE.time.samples + 1), "another motion", "another time"),
     ):
         since = saved(tmp_path).since("steer", scene, [OUTCOME])
         assert (since.standing, since.moves, since.status) == (standing, (), ExitStatus.NO_VERDICT)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from new_environment import Environment
+from new_environment import Environment, settings
 
 import pointcoord
 from validate import cli
@@ -72,7 +72,6 @@ def test_the_workflow_decides_by_what_it_runs(tmp_path: Path) -> None:
     built_in = Path(pointcoord.__file__).parent / "scenes" / "double-wishbone.toml"
     text = built_in.read_text(encoding="utf-8").replace("samples = 101", "samples = 5")
     (project / "scenes" / "front.toml").write_text(text, encoding="utf-8")
-    kept = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")} | JOB["env"]
     path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
     for solver, status in (("solve", 0), ("wrong", 1)):
         summary = tmp_path / f"{solver}.md"
@@ -83,7 +82,7 @@ def test_the_workflow_decides_by_what_it_runs(tmp_path: Path) -> None:
             text=True,
             check=False,
             cwd=project,
-            env=kept | {"PATH": path, "GITHUB_STEP_SUMMARY": str(summary)},
+            env=settings() | JOB["env"] | {"PATH": path, "GITHUB_STEP_SUMMARY": str(summary)},
         )
         assert done.returncode == status, done.stdout + done.stderr
         assert ("disagrees" in summary.read_text(encoding="utf-8")) == bool(status)

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -178,11 +179,15 @@ def test_signals_are_handled_before_typing_or_any_library_is_imported() -> None:
     assert not {"typing", "numpy"} & set(done.stdout.split())
 
 
-def with_fake(folder: Path, *words: str, program: str = "pointcoord") -> subprocess.CompletedProcess[str]:
-    """Run the program with a folder first on the path."""
-    env = ENVIRONMENT | {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"}
-    command = [sys.executable, "-m", program, *words]
-    return subprocess.run(command, capture_output=True, text=True, env=env, cwd=folder, check=False)
+GONE = "raise ModuleNotFoundError(name=__name__)\n"
+
+
+def with_files(folder: Path, files: Mapping[str, str], *words: str) -> subprocess.CompletedProcess[str]:
+    """Run the program with files in a folder that is first on the path."""
+    for name, text in files.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+    return run(*words, env=ENVIRONMENT | {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"}, cwd=folder)
 
 
 def test_a_validate_of_another_distribution_is_told_by_name(tmp_path: Path) -> None:
@@ -192,62 +197,54 @@ def test_a_validate_of_another_distribution_is_told_by_name(tmp_path: Path) -> N
         "configthing-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: configthing\n",
         "configthing-1.0.dist-info/RECORD": f"{file},,\n",
     }
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
-    done = with_fake(tmp_path, "scenes")
+    done = with_files(tmp_path, files, "scenes")
     assert done.returncode == 2
     line = only_line(done.stderr)
     assert "'configthing'" in line
     assert "pip uninstall configthing, then pip install --force-reinstall --no-deps pointcoord" in line
 
 
+NEEDS = "'absolute' needs the package 'pinocchio'"
+STANDS_IN = f"absolute is not available, {{0}} is used instead: {NEEDS}"
+
+
 @pytest.mark.parametrize(
-    ("words", "program"),
+    ("hidden", "words", "status", "said"),
     [
-        ("sweep steer --vary strut_top.z=0,1 --instants 2", "pointcoord"),
-        ("table steer", "validate"),  # the package itself is the program
+        ("pinocchio", "validate steer five-link", 0, [STANDS_IN.format("mujoco"), "2 of 2 scenes agree"]),
+        (
+            "pinocchio mujoco exudyn",
+            "validate steer five-link",
+            0,
+            [
+                STANDS_IN.format("reference"),
+                "pointcoord and reference; pointcoord-newton and reference: 2 scenes",
+            ],
+        ),
+        ("pinocchio", "validate steer --second absolute", 2, [NEEDS, "pip install 'pointcoord[validate]'"]),
+        # Hard cases are tried by what is there.
+        (
+            "pinocchio",
+            "hard arm-highest-held",
+            0,
+            [f"absolute is left out: {NEEDS}", "relative is left out: ", "All as expected"],
+        ),
     ],
 )
-def test_solving_needs_no_extra(words: str, program: str, tmp_path: Path) -> None:
-    for name in ("mpmath", "flint", "pinocchio", "threadpoolctl", "pandas", "pyarrow", "matplotlib"):
-        (tmp_path / f"{name}.py").write_text(f"raise ModuleNotFoundError(name={name!r})\n")
-    done = with_fake(tmp_path, *words.split(), program=program)
-    assert (done.returncode, complaints(done.stderr)) == (0, [])
-
-
-@pytest.mark.parametrize(
-    ("hidden", "second"),
-    [(("pinocchio",), "mujoco"), (("pinocchio", "mujoco", "exudyn"), "reference")],
-)
-def test_without_pinocchio_what_is_there_is_the_second_model_and_that_is_said(
-    hidden: tuple[str, ...], second: str, tmp_path: Path
+def test_without_a_library_what_is_there_answers_and_that_is_said(
+    hidden: str, words: str, status: int, said: list[str], tmp_path: Path
 ) -> None:
-    for name in hidden:
-        (tmp_path / f"{name}.py").write_text(f"raise ModuleNotFoundError(name={name!r})\n")
-    done = with_fake(tmp_path, "validate", "steer", "five-link")
-    assert done.returncode == 0, done.stderr
-    assert f"pointcoord and {second}; pointcoord-newton and {second}: 2 scenes" in done.stdout
-    assert "2 of 2 scenes agree" in done.stdout
-    why = "'absolute' needs the package 'pinocchio'"
-    assert f"absolute is not available, {second} is used instead: {why}" in done.stderr
-
-
-def test_without_pinocchio_hard_cases_are_tried_by_what_is_there(tmp_path: Path) -> None:
-    (tmp_path / "pinocchio.py").write_text("raise ModuleNotFoundError(name='pinocchio')\n")
-    done = with_fake(tmp_path, "hard", "arm-highest-held")
-    assert done.returncode == 0, done.stderr
-    assert "absolute is left out: 'absolute' needs the package 'pinocchio'" in done.stderr
-    assert "relative is left out: " in done.stderr
-    assert "All as expected" in done.stdout
+    done = with_files(tmp_path, {f"{name}.py": GONE for name in hidden.split()}, *words.split())
+    assert done.returncode == status, done.stderr
+    assert [part for part in said if part not in done.stdout + done.stderr] == []
 
 
 def test_where_pinocchio_lacks_a_library_of_the_system_that_is_asked_for(tmp_path: Path) -> None:
     lacking = "libgomp.so.1: cannot open shared object file"
-    (tmp_path / "pinocchio.py").write_text(f"raise ImportError({lacking!r})\n")
-    said = with_fake(tmp_path, "validate", "steer", "--second", "absolute").stderr
-    assert f"is installed but does not load ({lacking})" in said
-    assert "install the system package of the library" in said
+    files = {"pinocchio.py": f"raise ImportError({lacking!r})\n"}
+    said = with_files(tmp_path, files, "validate", "steer", "--second", "absolute").stderr
+    assert f"there and does not load ({lacking})" in said
+    assert "install the system's package" in said
     assert "pip install" not in said
 
 

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 
 from pointcoord import Scene, simulate
 from pointcoord.simulation import effort
@@ -56,10 +57,9 @@ def test_the_tolerance_that_is_planned_is_the_asked_one_or_the_finest_and_the_mo
 def test_a_long_table_is_planned_by_a_map_and_says_why(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    content = Scene.load("steer").model_dump(mode="json", exclude_none=True)
     times = np.linspace(0.0, 0.4, 2100)
-    content["inputs"]["rack"] = {"table": {"times": times.tolist(), "values": (9.0 * np.sin(times)).tolist()}}
-    scene = Scene.from_mapping(content)
+    table = {"times": times.tolist(), "values": (9.0 * np.sin(times)).tolist()}
+    scene = scene_with("steer", laws={"rack": {"table": table}})
     planned, motion = effort(scene), simulate(scene)
     assert planned.method == motion.method == "map"
     assert planned.why in motion.notes

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet
 import pytest
+from changed_scenes import scene_with
 
 from pointcoord import Scene, simulate, sweep
 from pointcoord.results.named_columns import columns
@@ -14,6 +15,7 @@ from validate.cli import main
 from validate.output.columns import rows_of_sweep, write_table
 
 SCENE = "double-wishbone"
+POINTS = Scene.load(SCENE).mechanism.points
 VARY = ("--vary", "lower_ball_joint.z=-10,0,150", "--vary", "upper_ball_joint.y=0:1:2")
 HEIGHTS, SIDES = (-10.0, 0.0, 150.0), (0.0, 1.0)
 INSTANTS = ("--instants", "5")
@@ -21,15 +23,10 @@ INSTANTS = ("--instants", "5")
 
 def design(number: int) -> Scene:
     """The designs of `VARY` by hand."""
-    scene = Scene.load(SCENE)
-    points = dict(scene.mechanism.points)
-    x, y, z = points["lower_ball_joint"]
-    points["lower_ball_joint"] = (x, y, z + HEIGHTS[number // 2])
-    x, y, z = points["upper_ball_joint"]
-    points["upper_ball_joint"] = (x, y + SIDES[number % 2], z)
-    time = scene.time.model_copy(update={"samples": 5})
-    part = scene.mechanism.model_copy(update={"points": points})
-    return scene.model_copy(update={"mechanism": part, "time": time})
+    (x, y, z), (u, v, w) = (POINTS[name] for name in ("lower_ball_joint", "upper_ball_joint"))
+    lower, upper = (x, y, z + HEIGHTS[number // 2]), (u, v + SIDES[number % 2], w)
+    points = {"lower_ball_joint": lower, "upper_ball_joint": upper}
+    return scene_with(SCENE, {"points": points}, samples=5)
 
 
 def test_every_kind_of_table_holds_the_designs_one_by_one(
@@ -81,7 +78,7 @@ def test_the_summary_says_what_failed_and_how_far_numbers_range(capsys: pytest.C
 
 
 def test_offsets_and_a_table_of_designs_mean_the_same(tmp_path: Path) -> None:
-    z = Scene.load(SCENE).mechanism.points["lower_ball_joint"][2]
+    z = POINTS["lower_ball_joint"][2]
     (tmp_path / "d.csv").write_text(f"lower_ball_joint.z [mm]\n{z - 2!r}\n{z!r}\n{z + 2!r}\n")
     ways = [["--vary", f"lower_ball_joint.z={v}"] for v in ("-2:2:3", "-2,0,2")]
     found = []
@@ -95,9 +92,7 @@ def test_offsets_and_a_table_of_designs_mean_the_same(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", [".csv", ".parquet"])
 def test_a_table_is_written_in_the_memory_of_a_block(ending: str, tmp_path: Path) -> None:
-    scene = Scene.load(SCENE)
-    scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 101})})
-    found = sweep(scene, offsets={"lower_ball_joint.z": np.linspace(-1.0, 1.0, 8)})
+    found = sweep(scene_with(SCENE, samples=101), offsets={"lower_ball_joint.z": np.linspace(-1.0, 1.0, 8)})
     write_table(str(tmp_path / f"few{ending}"), rows_of_sweep([found]))  # what is made once stays
     copies = 16
 

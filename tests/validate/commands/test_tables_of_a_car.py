@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 
 from pointcoord import Scene, sensitivity, simulate
 from validate.cli import main
@@ -89,8 +90,8 @@ def test_a_rod_that_is_called_as_an_angle_is_does_not_stand_for_it(
     toe = motion.at(np.linspace(motion.times[0], motion.times[-1], 5)).wheel["toe"]
     found = [float(row["toe [deg]"]) for row in rows_of(path)]
     np.testing.assert_allclose(found, np.degrees(toe), rtol=0, atol=1e-12)
-    part = scene.mechanism.model_copy(update={"loads": {"force": (0.0, 0.0, 3000.0)}, "wheel_radius": 300.0})
-    loaded = scene.model_copy(update={"mechanism": part, "effects": ("toe", "loads")})
+    part = {"loads": {"force": (0.0, 0.0, 3000.0)}, "wheel_radius": 300.0}
+    loaded = scene_with("five-link", part, effects=("toe", "loads"))
     both = sensitivity(loaded, ["toe", "rod_force.toe"], ["toe_inner.z"])
     alone = sensitivity(scene, ["toe"], ["toe_inner.z"])
     np.testing.assert_allclose(both.derivatives["toe"], alone.derivatives["toe"], rtol=0, atol=1e-12)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 
 from pointcoord import PointcoordError, Scene
 from validate.cost.errors import Truth, errors_of, truth_of
@@ -82,10 +83,8 @@ def test_a_way_gives_what_a_scene_asks_for_and_no_rates_beside(who: str, effects
 
 def steered(speed: float) -> Scene:
     """The paper's car, its rack going at mm/s from the middle."""
-    content = Scene.load("steer").model_dump(exclude_none=True)
-    content["inputs"]["rack"] = {"polynomial": [0.0, speed]}
-    content["time"] = {"start": 0.0, "stop": 2.0, "samples": 81}
-    return Scene.from_mapping(content)
+    time = {"start": 0.0, "stop": 2.0, "samples": 81}
+    return scene_with("steer", laws={"rack": {"polynomial": [0.0, speed]}}, time=time)
 
 
 @pytest.mark.parametrize("who", EXACT)

@@ -7,6 +7,7 @@ from itertools import cycle
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from numpy.typing import NDArray
 from planted_faults import late, misread
 from scipy.spatial.transform import Rotation
@@ -36,9 +37,7 @@ EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "
 
 @cache
 def solved(name: str, samples: int = 12) -> tuple[Scene, Solution]:
-    scene = Scene.load(name)
-    time = scene.time.model_copy(update={"samples": samples})
-    scene = scene.model_copy(update={"effects": EFFECTS, "time": time})
+    scene = scene_with(name, effects=EFFECTS, samples=samples)
     return scene, formulation("pointcoord").solve(scene)
 
 
@@ -94,6 +93,7 @@ FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
     (lambda h: each(h, ("position",), lambda v: v + np.array([0.0, 0.0, 25.0])), "offset", "(0, 0, 25) mm"),
     (lambda h: angle(h, "camber", lambda v: v + 0.013), "offset", "constant offset of 0.013 rad"),
     (lambda h: each(h, STATES, lambda v: v[:, [1, 0, 2]]), "axes", "our y, x, z"),
+    (lambda h: each(h, (*STATES, *TURNS), lambda v: v[:, [1, 2, 0]]), "axes", "our y, z, x"),
     (mirrored, "mirror", "left for right"),
     (lambda h: angle(h, "camber", np.degrees), "unit", "degrees for radians"),
     (lambda h: angle(h, "toe", lambda v: 60.0 * v), "unit", "toe: minutes of arc taken for degrees"),
@@ -119,6 +119,7 @@ FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
         "toe: one sample late, the last one first, and the other sign",
     ),
     (lambda h: each(h, STATES, lambda v: v * [1.0, -1.0, 1.0] / 1e3), "sign and unit", "of y, and m for mm"),
+    (lambda h: angle(h, "camber", lambda v: -np.degrees(v)), "sign and unit", "and degrees for radians"),
     (
         lambda h: angle(h, "camber", lambda v: np.degrees(v) - 1.25),
         "unit and offset",
@@ -301,11 +302,8 @@ def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() 
 
 
 def test_rates_by_an_input_instead_of_time_are_named_with_it() -> None:
-    content = Scene.load("wheel-travel").model_dump(exclude_none=True)
-    content |= {"effects": ("velocity", "acceleration"), "inputs": {**content["inputs"]}}
-    content["inputs"]["wheel_travel"] = {"polynomial": (-20.0, 30.0, 10.0)}
-    content["time"]["samples"] = 11
-    scene = Scene.from_mapping(content)
+    laws = {"wheel_travel": {"polynomial": (-20.0, 30.0, 10.0)}}
+    scene = scene_with("wheel-travel", effects=("velocity", "acceleration"), laws=laws, samples=11)
     held = formulation("pointcoord").solve(scene)
     rate = (30.0 + 20.0 * held.times)[:, None]
     velocity, acceleration = held.numbers["velocity"], held.numbers["acceleration"]

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from numpy.typing import NDArray
 from planted_faults import late, misread
 
@@ -12,16 +13,15 @@ from validate import check
 
 Array = NDArray[np.float64]
 Change = Callable[[Array], Array]
+SECOND = {"start": 0.0, "stop": 1.0}
 
 
 def over_travel(name: str, *effects: str) -> Scene:
     """A built-in car over its wheel's travel."""
-    content = Scene.load(name).model_dump(exclude_none=True)
-    rest = {"rack": {"constant": 0.0}} if "rack" in content["inputs"] else {}
-    content |= {"effects": effects, "inputs": {"wheel_travel": {"sweep": (-45.0, 45.0)}} | rest}
+    rest = {"rack": {"constant": 0.0}} if "rack" in Scene.load(name).inputs else {}
+    laws = {"wheel_travel": {"sweep": (-45.0, 45.0)}} | rest
     # 19 instants: those of the first 18 are counted anew with other roundings.
-    content["time"] = {"start": 0.0, "stop": 1.0, "samples": 19}
-    return Scene.from_mapping(content, name)
+    return scene_with(name, effects=effects, inputs=laws, time=SECOND | {"samples": 19})
 
 
 def told(scene: Scene, given: Mapping[str, Mapping[str, Array]], accuracy: float = 1e-5) -> list[str]:
@@ -82,9 +82,7 @@ def test_a_point_that_moves_nothing_is_misread_all_the_same(amount: float, accur
 
 
 def test_angles_of_an_axle_by_another_definition_are_said_to_be() -> None:
-    content = Scene.load("axle-opposed").model_dump(exclude_none=True)
-    content["time"]["samples"] = 9
-    scene = Scene.from_mapping(content | {"effects": ("wheel_angles", "caster")})
+    scene = scene_with("axle-opposed", effects=("wheel_angles", "caster"), samples=9)
     wheel = simulate(scene).numbers["wheel"]
     (only,) = told(scene, {"wheel": {name: np.tan(angles) for name, angles in wheel.items()}})
     # Camber is so little that its slope is the angle.
@@ -92,10 +90,9 @@ def test_angles_of_an_axle_by_another_definition_are_said_to_be() -> None:
 
 
 def steered() -> Scene:
-    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
-    content["inputs"] = {"wheel_travel": {"constant": 0.0}, "rack": {"sweep": (-20.0, 20.0)}}
-    content |= {"time": {"start": 0.0, "stop": 1.0, "samples": 9}, "effects": ("wheel_angles", "toe")}
-    return Scene.from_mapping(content)
+    laws = {"wheel_travel": {"constant": 0.0}, "rack": {"sweep": (-20.0, 20.0)}}
+    effects = ("wheel_angles", "toe")
+    return scene_with("double-wishbone", effects=effects, inputs=laws, time=SECOND | {"samples": 9})
 
 
 def in_bump() -> Scene:
@@ -140,10 +137,7 @@ def test_what_all_angles_have_hides_no_misread_hardpoint(
 
 def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> None:
     """Two hardpoints would do as well, were it not for angles that agree."""
-    content = Scene.load("axle-opposed").model_dump(exclude_none=True)
-    content |= {"effects": ("camber", "toe")}
-    content["time"]["samples"] = 5
-    scene = Scene.from_mapping(content)
+    scene = scene_with("axle-opposed", effects=("camber", "toe"), samples=5)
     wheel = misread(scene, -1.0, "right.lower_arm_front.z")["wheel"]
     said = told(scene, {"wheel": {**wheel, "left.camber": wheel["left.camber"] - 0.01}})
     assert any("right.lower_arm_front.z drawn 1 mm too low" in one for one in said)

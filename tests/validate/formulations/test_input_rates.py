@@ -7,10 +7,10 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pointcoord import Scene
 from pointcoord.scene.input_part import InputPart, SinePart
 from validate.formulations.input_rates import rates
 
@@ -129,16 +129,9 @@ def test_a_table_is_the_not_a_knot_spline_of_exact_arithmetic(seed: int) -> None
     times = np.cumsum(rng.uniform(0.05, 0.5, count))
     values = rng.uniform(-30.0, 30.0, count)
     cubics = exact_not_a_knot([Fraction(t) for t in times], [Fraction(v) for v in values])
-    scene = Scene.from_mapping(
-        Scene.load("off-axis-strut").model_dump(exclude_none=True)
-        | {
-            "inputs": {
-                "arm_angle": {"constant": 1.63},
-                "rack": {"table": {"times": times.tolist(), "values": values.tolist()}},
-            },
-            "time": {"start": float(times[0]), "stop": float(times[-1]), "samples": 23},
-        }
-    )
+    laws = {"rack": {"table": {"times": times.tolist(), "values": values.tolist()}}}
+    time = {"start": float(times[0]), "stop": float(times[-1]), "samples": 23}
+    scene = scene_with("off-axis-strut", laws=laws, time=time)
     instants = scene.instants
     found = rates(scene.inputs["rack"], instants)
     series = scene.functions["rack"].series(instants, 2) * np.array([1.0, 1.0, 2.0])

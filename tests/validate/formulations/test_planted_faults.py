@@ -8,6 +8,7 @@ from itertools import cycle
 import numpy as np
 import pytest
 from built_in_cars import STEERED_CARS
+from changed_scenes import scene_with
 
 import absolute
 import absolute.rows
@@ -139,15 +140,10 @@ FAULTS = {
 }
 
 
-def heaving(scene: Scene) -> Scene:
-    """The scene on a chassis that moves up and down, so that it shows every fault."""
-    content = scene.model_dump(mode="json", exclude_none=True)
-    content["inputs"]["heave"] = {"sine": {"amplitude": 20.0, "angular_frequency": 5.0}}
-    return Scene.from_mapping(content)
-
-
 OWN_SCENES = {name: Scene.load(name) for name in PAPER_SCENES}
-OTHER_CARS = {name: heaving(Scene.load(name)) for name in STEERED_CARS if name not in PAPER_SCENES}
+# On a chassis that moves up and down, so that they show every fault.
+HEAVE = {"heave": {"sine": {"amplitude": 20.0, "angular_frequency": 5.0}}}
+OTHER_CARS = {name: scene_with(name, laws=HEAVE) for name in STEERED_CARS if name not in PAPER_SCENES}
 
 
 def shown(name: str, car: str) -> Scene:
@@ -195,8 +191,7 @@ def _scaled(quantity: str, arrays: Mapping[str, np.ndarray]) -> dict[str, np.nda
 @pytest.mark.parametrize(("name", "other"), [("off-axis-strut", "absolute"), ("double-wishbone", "relative")])
 def test_rates_a_little_off_are_seen_and_so_is_one_number_at_one_instant(name: str, other: str) -> None:
     """Of every point, body and angle: off by a ten millionth of the largest number of its quantity."""
-    scene = Scene.load(name)
-    scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 11})})
+    scene = scene_with(name, samples=11)
     if other != "relative":
         scene = scene.model_copy(update={"effects": (*scene.effects, *STATES[3 : STATES.index(LAST) + 1])})
     ours, theirs = (formulation(who).solve(scene) for who in ("pointcoord", other))

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 
 from pointcoord import Motion, NotFollowed, Scene, SingularConfiguration, simulate
 from pointcoord.method import Method
@@ -23,13 +24,9 @@ def rack_to_its_end(short: float, tolerance: float = 1e-9) -> Scene:
     """From the middle to a share `short` before the end, where the tie rod locks."""
     last = end(STRUT, {"arm_angle": math.pi / 2, "rack": 0.0}, "rack", ahead=True)
     assert last is not None
-    content = Scene.load("steer").model_dump(mode="json", exclude_none=True)
-    content["inputs"] = {
-        "arm_angle": {"constant": math.pi / 2},
-        "rack": {"polynomial": [0.0, last.value * (1.0 - short)]},
-    }
-    content["time"] = {"start": 0.0, "stop": 1.0, "samples": 2}
-    return Scene.from_mapping({**content, "tolerance": tolerance})
+    laws = {"arm_angle": {"constant": math.pi / 2}, "rack": {"sweep": [0.0, last.value * (1.0 - short)]}}
+    time = {"start": 0.0, "stop": 1.0, "samples": 2}
+    return scene_with("steer", inputs=laws, time=time, tolerance=tolerance)
 
 
 @pytest.mark.parametrize("part", ["bound", "carried_bound"])
@@ -51,7 +48,7 @@ def test_a_pose_that_nothing_is_proven_of_is_no_answer(monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("tolerance", [1e-300, 1.0])
 def test_a_series_claims_what_it_leaves_out_and_a_coarse_one_is_no_test(tolerance: float) -> None:
-    scene = Scene.load("steer").model_copy(update={"tolerance": tolerance})
+    scene = scene_with("steer", tolerance=tolerance)
     series, newton = (formulation(name).solve(scene) for name in ("pointcoord-as-asked", "pointcoord-newton"))
     outcome = compare_solutions(scene, series, newton, "steer")
     assert not outcome.disagreements

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 
 from pointcoord import Scene, SceneError
 from validate.formulations.protocol import FormulationError, Solution
@@ -25,11 +26,8 @@ MODELS = ("pointcoord", "absolute", "relative")
 
 def scene(name: str, points: dict[str, Any] | None = None, arm: Any = None) -> Scene:
     """A built-in scene with other points, or with its arm driven otherwise."""
-    content = Scene.load(name).model_dump(exclude_none=True)
-    content["mechanism"]["points"].update(points or {})
-    if arm is not None:
-        content["inputs"] = {"arm_angle": arm, "rack": {"constant": 0.0}}
-    return Scene.from_mapping(content)
+    laws = {} if arm is None else {"arm_angle": arm, "rack": {"constant": 0.0}}
+    return scene_with(name, {"points": points or {}}, laws=laws)
 
 
 def refused(model: str, wrong: Scene) -> tuple[str, Refusal]:
@@ -68,10 +66,8 @@ def test_all_models_refuse_a_scene_for_the_same_reason(wrong: Scene, reason: str
 
 def locking(name: str) -> Scene:
     """A built-in scene whose arm leaves its range before the last instant."""
-    scene = Scene.load(name).model_dump(exclude_none=True)
-    start = scene["inputs"]["arm_angle"]["sine"]["offset"]
-    scene["inputs"] = {"arm_angle": {"polynomial": [start, 0.05, 0.35]}, "rack": {"constant": 0.0}}
-    return Scene.from_mapping(scene)
+    (start,) = Scene.load(name).functions["arm_angle"].series(0.0, 0)
+    return scene(name, arm={"polynomial": [float(start), 0.05, 0.35]})
 
 
 def partial(solver: str, scene: Scene) -> Solution:

@@ -1,52 +1,25 @@
-"""Trees of joints in programs agree within what they claim, and a fault of theirs is seen."""
+"""A fault of a tree of joints in a program is seen, and one that is not there is told.
+
+That they agree within what they claim is in test_stated_accuracy, of random cars, and in tests/mechanisms.
+"""
 
 import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import Phase, assume, given, note, settings
+from changed_scenes import scene_with
 from numpy.typing import NDArray
 
-from pointcoord import MissingLibrary, Scene, SceneError
+from pointcoord import MissingLibrary, Scene
 from validate.comparison.compare import compare
 from validate.extras import not_there
-from validate.formulations.protocol import FormulationError
-from validate.formulations.refusals import DRAWING, INPUT, MOTION, START, why_refused
 from validate.formulations.registry import OUTSIDE, formulation
 from validate.formulations.trees import InTree
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.motion import Poses, Rates
-from validate.strategies import scenes
 
 Array = NDArray[np.float64]
-
-# Each scene is solved nine times, and a search is short.
-# Without shrinking, which takes minutes where a motion is long.
-PHASES = (Phase.explicit, Phase.generate)
-searched = settings(
-    max_examples=min(settings.default.max_examples if settings.default else 100, 5), phases=PHASES
-)
-
-
-TREES = ("relative", *OUTSIDE)
-
-
-@pytest.mark.parametrize("who", TREES)
-@searched
-@given(scene=scenes(samples=3))
-def test_a_program_agrees_on_random_cars_and_motions(scene: Scene, who: str) -> None:
-    note(repr(scene))
-    try:
-        outcome = compare(scene, "pointcoord", who)
-    except FormulationError as error:
-        # What pointcoord refuses tells nothing here; the program must refuse for a reason of the car.
-        assume(error.formulation == who and not isinstance(error.reason, SceneError))
-        refused = why_refused(error)
-    else:
-        refused = ""
-        assert not outcome.disagreements
-    assert refused in ("", DRAWING, START, MOTION, INPUT)
 
 
 class Faulty(InMujoco):
@@ -90,10 +63,8 @@ def test_a_program_that_is_not_installed_is_told_with_its_package_and_extra(
 
 def test_a_rod_that_is_called_as_an_angle_has_no_force_from_a_tree() -> None:
     """A five-link has a rod `toe`; a tree of joints gives the angle of that name, and no forces."""
-    content = Scene.load("five-link").model_dump(exclude_none=True)
-    content["mechanism"] |= {"loads": {"": {"force": [0.0, 0.0, 4000.0]}}, "wheel_radius": 300.0}
-    content["effects"] = ["toe", "loads"]
-    scene = Scene.from_mapping(content)
+    loaded = {"loads": {"": {"force": [0.0, 0.0, 4000.0]}}, "wheel_radius": 300.0}
+    scene = scene_with("five-link", loaded, effects=["toe", "loads"])
     given = formulation("relative").solve(scene).numbers
     assert "toe" in given["wheel"]
     assert "rod_force" not in given

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import pinocchio
 import pytest
+from changed_scenes import scene_with
 from foreign_files import FOUR_BAR, imported
 from numpy.typing import NDArray
 
@@ -73,12 +74,9 @@ def test_mujoco_and_pinocchio_place_the_exported_points_where_they_are_drawn(
 
 def test_a_car_in_other_axes_is_the_same_model() -> None:
     scene = Scene.load("double-wishbone")
-    content = scene.model_dump(exclude_none=True)
     points = {name: (-x, -y, z) for name, (x, y, z) in scene.mechanism.points.items()}
-    content["mechanism"] |= {"points": points, "right": (0.0, -1.0, 0.0)}
-    first, second = (
-        mjcf_of(one.mechanism.plain(tuple(one.inputs)), "car") for one in (scene, Scene.from_mapping(content))
-    )
+    turned = scene_with("double-wishbone", {"points": points, "right": (0.0, -1.0, 0.0)})
+    first, second = (mjcf_of(one.mechanism.plain(tuple(one.inputs)), "car") for one in (scene, turned))
     assert first == second
 
 

@@ -4,20 +4,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
-from foreign_files import CAR, OPTIMUMK, STRUT, drawn, imported, table
+from foreign_files import CAR, LOTUS, OPTIMUMK, STRUT, drawn, imported, table
 
 from pointcoord import Scene
 from validate.cli import main
 from validate.tables.errors import FileError
 
-WORDS = {
-    "lower_arm_front": "Lower wishbone front pivot",
-    "lower_arm_rear": "Lower wishbone rear pivot",
-    "lower_ball_joint": "Lower wishbone outer ball joint",
-    "upper_arm_front": "Upper wishbone front pivot",
-    "upper_arm_rear": "Upper wishbone rear pivot",
+WORDS = LOTUS | {
     "upper_ball_joint": "UPPER WISHBONE, outer ball-joint",
-    "tie_rod_outer": "Outer track rod ball joint",
     "tie_rod_inner": "Inner_track_rod_ball_joint",
     "wheel_centre": "Wheel Center",
     "wheel_axis_inner": "Wheel Spindle Point",

@@ -14,6 +14,7 @@ from typing import Any
 import made_rows
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from page_read import Read
 from program import PAST_ITS_END, short_scene
 from program import document as checked
@@ -87,11 +88,12 @@ FEW = (*PAPER_SCENES, "five-link", "slider-crank")
 
 @pytest.fixture(scope="module")
 def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The report of built-in scenes."""
+    """The report of built-in scenes, and of times that were measured before."""
     folder = tmp_path_factory.mktemp("report")
+    cost = made_rows.kept(tmp_path_factory.mktemp("cost") / "rows.parquet", made_rows.study())
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("validate.commands.comparison.DEFAULT_SCENES", FEW)
-        assert main(["report", "-q", str(folder)]) == 0
+        assert main(["report", "-q", str(folder), "--cost", cost]) == 0
     return folder
 
 
@@ -218,10 +220,8 @@ def test_scenes_that_are_refused_or_broken_have_their_reason_beside_them(
 
 
 def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_small() -> None:
-    content, count = Scene.load("double-wishbone").model_dump(exclude_none=True), 400
-    content["effects"] = ["velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster"]
-    content["time"] = content["time"] | {"samples": 61}
-    scene = Scene.from_mapping(content)
+    effects = ["velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster"]
+    scene, count = scene_with("double-wishbone", effects=effects, samples=61), 400
     wide = examine("wide", scene, (("pointcoord", "absolute"), ("pointcoord-newton", "absolute")), False)
     names = [f"a folder of mine/with a long name of a scene {i:03d}.toml" for i in range(count)]
     record, drawings = Record(names), Drawings(count)

@@ -7,6 +7,7 @@ from typing import Any
 import curve_files
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from curve_files import disagreeing, verdicts
 from lotus_front import BUMP, ROLLING_RADIUS, STEERING
 
@@ -101,8 +102,7 @@ def test_an_arcsine_is_told_from_a_projected_angle() -> None:
 
 def test_the_wheel_radius_of_the_scene_is_taken_where_the_map_has_none() -> None:
     for radius, wrong in ((ROLLING_RADIUS, []), (ROLLING_RADIUS + 30.0, ["wheel.camber"])):
-        mechanism = CAR.mechanism.model_copy(update={"wheel_radius": radius})
-        car = CAR.model_copy(update={"mechanism": mechanism})
+        car = scene_with("double-wishbone", {"wheel_radius": radius})
         found = disagreeing(CSV, {"columns": CONTENT["columns"]}, car)
         assert [one for one in found if one == "wheel.camber"] == wrong
         # What the map says goes before it.

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from curve_files import compared, disagreeing, table, verdicts
 
 from pointcoord import Scene, solve_poses
@@ -30,12 +31,6 @@ EFFECTS = (
 )
 
 
-def asking(name: str, effects: tuple[str, ...], samples: int = 9) -> Scene:
-    scene = Scene.load(name)
-    time = scene.time.model_copy(update={"samples": samples})
-    return scene.model_copy(update={"effects": effects, "time": time})
-
-
 def file_of(scene: Scene, over: str, numbers: tuple[str, ...], wrong: dict[str, Any] | None = None) -> str:
     """A table of the absolute model's numbers over an input, five decimals, and of what is done to some."""
     columns = {f"input.{over} [mm]": scene.functions[over].series(scene.instants, 0)[:, 0]}
@@ -48,7 +43,7 @@ def file_of(scene: Scene, over: str, numbers: tuple[str, ...], wrong: dict[str, 
 
 
 def test_gradients_centres_and_ratios_over_a_travel_are_held_to_their_digits() -> None:
-    scene = asking("wheel-travel", EFFECTS)
+    scene = scene_with("wheel-travel", effects=EFFECTS, samples=9)
     found = compared(file_of(scene, "wheel_travel", OVER_TRAVEL), {}, scene)
     assert {
         name: verdict for name, verdict in verdicts(found).items() if name in OVER_TRAVEL
@@ -60,7 +55,7 @@ def test_gradients_centres_and_ratios_over_a_travel_are_held_to_their_digits() -
 
 
 def test_those_of_them_that_are_wrong_disagree_alone() -> None:
-    scene = asking("wheel-travel", EFFECTS)
+    scene = scene_with("wheel-travel", effects=EFFECTS, samples=9)
     wrong = {
         "toe_by_travel": lambda x: -x,
         "roll_centre_height": lambda x: x + 2e-5,
@@ -72,7 +67,8 @@ def test_those_of_them_that_are_wrong_disagree_alone() -> None:
 
 
 def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
-    scene, numbers = asking("axle-steer", ("steer_angle", "ackermann"), 10), ("ackermann", "ackermann_error")
+    numbers = ("ackermann", "ackermann_error")
+    scene = scene_with("axle-steer", effects=("steer_angle", "ackermann"), samples=10)
     exact = {"columns": {"input.rack": {"printed": 0}}}
     found = compared(file_of(scene, "rack", numbers), exact, scene)
     assert {verdicts(found)[name] for name in numbers} == {"agrees"}
@@ -82,10 +78,11 @@ def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
 
 
 def test_forces_over_an_input_are_held_to_bounds_of_their_own_poses_and_rates_are_not_tested() -> None:
-    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
-    content["mechanism"] |= {"wheel_radius": 270.0, "loads": {"force": [0.0, 0.0, 3000.0]}}
-    content["effects"] = ["loads"]
-    scene, racks = Scene.from_mapping(content, "car"), np.linspace(-20.0, 20.0, 5)
+    loaded, racks = (
+        {"wheel_radius": 270.0, "loads": {"force": [0.0, 0.0, 3000.0]}},
+        np.linspace(-20.0, 20.0, 5),
+    )
+    scene = scene_with("double-wishbone", loaded, effects=["loads"])
     inputs = {"rack": racks, "arm_angle": drawn_inputs(scene)["arm_angle"]}
     forces = solve_poses(scene, inputs).numbers["rod_force"]["tie_rod"]
     for factor, verdict in ((1.0, "agrees"), (1.0 + 1e-8, "disagrees")):
@@ -103,7 +100,7 @@ def test_forces_over_an_input_are_held_to_bounds_of_their_own_poses_and_rates_ar
 
 @pytest.mark.parametrize(("name", "order"), [("jerk", 3), ("derivative_12", 12)])
 def test_derivatives_over_time_are_read_in_their_unit_and_a_wrong_one_is_seen(name: str, order: int) -> None:
-    scene = asking("bounce-and-steer", (name,), 21)
+    scene = scene_with("bounce-and-steer", effects=(name,), samples=21)
     motion = formulation("absolute").solve(scene)
     for factor, wrong in ((1.0, []), (1.001, [f"{name}.wheel_centre.x"])):
         numbers = motion.numbers[name]["wheel_centre"] * [factor, 1.0, 1.0]

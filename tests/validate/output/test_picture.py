@@ -2,21 +2,15 @@
 
 import xml.etree.ElementTree as ET
 from itertools import combinations
-from typing import Any
 
 import numpy as np
+from changed_scenes import scene_with
 
 from pointcoord import Scene
 from validate.closed_drawing import closed_drawing
 from validate.output.picture import svg
 
 SVG = "{http://www.w3.org/2000/svg}"
-
-
-def content(scene: Scene, **points: tuple[float, float, float]) -> dict[str, Any]:
-    plain = scene.model_dump(exclude_none=True)
-    plain["mechanism"]["points"] |= points
-    return plain
 
 
 def test_every_point_stands_in_all_three_views_at_one_scale_with_a_number_that_can_be_read() -> None:
@@ -73,7 +67,7 @@ def test_a_drawing_that_moves_when_it_closes_is_drawn_twice_and_says_so() -> Non
 
 def test_points_that_fall_together_are_drawn_with_one_number() -> None:
     """A wheel centre so far away that all other points are one on the paper, and from above all of them."""
-    plain = content(Scene.load("bounce"), wheel_centre=(452.0, -410.0, -1e9))
-    root = ET.fromstring(svg(closed_drawing(Scene.from_mapping(plain))))
+    scene = scene_with("bounce", {"points": {"wheel_centre": (452.0, -410.0, -1e9)}})
+    root = ET.fromstring(svg(closed_drawing(scene)))
     numbers = [text.text or "" for text in root.findall(f".//{SVG}text[@class='number']")]
     assert sorted(number.count(",") for number in numbers) == [0, 0, 8, 8, 9]

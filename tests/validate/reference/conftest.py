@@ -1,4 +1,4 @@
-"""The paper's Table 1, and mpmath set to more digits than any result carries."""
+"""A car of each linkage, and mpmath set to more digits than any result carries."""
 
 from __future__ import annotations
 
@@ -6,13 +6,7 @@ from collections.abc import Iterator
 
 import mpmath
 import pytest
-from reference_cars import CARS, TABLE_1, ReferenceCar
-
-
-@pytest.fixture(scope="session")
-def table() -> dict[str, tuple[int, int, int]]:
-    """Table 1, mm, left wheel."""
-    return dict(TABLE_1)
+from mechanism_drawings import CARS, ReferenceCar
 
 
 @pytest.fixture(scope="session", params=CARS)

@@ -8,8 +8,8 @@ from fractions import Fraction
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mechanism_drawings import CARS, ReferenceCar
 from mpmath import mpf
-from reference_cars import CARS, ReferenceCar
 
 from validate.reference import NoReferenceError
 from validate.reference.route import closed
@@ -17,10 +17,9 @@ from validate.reference.vectors import Vector, minus, plus, times
 
 
 def test_a_drawing_at_a_dead_point_is_ambiguous(car: ReferenceCar) -> None:
-    level = {**car.points, "lower_arm_front": (0, 0, 0), "lower_arm_rear": (200, 0, 0)}
-    level["lower_ball_joint"] = (0, 0, -300)
+    level = {"lower_arm_front": (0, 0, 0), "lower_arm_rear": (200, 0, 0), "lower_ball_joint": (0, 0, -300)}
     with pytest.raises(NoReferenceError, match="drawn at a singular pose"):
-        replace(car, points=level).solve({"arm_angle": (3.0, 0, 0)})
+        replace(car, moved=level).solve({"arm_angle": (3.0, 0, 0)})
 
 
 @pytest.mark.parametrize("name", CARS)
@@ -52,9 +51,9 @@ def test_a_drawing_in_the_plane_where_two_assemblies_meet_is_ambiguous(share: Fr
     place = along(("upper_ball_joint", share), ("tie_rod_inner", share))
     for hair in (Fraction(1, 10**9), Fraction(-1, 10**9)):
         x, y, z = place
-        near = replace(car, points={**car.points, "tie_rod_outer": (x + hair, y, z + hair)})
+        near = replace(car, moved={"tie_rod_outer": (x + hair, y, z + hair)})
         with pytest.raises(NoReferenceError, match="from another assembly"):
             closed(near.design)
         closed(near.design, 0.0)
     with pytest.raises(NoReferenceError):
-        closed(replace(car, points={**car.points, "tie_rod_outer": place}).design, 0.0)
+        closed(replace(car, moved={"tie_rod_outer": place}).design, 0.0)

@@ -8,9 +8,8 @@ from fractions import Fraction
 
 import pytest
 from flint import arb, arb_poly, ctx
-from mechanism_drawings import DRAWINGS, described
+from mechanism_drawings import DRAWINGS, ReferenceCar, described, drawing
 from mpmath import mpf
-from reference_cars import ReferenceCar
 
 from validate.reference import (
     Design,
@@ -39,7 +38,7 @@ def _precision() -> Iterator[None]:
 
 def drawn(name: str) -> tuple[Way, list[arb]]:
     """The equations as drawn, and a refined solution at the present precision."""
-    design = DRAWINGS[name]()
+    design = drawing(name)
     numbers = design.mechanism.drawn_numbers
     way = Way(design.equations(), numbers, numbers)
     return way, newton(way, closed(design).pose.unknown, arb(0))[0]

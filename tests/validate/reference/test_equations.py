@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanism_drawings import DRAWINGS
+from mechanism_drawings import DRAWINGS, drawing
 
 from validate.reference.equations import Equations, equations_in
 
@@ -16,7 +16,7 @@ fractions = st.integers(-1000, 1000).map(lambda n: Fraction(n, 16))
 
 def exact_equations(name: str) -> tuple[Equations, int]:
     """The equations in fractions, and how many numbers of inputs they take."""
-    design = DRAWINGS[name]()
+    design = drawing(name)
     count = sum(len(drive.drawn()) for drive in design.mechanism.drives.values())
     return equations_in(design.mechanism, design.chosen, lambda number: number), count
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from reference_cars import ReferenceCar
+from mechanism_drawings import ReferenceCar
 
 from validate.reference.design import Known, values_only
 from validate.reference.in_doubles import (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -10,14 +11,13 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from mechanism_drawings import CARS
 from mpmath import mpf
-from plain_mechanisms import solve_car
 
 from validate.reference import NoReferenceError
 from validate.reference.exact import as_fraction
 
-Table = dict[str, tuple[Any, ...]]
-STILL = {"arm_angle": (1.5, 0, 0)}
+STRUT, STILL = CARS["collinear strut"], {"arm_angle": (1.5, 0, 0)}
 
 
 @pytest.mark.parametrize(
@@ -35,34 +35,32 @@ def test_what_is_not_a_finite_real_number_is_refused_by_name(value: object) -> N
         as_fraction(value, "rack")
 
 
-def test_no_more_digits_are_promised_than_the_arithmetic_has(table: Table) -> None:
+def test_no_more_digits_are_promised_than_the_arithmetic_has() -> None:
     with pytest.raises(NoReferenceError, match="15 to 200"):
-        solve_car(table, STILL, digits=1000, closure="collinear")
+        STRUT.solve(STILL, digits=1000)
 
 
 @pytest.mark.parametrize(
-    ("name", "place", "message"),
+    ("name", "other", "message"),
     [
-        ("strut_rod_end", (460, -180, 470), "length of strut_rod"),
-        ("strut_lower", (460, -180, 470), "strut_top in strut_lower"),
-        ("lower_arm_rear", (270, -5, -10), "hinge of lower_arm"),
-        ("strut_top", (460, -180, math.inf), "finite real number"),
+        ("strut_rod_end", "strut_top", "length of strut_rod"),
+        ("strut_lower", "strut_top", "strut_top in strut_lower"),
+        ("lower_arm_rear", "lower_arm_front", "hinge of lower_arm"),
+        ("strut_top", "", "finite real number"),
     ],
 )
-def test_a_mechanism_without_extent_is_refused(
-    table: Table, name: str, place: tuple[float, ...], message: str
-) -> None:
+def test_a_mechanism_without_extent_is_refused(name: str, other: str, message: str) -> None:
+    car = CARS["strut as drawn"]
     with pytest.raises(NoReferenceError, match=message):
-        solve_car({**table, name: place}, STILL, closure="drawn")
+        replace(car, moved={name: car.points.get(other, (460, -180, math.inf))}).solve(STILL)
 
 
-def test_an_angle_that_is_undefined_is_left_out_and_the_others_are_not(table: Table) -> None:
-    hub_in_axis = {**table, "wheel_centre": table["strut_lower"]}
-    reference = solve_car(hub_in_axis, STILL, closure="collinear")
+def test_an_angle_that_is_undefined_is_left_out_and_the_others_are_not() -> None:
+    reference = replace(STRUT, moved={"wheel_centre": STRUT.points["strut_lower"]}).solve(STILL)
     assert abs(reference.effects["kingpin"]) < 1
     assert "camber" not in reference.effects
 
 
-def test_an_effect_that_does_not_exist_is_refused_by_name(table: Table) -> None:
+def test_an_effect_that_does_not_exist_is_refused_by_name() -> None:
     with pytest.raises(NoReferenceError, match="effect is 'scrub'"):
-        solve_car(table, STILL, effects=["scrub"], closure="collinear")
+        STRUT.solve(STILL, effects=["scrub"])

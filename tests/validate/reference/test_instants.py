@@ -7,8 +7,8 @@ from fractions import Fraction
 
 import pytest
 from flint import arb, ctx
+from mechanism_drawings import ReferenceCar
 from mpmath import mpf
-from reference_cars import ReferenceCar
 
 from validate.reference import NotDecidedError
 from validate.reference.effects.car import Effect

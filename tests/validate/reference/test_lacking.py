@@ -6,8 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from mechanism_drawings import described
-from plain_mechanisms import plain_mechanism
-from reference_cars import CARS
+from mechanism_files import plain_scene
 
 from validate.reference import Design, instants_of
 from validate.reference.effects.registry import EFFECTS
@@ -33,8 +32,7 @@ def test_of_a_spin_axis_alone_there_is_what_is_made_of_it() -> None:
 
 
 def test_two_inputs_that_move_the_wheel_leave_no_gradient_by_its_travel() -> None:
-    car = CARS["double wishbone"]
-    plain = plain_mechanism(car.suspension, car.points, ["arm_angle"], wheel_radius=car.wheel_radius)
+    plain = plain_scene("double-wishbone", ["arm_angle"], wheel_radius=290)
     plain["inputs"] |= {"gap": {"distance": ["tie_rod_outer", "upper_arm_front"]}}
     found = effects_of(plain, arm_angle=Fraction(3, 2), gap=400)
     assert "camber" in found

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from plain_solvers import closed_form
 
 from pointcoord import Scene, simulate
@@ -110,10 +111,8 @@ def test_an_angle_may_stand_by_itself_and_lists_do() -> None:
 
 def test_a_number_that_is_called_as_its_quantity_may_be_given_either_way() -> None:
     same = ("spring_force", "wheel_rate")
-    content = Scene.load("pushrod").model_dump(exclude_none=True)
-    content["mechanism"].setdefault("car", {})
-    content["mechanism"]["car"] |= {"spring_rate": 30.0, "spring_free_length": 300.0}
-    scene = Scene.from_mapping(content | {"effects": ["spring"]}, "pushrod")
+    spring = {"spring_rate": 30.0, "spring_free_length": 300.0}
+    scene = scene_with("pushrod", {"car": spring}, effects=["spring"])
     numbers = simulate(scene).numbers
     by_quantity = {quantity: dict(numbers[quantity]) for quantity in same}
     alone = {quantity: numbers[quantity][quantity] for quantity in same}

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from changed_scenes import scene_with
 from counted_study import worked_out
 
 from pointcoord import Scene
@@ -45,9 +46,7 @@ def test_every_scene_has_one_outcome_and_it_is_counted() -> None:
     [("pointcoord", "position"), ("absolute", "acceleration"), ("absolute", "angular_velocity")],
 )
 def test_the_model_with_a_planted_fault_is_the_one_found_wrong(model: str, quantity: str) -> None:
-    scene = Scene.load("bounce-and-steer")
-    time = scene.time.model_copy(update={"samples": 3})
-    scene = scene.model_copy(update={"time": time, "effects": ("velocity", "acceleration", "knuckle_rates")})
+    scene = scene_with("bounce-and-steer", samples=3, effects=("velocity", "acceleration", "knuckle_rates"))
     solutions = {name: formulation(name).solve(scene) for name in (deep.OURS, deep.OTHER)}
     faulty = dict(solutions[model].numbers[quantity])
     name = next(iter(faulty))
@@ -74,8 +73,7 @@ def test_a_fault_that_both_models_share_is_found_by_the_reference(monkeypatch: p
 
 
 def test_an_answer_that_stands_alone_is_held_to_the_reference() -> None:
-    scene = Scene.load("bounce").model_copy(update={"effects": ()})
-    scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 3})})
+    scene = scene_with("bounce", samples=3, effects=())
     answer = formulation("absolute").solve(scene)
     assert judged(scene, answer) == NONE_WRONG
     moved = {name: place + 1e-6 for name, place in answer.position.items()}
@@ -86,22 +84,16 @@ def test_an_answer_that_stands_alone_is_held_to_the_reference() -> None:
 
 
 def test_a_refused_scene_is_told_apart_from_one_that_need_not_be() -> None:
-    scene = Scene.load("bounce")
-    time = scene.time.model_copy(update={"samples": 3})
-    scene = scene.model_copy(update={"time": time})
-    part = scene.inputs["arm_angle"]
-    assert unanswered(scene) == NO_OBSTACLE
+    def with_arm(*law: float, samples: int = 3) -> Scene:
+        return scene_with("bounce", samples=samples, laws={"arm_angle": {"polynomial": law}})
 
-    def with_arm(law: tuple[float, ...]) -> Scene:
-        held = part.model_copy(update={"polynomial": law})
-        return scene.model_copy(update={"inputs": {**scene.inputs, "arm_angle": held}, "time": time})
-
-    assert unanswered(with_arm((0.05,))) == "an instant has no pose"
+    assert unanswered(scene_with("bounce", samples=3)) == NO_OBSTACLE
+    assert unanswered(with_arm(0.05)) == "an instant has no pose"
     # From 0.8 past the dead point and back, while the instants themselves have poses.
-    stop = scene.time.stop
+    stop = Scene.load("bounce").time.stop
     over = 4.0 * 0.75 / (0.5 * stop) ** 2
-    time = scene.time.model_copy(update={"samples": 2})
-    assert unanswered(with_arm((0.8, -over * stop / 2, over / 2))) == "no pose between the instants"
+    back = with_arm(0.8, -over * stop / 2, over / 2, samples=2)
+    assert unanswered(back) == "no pose between the instants"
 
 
 def row(number: int, outcome: str, **more: str) -> Row:
