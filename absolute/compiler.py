@@ -31,7 +31,7 @@ LARGEST_COORDINATE, SMALLEST_SIZE = 1e100, 1e-100
 SHORTEST_AXIS = math.sqrt(EPS)
 # Products of directions that were rotated in doubles have an error of a few roundings.
 ROUNDED = 16.0 * EPS
-# Largest error of the right angle between `up` and `right`: 1e-6 rad lets rounded directions pass.
+# Largest error of the right angle between `up` and `right`: 1e-6 rad lets only rounding pass.
 LARGEST_SKEW = 1e-6
 SIDES = ("left", "right")
 # Direction from the middle of the car to the axle, rearward.

@@ -179,7 +179,7 @@ class Corner:
 
 
 def _lacking(what: str, where: str, name: str) -> DescriptionError:
-    return DescriptionError(f"needs {what}, and there is none: write {where}, or ask for other effects", name)
+    return DescriptionError(f"needs {what}, which is missing: write {where}, or ask for other effects", name)
 
 
 @dataclass(frozen=True)

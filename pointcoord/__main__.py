@@ -30,8 +30,8 @@ SIGNALS = {
 def main() -> int:
     """Run the program and return its exit status (see `validate.exit_status`)."""
     _open_closed_descriptors()
-    ours = [one for one, (_, usual) in SIGNALS.items() if signal.getsignal(one) is usual]
-    for one in ours:
+    handled = [one for one, (_, usual) in SIGNALS.items() if signal.getsignal(one) is usual]
+    for one in handled:
         signal.signal(one, _interrupted)
     try:
         validate = importlib.import_module("validate")
@@ -47,10 +47,10 @@ def main() -> int:
         return _report(f"cannot start: {error}; try: pip install --force-reinstall {NAME}", NOT_FINISHED)
     except MemoryError:
         return _report("cannot start: out of memory", NOT_FINISHED)
-    for one in ours:
+    for one in handled:
         signal.signal(one, signal.default_int_handler if one == signal.SIGINT else terminated)
     status = int(cli.main())
-    for one in ours:
+    for one in handled:
         # All output is written: a signal must not interrupt the interpreter's exit.
         signal.signal(one, signal.SIG_IGN)
     return status

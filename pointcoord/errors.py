@@ -139,8 +139,8 @@ class MissingLibrary(PointcoordError, ImportError):
         extras = (extra,) if extra else self.libraries
         brought = " or ".join(f"pip install 'pointcoord[{name}]'" for name in extras)
         named = " or ".join(map(repr, self.libraries))
-        said = f"{part} needs the package {named}, which {problem}"
-        super().__init__(said, advice=advice or f"try: {brought}")
+        message = f"{part} needs the package {named}, which {problem}"
+        super().__init__(message, advice=advice or f"try: {brought}")
 
 
 class MechanismError(PointcoordError):
@@ -183,9 +183,9 @@ class InputOutOfRange(PointcoordError):
         self.doubt = doubt
         self.law = law
         when = "" if instant is None else f" at t = {instant:.10g} s"
-        said, advice = f"input {name!r} is {value:.10g}{when}", ""
+        message, advice = f"input {name!r} is {value:.10g}{when}", ""
         if doubt:
-            said = (
+            message = (
                 f"input {name!r} is not known{when}: the terms of its {law} cancel to {value:.3g}, which may "
                 f"be off by {doubt:.2g}, and no pose can be proven from that"
             )
@@ -193,7 +193,7 @@ class InputOutOfRange(PointcoordError):
                 "give a law of smaller terms, such as a table of values, or the same motion in a time that "
                 "starts near zero"
             )
-        super().__init__(said, allowed, advice)
+        super().__init__(message, allowed, advice)
 
 
 class AssemblyError(PointcoordError):
@@ -273,18 +273,18 @@ class NotFollowed(PointcoordError):
         self.expected = 0.0 if name else limit * (stop - start) / (instant - start)
         if name:
             self.problem, allowed = "no series follows an input", ""
-            said = (
+            message = (
                 f"input {name!r} changes too fast or too unevenly after t = {instant:.10g} s: the mechanism "
                 "could follow, but the series misses the tolerance even with the shortest step in time"
             )
             advice = "smooth it there" + ("" if coarsest else ", allow a larger tolerance")
         else:
             self.problem = "the motion takes too many series"
-            said = f"the motion from {start:.6g} to {stop:.6g} s takes about {self.expected:.2g} segments"
+            message = f"the motion from {start:.6g} to {stop:.6g} s takes about {self.expected:.2g} segments"
             allowed = f"{limit} segments, which reach t = {instant:.6g} s"
             advice = "shorten the time, slow the inputs down"
         newton = "or use the method 'newton', which solves at the scene's instants only"
-        super().__init__(said, allowed, f"{advice}, {newton}")
+        super().__init__(message, allowed, f"{advice}, {newton}")
 
 
 class SingularConfiguration(PointcoordError):

@@ -1,1 +1,1 @@
-"""What a scene may ask for beside positions."""
+"""Effects: the results beside positions that a scene may request."""

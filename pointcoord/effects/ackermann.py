@@ -1,13 +1,14 @@
-r"""How the two wheels of an axle are steered against each other.
+r"""Ackermann numbers: how the steer angles of an axle's two wheels relate to each other.
 
 With L the wheelbase, t the track as drawn, d_l and d_r the steer angles, positive to the left, and
 R = L (cot d_l + cot d_r) / 2, whose size is the turning radius,
 
     Ackermann = 100 (d_l - d_r) / (arccot((R - t/2) / L) - arccot((R + t/2) / L)) %        (Lotus),
 
-where the inner wheel is the left one if steered to the left; to the right both differences are those of the
-other two magnitudes, and the same. The divisor is arccot((R^2 - t^2/4 + L^2) / (L t)), in which nothing
-cancels; arccot is between 0 and pi, as a wheel's angle is that rolls about a point nearer than half a track.
+where the inner wheel is the left one if steered to the left. If steered to the right, inner and outer wheel
+are exchanged, both differences change sign, and the quotient is the same. The divisor is computed without
+cancellation as arccot((R^2 - t^2/4 + L^2) / (L t)). arccot is between 0 and pi: a wheel whose turning point
+is nearer than half a track has an angle above pi / 2.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from pointcoord.effects.arithmetic import angle, chosen, multiple, positive, rat
 from pointcoord.effects.corner import Corner
 
 PERCENT = 100.0
-# rad: doubles do not tell to which side a wheel is steered by less.
+# rad: for smaller steer angles, doubles do not tell to which side a wheel is steered.
 STRAIGHT = 1e-12
 
 
@@ -31,16 +32,16 @@ def turning_radius(left: Corner[Any], right: Corner[Any]) -> Any:
 
 
 def ackermann(left: Corner[Any], right: Corner[Any]) -> Any:
-    """The difference of the steer angles, of that which lets both wheels turn about one point; %."""
+    """100 times the difference of the steer angles over the ideal one, with one turning point; %."""
     radius, wheelbase, half = _radius(left, right), left.car["wheelbase"], multiple(0.5, _track(left, right))
     below = radius * radius - half * half + wheelbase * wheelbase
-    # Of as many poses as there are, though the drawing is one.
+    # Multiplied by 0 for the shape: the drawing is one pose, the result has one number per pose.
     ideal = angle(multiple(0.0, below) + wheelbase * (half + half), below)
     return multiple(PERCENT, ratio(angle(*_steer(left)) - angle(*_steer(right)), ideal))
 
 
 def ackermann_error(left: Corner[Any], right: Corner[Any]) -> Any:
-    """d_o - arccot(cot d_i + t / L) of the magnitudes, the inner wheel's sine and cosine as they are."""
+    """d_o - arccot(cot d_i + t / L), with the magnitudes of the inner and the outer wheel's steer angles."""
     more = ratio(_track(left, right), left.car["wheelbase"])
     (one, across), (other, back) = _sides(left, right)
     to_the_left = angle(*_steer(right)) - angle(one, across + more * one)
@@ -49,13 +50,13 @@ def ackermann_error(left: Corner[Any], right: Corner[Any]) -> Any:
 
 
 def _radius(left: Corner[Any], right: Corner[Any]) -> Any:
-    """R; no number where the wheels are not steered to the same side."""
+    """R; NaN where the wheels are not steered to the same side."""
     (one, across), (other, back) = _sides(left, right)
     return multiple(0.5, left.car["wheelbase"] * (ratio(across, one) + ratio(back, other)))
 
 
 def _sides(left: Corner[Any], right: Corner[Any]) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
-    """What the steer angles have for sine and cosine."""
+    """Sine and cosine of both steer angles, of any common size; NaN where R does not exist."""
     (one, across), (other, back) = _steer(left), _steer(right)
     if isinstance(one, np.ndarray):
         turned = np.minimum(np.abs(one) / np.hypot(one, across), np.abs(other) / np.hypot(other, back))
@@ -65,11 +66,11 @@ def _sides(left: Corner[Any], right: Corner[Any]) -> tuple[tuple[Any, Any], tupl
 
 
 def _steer(corner: Corner[Any]) -> tuple[Any, Any]:
-    """Sine and cosine of the steer angle, of any common size."""
+    """Sine and cosine of the steer angle, times any common factor."""
     view = corner.seen
     return view.along(view.spin, "to_the_left"), view.along(view.spin, "outboard")
 
 
 def _track(left: Corner[Any], right: Corner[Any]) -> Any:
-    """(c_right - c_left) . right as drawn."""
+    """The track as drawn, (c_right - c_left) . right."""
     return right.drawn.along(right.drawn.contact_place() - left.drawn.contact_place(), "outboard")

@@ -1,7 +1,7 @@
-r"""Effects that are angles: how a line of the car leans, seen along one of the car's axes.
+r"""Angle effects: the inclination of a line of the car in a plane of two of the car's axes.
 
-An angle is atan2(p, q) with p and q the components of the line along two directions of the car, so that it is
-measured in the plane of the two. It is positive where the line has a part along the first.
+An angle is atan2(p, q) of the line's components p and q along two directions of the car, measured in the
+plane of the two. It is positive where the line has a positive component along the first.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pointcoord.linkage.car_axes import CarAxes, Direction
 Array = NDArray[np.float64]
 
 WHEEL = Quantity("wheel", "wheel angle", "rad", "car")
-# As the page of effects has them.
+# Symbols of the axes, as in the README.
 LETTERS = {"wheel_axis": "n", "steering_axis": "k"}
 
 
@@ -31,9 +31,9 @@ class Angle(Number):
     """An angle of a line of the car, in a plane of the car's axes; rad.
 
     Attributes:
-        line: the axis that the topology names so, from its first point to its second.
+        line: the axis by its role in the topology, from its first point to its second.
         sine, cosine: the directions along which the line has the angle's sine and cosine.
-        steepest: degrees beyond which a drawing looks misdrawn.
+        steepest: degrees; a drawing with a larger angle gets a warning.
     """
 
     line: Literal["wheel_axis", "steering_axis"]
@@ -62,7 +62,7 @@ class Angle(Number):
         return start, end
 
     def doubt(self, wheel: Wheel, drawn: Mapping[str, Array], axes: CarAxes) -> Doubt:
-        """That it is steeper in drawings than in any car.
+        """A warning for drawings with a larger angle than any car has.
 
         Args:
             drawn: the points, each (..., 3), mm.
@@ -74,7 +74,7 @@ class Angle(Number):
         def words(member: tuple[int, ...]) -> str:
             steepness = float(degrees[member])
             return (
-                f"the drawn {self.words} is {steepness:.4g} deg, that of the line from {start} to {end}: "
+                f"the drawn {self.words} is {steepness:.4g} deg, by the line from {start} to {end}: "
                 f"{'are they swapped, or is side wrong' if abs(steepness) > 90.0 else 'is one misdrawn'}?"
             )
 

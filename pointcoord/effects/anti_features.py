@@ -1,11 +1,11 @@
-r"""What part of the load that braking and driving shift from axle to axle the links carry, not the springs.
+r"""Anti-features: the share of the load transfer in braking and driving carried by links, not by springs.
 
     100 share s (v . rearward) / (v . up) L / h,      s = -1 at the front axle and +1 at the rear one
 
-with L the wheelbase and h the height of the centre of gravity above the ground at this pose. Braked at the
-wheel, v is the velocity of the contact point, fixed in the knuckle; driven by a shaft from the chassis, it is
-that of the wheel centre. Of the front car of Lotus' report this is within 0.0072 points; suspension-explorer
-draws a line through the side view's centre instead.
+with L the wheelbase and h the height of the centre of gravity above the ground at this pose. If the brake
+acts at the wheel, v is the velocity of the contact point, fixed in the knuckle. If a shaft from the chassis
+drives the wheel, v is that of the wheel centre. For the front car of Lotus' report the result differs by at
+most 0.0072 percentage points. suspension-explorer draws a line through the side view's centre instead.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ PERCENT = 100.0
 
 
 def anti_brake(corner: Corner[Dual[Any]]) -> Any:
-    """By the velocity of the contact point."""
+    """The share in braking, by the velocity of the contact point, %."""
     return _carried(corner, "brake_share", velocity_at(corner, contact_place(corner)))
 
 
 def anti_drive(corner: Corner[Dual[Any]]) -> Any:
-    """By that of the wheel centre."""
+    """The share in driving, by the velocity of the wheel centre, %."""
     view = corner.seen
     return _carried(corner, "drive_share", view.points[view.of.centre].slope)
 

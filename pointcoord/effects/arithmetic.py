@@ -1,8 +1,8 @@
-"""Numbers that a formula of an effect is written in once: floats, enclosures, and either with a slope.
+"""Arithmetic in which an effect's formula is written once: floats, enclosures, and either with derivatives.
 
-Of floats a formula gives its value, of enclosures where the value exactly is, and of duals besides how it
-changes along one direction of motion: (a + a' d)(b + b' d) = a b + (a b' + a' b) d. Both parts of a dual may
-be duals, with slopes along another direction.
+With floats a formula gives its value, with enclosures bounds of its exact value. With duals it also gives the
+derivative along one direction of motion: (a + a' d)(b + b' d) = a b + (a b' + a' b) d. Value and derivative
+of a dual may be duals themselves, with derivatives along another direction.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ S = TypeVar("S", Array, Enclosed, Dual[Any])
 
 
 def _product(of_floats: Callable[..., Any], of_enclosed: Callable[..., Any]) -> Callable[[S, S], S]:
-    """A product of two numbers or vectors by what it is of floats and of enclosures; (a b)' = a b' + a' b."""
+    """A product of two numbers or vectors, from its float and its enclosed version; (a b)' = a b' + a' b."""
 
     def product(a: Any, b: Any) -> Any:
         if isinstance(a, Dual):
@@ -64,21 +64,21 @@ times = _product(lambda factor, vector: factor[..., None] * vector, lambda facto
 
 
 def linear(function: Callable[..., Any], x: S, *more: Any) -> S:
-    """A linear function of a number, written for what has no slope; more: its other arguments."""
+    """A linear function of numbers without derivatives, applied to any number; more: its arguments."""
     if isinstance(x, Dual):
         return Dual(linear(function, x.value, *more), linear(function, x.slope, *more))
     return cast("S", function(x, *more))
 
 
 def still(x: S) -> S:
-    """Zero in the arithmetic of a number, which is the slope of what has no derivative."""
+    """Zero in the arithmetic of a number: the derivative of a constant."""
     if isinstance(x, Dual):
         return Dual(still(x.value), still(x.slope))
     return Enclosed.of(np.zeros_like(x.middle)) if isinstance(x, Enclosed) else np.zeros_like(x)
 
 
 def plain(x: Any) -> Array:
-    """The floats of a number that may have slopes."""
+    """The float values of a number that may have derivatives."""
     return plain(x.value) if isinstance(x, Dual) else np.asarray(x)
 
 
@@ -90,7 +90,7 @@ def multiple(factor: float, x: P) -> P:
 
 
 def root(x: S) -> S:
-    """Square root of what is not negative; (sqrt x)' = x' / (2 sqrt x)."""
+    """Square root of a number that is not negative; (sqrt x)' = x' / (2 sqrt x)."""
     if isinstance(x, Dual):
         half = root(x.value)
         return Dual(half, ratio(x.slope, half + half))
@@ -100,7 +100,7 @@ def root(x: S) -> S:
 
 
 def ratio(x: S, y: S) -> S:
-    """x / y; (x / y)' = (x' - (x / y) y') / y. No number where y is 0."""
+    """x / y; (x / y)' = (x' - (x / y) y') / y. NaN or infinite where y is 0."""
     if isinstance(x, Dual):
         value = ratio(x.value, y.value)
         return Dual(value, ratio(x.slope - value * y.slope, y.value))
@@ -134,7 +134,7 @@ def sign_of(x: P) -> P:
 
 
 def chosen(where: NDArray[np.bool_], one: P, other: P) -> P:
-    """One number where something holds, and another elsewhere."""
+    """`one` where the condition holds, `other` elsewhere."""
     if isinstance(one, Dual):
         return Dual(chosen(where, one.value, other.value), chosen(where, one.slope, other.slope))
     if not isinstance(one, Enclosed):

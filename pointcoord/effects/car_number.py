@@ -1,9 +1,9 @@
-"""Effects that are numbers of the car, each a formula of its points that is written once.
+"""Effects that are numbers of the car, each with one formula of its points.
 
-The formula gives the value at places in floats, and where it exactly is at places that are enclosed; so its
-error bound needs no derivation of its own. What is made of how the points move by one input, as the wheel
-travels or as the rack does, takes points as duals. Of the inputs that a scene drives, those that are the
-travel of a slide steer; the other one moves the wheel up and down. The other inputs and the chassis are held
+With places as floats the formula gives the value; with enclosed places it gives bounds of the exact value, so
+that the error bound needs no derivation of its own. Numbers that depend on how the points move with one
+input, such as wheel or rack travel, take points as duals. Among the driven inputs, those that are a slide's
+travel steer the car; the other one moves the wheel up and down. The other inputs and the chassis are held
 (see `linkage.slopes`).
 """
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 BY_TRAVEL, BY_RACK, BY_ROLL = "by_travel", "by_rack", "by_roll"
-# What a scene may say of the car, and how, for those who did not.
+# Car data that a scene may give, with an example value for messages.
 SUCH_AS = {
     "axle": '"front"',
     "wheelbase": "2500.0",
@@ -41,7 +41,7 @@ SUCH_AS = {
 }
 LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
 KINDS = {
-    BY_TRAVEL: "is no travel of a slide, such as wheel travel",
+    BY_TRAVEL: "is not the travel of a slide, such as wheel travel",
     BY_RACK: "is the travel of a slide or a steering wheel, such as a rack",
     BY_ROLL: "rolls the chassis",
 }
@@ -49,19 +49,19 @@ KINDS = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Number:
-    """A number by its formula, as `numbers.toml` has it.
+    """A number of the car with its formula, as listed in `numbers.toml`.
 
     Attributes:
         name: in results and files. words: for people.
-        sign: where it is positive, in words; empty of what is never negative.
-        definition: the formula in words, as the page of effects has it, in the page's letters.
-        formula: what it is of a corner, or of the left and the right one; lengths in the unit of the points.
-        roles: of the mechanism, whose points it is made of. needs_radius: whether of the wheel's radius too.
+        sign: where it is positive, in words; empty if it is never negative.
+        definition: the formula in words, in the symbols of the README.
+        formula: the number from a corner, or from the left and the right one; lengths in the points' unit.
+        roles: roles whose points it needs. needs_radius: whether it needs the wheel's radius too.
         quantity: the kind of number that it is.
-        data: what it is made of beside, of what the scene says of the car.
-        way: along which it takes the points' derivatives; empty if it takes none.
-        power: of the unit of the points, mm, that it is multiplied by.
-        source: who else has it so.
+        data: names of the car data that it needs from the scene.
+        way: way along which it needs the points' derivatives; empty for none.
+        power: exponent of the points' unit of length, mm, in the number's unit.
+        source: other programs or standards with the same definition.
     """
 
     name: str
@@ -80,13 +80,13 @@ class Number:
 
 @dataclass(frozen=True, eq=False)
 class CarNumbers(Effect):
-    """Some numbers of the car, along one way if any: of each wheel, or of the two of an axle together.
+    """Numbers of the car, along at most one way: of each wheel, or of the two wheels of an axle together.
 
     Attributes:
-        numbers: what they are.
-        base: the effect whose numbers' gradients they are; empty if they are none.
-        nowhere: where else than where the wheel does not travel there is no number, in words.
-        of_axle: whether their formulas take two wheels, the left one and the right one.
+        numbers: the numbers.
+        base: the effect of whose numbers these are the gradients; empty if they are not gradients.
+        nowhere: where else, besides a wheel that does not travel, there is no number; in words.
+        of_axle: whether the formulas take two wheels, the left one and the right one.
     """
 
     numbers: tuple[Number, ...]
@@ -108,7 +108,7 @@ class CarNumbers(Effect):
         """The effect that gives some numbers.
 
         Args:
-            derivative: 1 of what takes the points' derivatives by time.
+            derivative: 1 if the formulas take the points' derivatives by time.
         """
         signs = "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
         quantities = tuple({number.quantity.name: number.quantity for number in numbers}.values())
@@ -143,7 +143,7 @@ class CarNumbers(Effect):
 
     @property
     def no_number(self) -> str:
-        """Where nothing can be divided by."""
+        """Why a number may be missing: a divisor is zero there."""
         travels = "the wheel does not travel there" if self.way == BY_TRAVEL else ""
         return " or ".join(filter(None, (travels, self.nowhere)))
 
@@ -167,25 +167,25 @@ class CarNumbers(Effect):
         return found
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
-        """From where each exactly is, in units of the mechanism."""
+        """Errors from the enclosed exact numbers, which are in units of the mechanism."""
         unit, time = float(poses.mechanism.unit), poses.powers[self.derivative]
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for name, number, exact in self._made(poses):
             reported = numbers[number.quantity.name][name]
-            # The units of length and of time are powers of two: no product with them rounds.
+            # The units of length and time are powers of two, so products with them are exact.
             off = exact.scaled(unit**number.power).errors(reported * time) / time
             found[number.quantity.name][name] = off
         return found
 
     def _made(self, poses: Poses | EnclosedPoses) -> Iterator[tuple[str, Number, Any]]:
-        """Every number by its name, in the arithmetic of the poses."""
+        """Every number with its name, in the arithmetic of the poses."""
         for prefix, wheels in self._subjects(poses.mechanism.topology):
             corners = [self._corner(poses, wheel) for wheel in wheels]
             for number in self.numbers:
                 yield prefix + number.name, number, number.formula(*corners)
 
     def _corner(self, poses: Poses | EnclosedPoses, wheel: Wheel) -> Corner[Any]:
-        """A corner, with the derivatives by time or along its wheel's way if the numbers take any."""
+        """A corner, with derivatives by time or along its wheel's way if the numbers need them."""
         corner = corner_of(poses, wheel)
         if self.derivative:
             states = poses.states if isinstance(poses, Poses) else poses.points
@@ -193,19 +193,19 @@ class CarNumbers(Effect):
         return corner.moving(poses.slopes[wheel.way(self.way)]) if self.way else corner
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
-        """What it is made of is missing."""
+        """Why the car does not have these numbers: roles, wheel radius, car data or an input are missing."""
         wheels = self._wheels(topology)
         if not wheels and self.of_axle:
             needs = f"two parts on opposite sides of the car with the roles {' and '.join(self.lines)}"
-            missing = f", and the mechanism {topology.name!r} does not have them"
-            return lacks(self.name, needs + missing, "take one of an axle")
+            missing = f", which the mechanism {topology.name!r} does not have"
+            return lacks(self.name, needs + missing, "use a mechanism of an axle")
         if not wheels:
             return no_role(self.name, next(r for r in self.lines if not wheels_of(topology, [r])), topology)
         if axes.wheel_radius is None and any(number.needs_radius for number in self.numbers):
             return no_radius(self.name)
         data = dict.fromkeys(name for number in self.numbers for name in number.data)
         if absent := [name for name in data if name not in axes.car]:
-            needs = f"of the car what the scene does not say: {', '.join(absent)}"
+            needs = f"car data that the scene does not give: {', '.join(absent)}"
             lines = ", ".join(f"{name} = {SUCH_AS[name]}" for name in absent)
             return lacks(self.name, needs, f"give it under [mechanism.car], such as {lines}")
         for wheel in wheels:
@@ -217,7 +217,7 @@ class CarNumbers(Effect):
 
 
 def corner_of(poses: Poses | EnclosedPoses, wheel: Wheel) -> Corner[Any]:
-    """A wheel of poses: of floats or duals in mm, or where it exactly is in units of the mechanism."""
+    """One wheel of poses: floats or duals in mm, or enclosures in units of the mechanism."""
     mechanism, axes = poses.mechanism, poses.axes.on(wheel.side)
     unit = 1.0
     constant: Callable[..., Any] = Enclosed.of

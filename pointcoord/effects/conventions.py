@@ -1,7 +1,7 @@
-"""Which of our numbers other programs and standards mean by a name, where that is not ours of the name.
+"""Conventions: which of pointcoord's numbers other programs and standards mean by a name.
 
-A convention changes no number: it says which of ours carries the name, and whether it counts the other way.
-What a scene gives and what is compared has one meaning, so that two people who write "camber" mean the same.
+A convention changes no number. It says which number a name stands for, and whether its sign is reversed. In
+scenes and comparisons every name has one meaning, so that two people who write "camber" mean the same.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ ConventionName = Literal["iso", "paper", "lotus", "optimumk", "adams"]
 
 @dataclass(frozen=True)
 class Convention:
-    """Names that mean others of our numbers.
+    """Names that stand for other numbers of pointcoord in a program or standard.
 
     Attributes:
-        means: by name, our number of that meaning; a minus before it where it counts the other way.
+        means: name -> pointcoord's number of that meaning, with a minus in front if the sign is reversed.
     """
 
     means: Mapping[str, str]
 
     def number(self, name: str) -> tuple[str, int]:
-        """Our number of a name, which may be a part's or a gradient's, and its sign.
+        """The number that a name stands for, and its sign; the name may be a part's or a gradient's.
 
         >>> CONVENTIONS["optimumk"].number("left.toe_by_travel")
         ('left.toe_by_arcsine_by_travel', -1)
@@ -41,4 +41,4 @@ class Convention:
 CONVENTIONS: Mapping[ConventionName, Convention] = {
     name: Convention(means) for name, means in TABLES["conventions"].items()
 }
-"""By name."""
+"""The conventions by name."""

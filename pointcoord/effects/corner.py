@@ -1,8 +1,8 @@
-"""One wheel of a car as effects see it: its roles, lines and contact point, and how its knuckle moves.
+"""One wheel of a car for the effects: its roles, lines and contact point, and the motion of its knuckle.
 
-Of three points p_0, p_1, p_2 of the knuckle with e1 = p_1 - p_0 and e2 = p_2 - p_0, a vector that is fixed in
-it is a e1 + b e2 + c n, n = e1 x e2, with constant a, b, c; so its derivative is a e1' + b e2' + c n'. Of
-the angular velocity w it is w x the vector, so that
+Let p_0, p_1, p_2 be three points of the knuckle, e1 = p_1 - p_0, e2 = p_2 - p_0 and n = e1 x e2. A vector
+fixed in the knuckle is a e1 + b e2 + c n with constant a, b, c, so its derivative is a e1' + b e2' + c n'. It
+is also w x the vector, with the angular velocity w, so that
 
     |n|^2 w = (e1' . e2) n - (e1' . n) e2 + (e2' . n) e1.
 """
@@ -32,17 +32,17 @@ from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.slopes import ByInput
 from pointcoord.linkage.topology import Topology
 
-# Of a velocity: rates of solved points are off by some 1e-14 of themselves, and by far more near a singular
-# pose, so that a part as small as this may be none.
+# Share of a velocity. Rates of solved points have relative errors of some 1e-14, and far larger ones near a
+# singular pose, so a component as small as this may be zero.
 LEAST_PART = 1e-9
 
 
 @dataclass(frozen=True)
 class Wheel:
-    """One wheel of a mechanism: of all of it, or of a part, whose names begin with the part's and a dot.
+    """One wheel of a mechanism without parts, or of a part, whose names begin with the part and a dot.
 
     Attributes:
-        part: its name; empty for the whole mechanism.
+        part: name of the part; empty for a mechanism without parts.
     """
 
     topology: Topology
@@ -50,17 +50,17 @@ class Wheel:
 
     @classmethod
     def of(cls, topology: Topology, number: str) -> Wheel:
-        """The wheel that a number is of, by the number's name."""
+        """The wheel that a number of the car belongs to, from the number's name."""
         return cls(topology, number.rpartition(".")[0])
 
     @property
     def prefix(self) -> str:
-        """What its names begin with."""
+        """The prefix of the wheel's names."""
         return f"{self.part}." if self.part else ""
 
     @property
     def side(self) -> str:
-        """The side of the car that the part is on; empty for the whole mechanism, whose scene says it."""
+        """The part's side of the car; empty for a mechanism without parts, whose scene gives the side."""
         return self.topology.sides.get(self.part, "")
 
     @property
@@ -74,12 +74,12 @@ class Wheel:
         return self.topology.driven_along(way, self.part)
 
     def way(self, way: str) -> ByInput:
-        """The way by the one input of these; by none where the part that is solved for has none."""
+        """The way by the one driven input of a kind; by no input if the part to be solved has none."""
         return ByInput("".join(self.driven(way)[:1]))
 
 
 def wheels_of(topology: Topology, roles: Iterable[str]) -> tuple[Wheel, ...]:
-    """The wheels of a mechanism that have all of some roles."""
+    """The wheels of a mechanism that have all of these roles."""
     wheels = (Wheel(topology, part) for part in ("", *topology.sides))
     return tuple(wheel for wheel in wheels if all(map(wheel.role, roles)))
 
@@ -91,9 +91,9 @@ class View(Generic[S]):
     Attributes:
         of: the wheel, whose roles name the points.
         points: places, as vectors.
-        component: of a vector without slopes, along a direction.
-        up, outboard: these directions, as vectors.
-        radius: of the wheel.
+        component: function (vector without derivatives, direction) -> component.
+        up, outboard: these directions as vectors.
+        radius: radius of the wheel.
     """
 
     of: Wheel
@@ -104,7 +104,7 @@ class View(Generic[S]):
     radius: S
 
     def along(self, vector: P, direction: Direction) -> P:
-        """The component of a vector along a direction, of a dual with its slope."""
+        """The component of a vector along a direction; for a dual, with its derivative."""
         return linear(self.component, vector, direction)
 
     def role(self, name: str) -> S:
@@ -125,7 +125,7 @@ class View(Generic[S]):
     def contact(self) -> S:
         """From the wheel centre to the lowest point of a thin disc about the spin axis.
 
-        -r d / |d| with d = up - (up . a) a / (a . a), what of up lies in the disc.
+        -r d / |d| with d = up - (up . a) a / (a . a), the part of up that lies in the disc.
         """
         a = self.spin
         in_disc = self.up - times(ratio(dot(self.up, a), dot(a, a)), a)
@@ -134,14 +134,14 @@ class View(Generic[S]):
 
 @dataclass(frozen=True, eq=False)
 class Corner(Generic[S]):
-    """One wheel of a pose.
+    """One wheel in a pose.
 
     Attributes:
-        seen: its points after the turns of the chassis, from anywhere.
-        chassis: the same in the chassis' frame.
-        drawn: the same as drawn.
-        origin: from the user's origin to that of the points.
-        car: what the scene says of the whole car, by name; lengths in the unit of the points.
+        seen: its points after the rotations of the chassis, from any origin.
+        chassis: its points in the chassis' frame.
+        drawn: its points as drawn.
+        origin: from the user's origin to the points' origin.
+        car: the scene's data of the whole car by name; lengths in the points' unit.
     """
 
     seen: View[S]
@@ -151,22 +151,22 @@ class Corner(Generic[S]):
     car: Mapping[str, S]
 
     def moved(self) -> S:
-        """How far the contact point has gone from its drawn place."""
+        """Displacement of the contact point from its drawn place."""
         return _moved(self.seen, self.drawn) + (self.seen.contact() - self.drawn.contact())
 
     def moved_in_chassis(self) -> S:
-        """The same in the chassis' frame, of a disc that hangs along the chassis' up."""
+        """Displacement of the contact point in the chassis' frame, with the disc along the chassis' up."""
         return _moved(self.chassis, self.drawn) + (self.chassis.contact() - self.drawn.contact())
 
     def risen(self) -> S:
-        """How far the wheel centre has gone up in the chassis' frame."""
+        """Displacement of the wheel centre along up in the chassis' frame."""
         return self.chassis.along(_moved(self.chassis, self.drawn), "up")
 
     def moving(self, slopes: tuple[Mapping[str, Any], Mapping[str, Any]]) -> Corner[Dual[Any]]:
-        """The same with derivatives of its points; directions, the drawing and the radius have none.
+        """The corner with derivatives of its points; those of directions, drawing and radius are zero.
 
         Args:
-            slopes: of the points seen and in the chassis' frame.
+            slopes: derivatives of the points in `seen`, and of those in `chassis`.
         """
 
         def held(part: Any) -> Dual[Any]:
@@ -191,18 +191,18 @@ def _moved(view: View[S], drawn: View[S]) -> S:
 
 
 def contact_place(corner: Corner[Dual[Any]]) -> Any:
-    """Where the contact point is."""
+    """The place of the contact point."""
     return corner.seen.contact_place().value
 
 
 def velocity_at(corner: Corner[Dual[Any]], place: Any) -> Any:
-    """The derivative of the point of the knuckle that is at a place."""
+    """The derivative of the knuckle's point at a place."""
     base = corner.seen.points[corner.seen.of.role("knuckle")[0]]
     return base.slope + turning_of(corner, place - base.value)
 
 
 def turning_of(corner: Corner[Dual[Any]], vector: Any) -> Any:
-    """The derivative of a vector that is fixed in the knuckle."""
+    """The derivative of a vector fixed in the knuckle."""
     e1, e2, normal = _frame(corner)
     n = normal.value
     square = dot(n, n)
@@ -213,10 +213,10 @@ def turning_of(corner: Corner[Dual[Any]], vector: Any) -> Any:
 
 
 def told_from_none(part: Any, *of: Any) -> Any:
-    """A part of a velocity; no number where rounding does not tell it from none.
+    """A component of a velocity; NaN where rounding may hide that it is zero.
 
     Args:
-        of: the velocity, and vectors as long as what it is made of.
+        of: the velocity, and vectors of the size of the terms that it is computed from.
     """
     if not isinstance(part, np.ndarray):
         return part
@@ -225,13 +225,13 @@ def told_from_none(part: Any, *of: Any) -> Any:
 
 
 def rising(corner: Corner[Dual[Any]]) -> Any:
-    """The derivative of the travel of the wheel centre; no number where the wheel does not travel."""
+    """The derivative of the wheel centre's travel; NaN where the wheel does not travel."""
     view = corner.chassis
     return told_from_none(corner.risen().slope, view.points[view.of.centre].slope)
 
 
 def angular_velocity(corner: Corner[Dual[Any]]) -> Any:
-    """The turn of the knuckle along the way, rad per unit of the input."""
+    """Angular velocity of the knuckle along the way, rad per unit of the input."""
     e1, e2, _ = _frame(corner)
     return turn_of_edges(e1.value, e2.value, e1.slope, e2.slope)
 
@@ -252,6 +252,6 @@ def _frame(corner: Corner[Dual[Any]]) -> tuple[Dual[Any], Dual[Any], Dual[Any]]:
 
 
 def at_rest(view: View[Dual[Any]]) -> View[Any]:
-    """What is seen, without derivatives."""
+    """A view without derivatives."""
     points = {name: place.value for name, place in view.points.items()}
     return View(view.of, points, view.component, view.up.value, view.outboard.value, view.radius.value)

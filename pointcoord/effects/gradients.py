@@ -1,13 +1,13 @@
-r"""What every number of the car changes by as wheel or rack travels, the chassis rolls, or in time: exact.
+r"""Gradients: exact derivatives of every number of the car by wheel travel, rack travel, roll or time.
 
 With points P, their derivatives P_q by one input q or by time, and a number N(P),
 
     by_rack:    N_P P_s                               s the input that steers, mm
-    by_travel:  (N_P P_b) / (T_P P_b)                 b the other one, T the travel of the wheel centre, mm
+    by_travel:  (N_P P_b) / (T_P P_b)                 b the other input, T the wheel centre's travel, mm
     by_roll:    N_P P_r                               r the input that turns the chassis lengthwise, rad
-    by_time:    N_P P'                                as all inputs and the chassis move
+    by_time:    N_P P'                                with all inputs and the chassis moving
 
-The formula of N gives its derivative with it where points are duals (see `arithmetic`).
+The formula of N gives N's derivative too, if its points are duals (see `arithmetic`).
 """
 
 from __future__ import annotations
@@ -24,26 +24,26 @@ BY_TIME = "by_time"
 
 
 def gradients(base: CarNumbers, way: str) -> CarNumbers:
-    """What the numbers of an effect change by along a way."""
-    timed, said = way == BY_TIME, WAYS[way]
-    as_it_goes = "" if timed else f" {said['words']}"
-    gives = f"what these change by per {said['per']}{as_it_goes}: {base.gives}"
+    """The effect that gives the derivatives of an effect's numbers along a way."""
+    timed, entry = way == BY_TIME, WAYS[way]
+    as_it_goes = "" if timed else f" {entry['words']}"
+    gives = f"change per {entry['per']}{as_it_goes} of: {base.gives}"
     numbers = [_gradient(number, way) for number in base.numbers]
     return CarNumbers.of(f"{base.name}_{way}", gives, *numbers, base=base.name, derivative=int(timed))
 
 
 def _gradient(number: Number, way: str) -> Number:
-    timed, travels, said = way == BY_TIME, way == BY_TRAVEL, WAYS[way]
-    per = f"{said['per']}{'' if timed else f' {way}'.replace('_', ' ')}"
+    timed, travels, entry = way == BY_TIME, way == BY_TRAVEL, WAYS[way]
+    per = f"{entry['per']}{'' if timed else f' {way}'.replace('_', ' ')}"
     return Number(
         name=f"{number.name}_{way}",
         words=f"{number.words} per {per}",
-        sign=f"where it grows {said['words']}",
-        definition=f"the derivative of `{number.name}` {said['words']}",
+        sign=f"where it grows {entry['words']}",
+        definition=f"the derivative of `{number.name}` {entry['words']}",
         formula=partial(_by_travel if travels else _slope, number),
         roles=tuple(dict.fromkeys((*number.roles, *(("wheel_axis",) if travels else ())))),
         needs_radius=number.needs_radius,
-        quantity=QUANTITIES[said[number.quantity.unit]],
+        quantity=QUANTITIES[entry[number.quantity.unit]],
         way="" if timed else way,
         power=(number.quantity.unit == "mm") - travels,
     )

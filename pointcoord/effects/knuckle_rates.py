@@ -1,12 +1,13 @@
-r"""How fast the knuckle turns, and how fast that changes.
+r"""Angular velocity and angular acceleration of the knuckle.
 
-A body turns as two edges of it do (see `knuckle`): what an approximate rate w leaves of the edges' rates,
+They follow from the rates of two edges of the body (see `corner`). For an approximate rate w, the formula
+with the remaining rates of the edges,
 
     s_i = e_i' - w x e_i = (omega - w) x e_i,
 
-gives omega - w by the same formula; alpha likewise from s_i = e_i'' - omega x (omega x e_i) - w x e_i. So a
-rate is refined, and so it is proven how far off one is that was found in whichever way. The paper's quotient
-v65 x v75 / (v65 . r75) is 0/0 whenever omega lies in the points' plane.
+gives omega - w. For alpha the remaining rates are s_i = e_i'' - omega x (omega x e_i) - w x e_i. This refines
+a rate, and it also proves an error bound for a rate found in any other way. The paper's quotient v65 x v75 /
+(v65 . r75) is 0/0 whenever omega lies in the points' plane.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ Array = NDArray[np.float64]
 States = Mapping[str, Array]
 Edges = tuple[Array, Array]
 
-# Each multiplies what is left of the first solution's rounding by some EPS k (see `BodyRates.loss`): some
-# 1e-3 of a needle 1e-6 as thick as long, where after one the rounding was still seen.
+# Each refinement multiplies the first solution's rounding error by some EPS k (see `BodyRates.loss`): some
+# 1e-3 for a needle 1e-6 as thick as long, where the error was still visible after one refinement.
 REFINEMENTS = 2
 VELOCITY = Quantity("angular_velocity", "angular velocity", "rad/s", "body")
 ACCELERATION = Quantity("angular_acceleration", "angular acceleration", "rad/s^2", "body")
@@ -48,7 +49,7 @@ def _edges(points: Mapping[str, P], names: Iterable[str]) -> tuple[P, P]:
 
 
 def _refined(p: P, q: P, v: P, w: P) -> P:
-    """The turn of edges p and q whose rates are v and w."""
+    """The angular velocity of edges p and q whose rates are v and w."""
     turn = still(p)
     for _ in range(1 + REFINEMENTS):
         turn = turn + turn_of_edges(p, q, v - cross(turn, p), w - cross(turn, q))
@@ -56,9 +57,9 @@ def _refined(p: P, q: P, v: P, w: P) -> P:
 
 
 def _require_apart(p: Array, q: Array) -> None:
-    """Refuse a triangle that is flat, by the condition number of the inertia of unit masses at its corners.
+    """Refuse a flat triangle, by the condition number of the inertia of unit masses at its corners.
 
-    With the sum s of the squares of its sides that is 2 s^2 / (3 |p x q|^2) + 2.
+    With s the sum of the squared side lengths, it is 2 s^2 / (3 |p x q|^2) + 2.
     """
     sides = sum(np.vecdot(side, side) for side in (p, q, p - q))
     normal = cross(p, q)
@@ -73,16 +74,16 @@ def _require_apart(p: Array, q: Array) -> None:
 
 @dataclass(frozen=True, eq=False)
 class BodyRates(Effect):
-    """Angular velocity and acceleration of each body that the topology names."""
+    """Angular velocity and acceleration of each body in the topology's `bodies`."""
 
     def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
         """Angular velocity and acceleration of a body from the states of its points, each (..., 3).
 
         Raises:
-            SingularConfiguration: the points are in one line; the turn about it is free.
+            SingularConfiguration: the points are in one line; the rotation about it is free.
         """
         (p, q), (v, w), (a, b) = (_edges(states, states) for states in (position, velocity, acceleration))
-        # By a power of two near the body's size, so that no product of lengths over- or underflows.
+        # Scaled by a power of two near the body's size: products of lengths neither over- nor underflow.
         size = max(float(np.abs(plain(edge)).max(initial=0.0)) for edge in (p, q))
         scale = float(np.ldexp(1.0, -np.frexp(size or 1.0)[1]))
         p, q, v, w, a, b = (multiple(scale, part) for part in (p, q, v, w, a, b))
@@ -92,14 +93,14 @@ class BodyRates(Effect):
         return omega, _refined(p, q, a, b)
 
     def loss(self, edges: Edges, rates: Edges) -> Array:
-        """How many times what looking at the equations rounds the rates may lose, shape (..., 1).
+        """Factor by which the rates' errors may exceed the rounding of the equations, shape (..., 1).
 
-        Of a thin triangle the first solution cancels. A solution is off by EPS k,
-        k = ((|e1|^2 + |e2|^2) / |e1 x e2|)^2, and a refined one keeps a rounding of that of what it corrects;
-        4e3 covers the sums. Of any knuckle but a needle the loss is 1.
+        In a thin triangle the first solution cancels. Its relative error is EPS k,
+        k = ((|e1|^2 + |e2|^2) / |e1 x e2|)^2, and a refined solution has a rounding of that share in its
+        correction; 4e3 covers the sums. The factor is 1 for any knuckle but a needle.
 
         Args:
-            edges: from the body's first point to its second and its third, (..., 3); rates: theirs.
+            edges: from the body's first point to its second and its third, (..., 3); rates: of the edges.
         """
         first, second = edges
         area = np.linalg.norm(np.cross(first, second), axis=-1, keepdims=True)
@@ -113,7 +114,7 @@ class BodyRates(Effect):
         return "" if topology.bodies else no_role(self.name, "knuckle", topology)
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        """Rates of each body in the user's axes, each (..., N, 3); the chassis' motion turns nothing."""
+        """Rates of each body in the user's axes, each (..., N, 3), with the chassis' rotations included."""
         found: dict[str, dict[str, Array]] = {VELOCITY.name: {}, ACCELERATION.name: {}}
         for body, points in poses.mechanism.topology.bodies.items():
             states = ({point: state[point] for point in points} for state in poses.states[:3])
@@ -121,7 +122,7 @@ class BodyRates(Effect):
         return found
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
-        """What the rates of the body's edges leave of the reported ones."""
+        """Error bounds from the remaining rates of the edges at the reported body rates."""
         found: dict[str, dict[str, Array]] = {VELOCITY.name: {}, ACCELERATION.name: {}}
         for body in numbers[VELOCITY.name]:
             names, spin = poses.mechanism.topology.bodies[body], None
@@ -132,7 +133,7 @@ class BodyRates(Effect):
             loss = self.loss(edges, rates)
             for d, quantity in enumerate(found, 1):
                 reported = numbers[quantity][body]
-                # About a rate that is no number nothing can be proven, but what is expected can be said.
+                # For a rate that is NaN nothing can be proven, but an expected error can be given.
                 near = np.nan_to_num(reported, posinf=0.0, neginf=0.0) * poses.powers[d][..., None]
                 off = body_rate_error(poses.points[0], poses.points[d], names, near, spin)
                 error = np.where(np.isfinite(reported), np.abs(off.middle) + off.radius[0], np.inf)
@@ -144,13 +145,13 @@ class BodyRates(Effect):
 def body_rate_error(
     points: Points, rates: Points, names: Sequence[str], found: Array, pull: Enclosed | None
 ) -> Enclosed:
-    """Exact rate of a body less the one that was found, (N, 3).
+    """Exact rate of a body minus the computed one, enclosed, (N, 3).
 
     Args:
         points, rates: positions and velocities, or accelerations, of the body's points.
-        names: of the body's points; the first three are taken.
+        names: names of the body's points; the first three are used.
         found: the computed rate, (N, 3).
-        pull: the exact angular velocity where `rates` are accelerations.
+        pull: the exact angular velocity if `rates` are accelerations, else None.
     """
     (e1, e2), (v1, v2) = _edges(points, names), _edges(rates, names)
     turning = e1.like(found)

@@ -1,17 +1,18 @@
-r"""What rods and joints carry of loads at the wheels: statics at each pose, by virtual work.
+r"""Loads: forces in rods and joints under loads at the wheels; statics at each pose, by virtual work.
 
-A load acts on the knuckle at the contact point. If a rod were longer by dl, all else held, the contact point
-would move by dc and the knuckle turn by dt, and
+A load acts on the knuckle at the contact point. If a rod grew by dl, all else held, the contact point would
+move by dc and the knuckle rotate by dt, and
 
     N dl = F . dc + M . dt,
 
-N the rod's tension. Likewise N of the damper, which holds its corner in place of the input that moves the
-wheel: that input is free. With W_q and l_q the work and the damper's length per unit of that input, and W_s
-and l_s along another way s, what s makes with the damper held is W_s - W_q l_s / l_q. At a ball joint the
-half of the one body moves by e from that of the other, on which the force f acts: f . e = F . dc + M . dt.
-At each of the two points of a hinge this gives the force across their line. Along it only both together are
-determined: a body that is stretched between them does not move as one. A point on a slide has the force by
-which its line moves from it: across the line, and along it where an input drives the travel.
+with N the rod's tension. N of the damper follows likewise: the damper holds its corner in place of the input
+that moves the wheel, which is free. With W_q and l_q the work and the damper's length per unit of that input,
+and W_s and l_s along another way s, the work along s with the damper held is W_s - W_q l_s / l_q. At a ball
+joint the half of one body moves by e from that of the other, on which the force f acts:
+f . e = F . dc + M . dt. At each of the two points of a hinge this gives the force across the hinge's line.
+Along the line only the sum of both forces is determined, since a body stretched between the points would not
+move as a rigid one. A point on a slide has the force that belongs to moving the slide's line away from it:
+across the line, and along it where an input drives the travel.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ ROD_FORCE = Quantity(
     "force in the rod",
     "N",
     "car",
-    "of each rod, and of `damper`: the work of the loads per mm that it is lengthened, all else held",
+    "of each rod, and of `damper`: the work of the loads per mm of lengthening, all else held",
     "tension",
 )
 JOINT_FORCE = Quantity(
@@ -51,9 +52,9 @@ JOINT_FORCE = Quantity(
     "N",
     "joint",
     "of each ball joint, of both points of a hinge, and of each point on a slide: (Fx, Fy, Fz) on the "
-    "knuckle, or where it is none of the two on the moving body that the mechanism's file names first; of a "
-    "hinge across its line; of a slide across its line, and along it where an input drives the travel, on "
-    "the point itself if no body has it, as on the end of a rack",
+    "knuckle, else on the moving body that the mechanism's file names first, or on the point itself if no "
+    "body has it, as at the end of a rack; for a hinge across its line only; for a slide across its line, "
+    "and along it where an input drives the travel",
     "along the user's axes",
 )
 HINGE_THRUST = Quantity(
@@ -61,7 +62,7 @@ HINGE_THRUST = Quantity(
     "force along the hinge",
     "N",
     "car",
-    "of each hinge, by its first point: what acts on the same body along the line, at both points together",
+    "of each hinge, by its first point: sum of the forces on the same body along the line at both points",
     "from the first point that the body lists to the second",
 )
 HOLDING = "damper"
@@ -71,18 +72,18 @@ AXES = np.eye(3)
 
 @dataclass(frozen=True, eq=False)
 class _Along:
-    """What happens along a way.
+    """Changes along a way.
 
     Attributes:
-        work: of all loads, N times the unit of length.
-        dampers: what their lengths change by.
+        work: work of all loads, N times the unit of length.
+        dampers: changes of the dampers' lengths.
     """
 
     work: Any
     dampers: tuple[Any, ...]
 
     def with_held(self, held: int, free: _Along) -> _Along:
-        """The same with a damper held and an input free that moves it."""
+        """The changes with a damper held, and the input that moves this damper free."""
         share = ratio(self.dampers[held], free.dampers[held])
         pairs = zip(self.dampers, free.dampers, strict=True)
         return _Along(self.work - share * free.work, tuple(one - share * other for one, other in pairs))
@@ -90,11 +91,11 @@ class _Along:
 
 @dataclass(frozen=True, eq=False)
 class Loads(Effect):
-    """The forces that hold a mechanism under the loads of its scene."""
+    """The forces that hold a mechanism under its scene's loads."""
 
     @property
     def way(self) -> str:
-        """By lengths, gaps and the inputs that dampers stand for."""
+        """Non-empty, since it needs derivatives along lengths, gaps and the inputs that dampers replace."""
         return "lengths"
 
     @property
@@ -102,7 +103,7 @@ class Loads(Effect):
         return "the wheel's travel does not change the damper's length there"
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
-        """Every rod and damper; ball joints, points of hinges and points on slides; thrusts of hinges."""
+        """Names of rods and dampers; points of ball joints, hinges and slides; hinges with thrusts."""
         dampers = (f"{wheel.prefix}{HOLDING}" for wheel in _held(topology))
         return {
             ROD_FORCE.name: (*topology.rods, *dampers),
@@ -111,7 +112,7 @@ class Loads(Effect):
         }
 
     def ways(self, topology: Topology) -> tuple[Way, ...]:
-        """The inputs that are free, the lengths of rods, and three gaps of each point of a joint."""
+        """The free inputs, the lengths of rods, and three gaps for each point of a joint."""
         return (
             *(wheel.way(BY_TRAVEL) for wheel in _held(topology)),
             *map(ByLength, topology.rods),
@@ -131,8 +132,8 @@ class Loads(Effect):
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         if not axes.loads:
-            advice = "give it under [mechanism.loads], such as force = [0.0, 0.0, 3000.0]"
-            return lacks(self.name, "a load, and the scene has none", advice)
+            advice = "give one under [mechanism.loads], such as force = [0.0, 0.0, 3000.0]"
+            return lacks(self.name, "a load, which the scene does not give", advice)
         for part in axes.loads:
             wheel = Wheel(topology, part)
             for role in ROLES:
@@ -142,10 +143,8 @@ class Loads(Effect):
             return no_radius(self.name)
         if topology.left_out:
             rows = ", ".join(topology.left_labels)
-            needs = (
-                f"a mechanism that is held in one way only, and of {topology.name!r} these rows follow from"
-            )
-            return lacks(self.name, f"{needs} the others: {rows}", "join it with fewer")
+            needs = f"a mechanism without redundant joints, and in {topology.name!r} these rows follow from"
+            return lacks(self.name, f"{needs} the others: {rows}", "remove redundant joints")
         for wheel in _held(topology):
             driven = wheel.driven(BY_TRAVEL)
             if len(driven) != 1:
@@ -159,7 +158,7 @@ def _joined(topology: Topology) -> tuple[str, ...]:
 
 
 def _held(topology: Topology) -> tuple[Wheel, ...]:
-    """The corners that a damper holds."""
+    """The wheels that a damper holds."""
     return wheels_of(topology, (HOLDING,))
 
 
@@ -168,10 +167,10 @@ def _forces(
     unit: float,
     constant: Callable[[Array], Any],
 ) -> dict[str, dict[str, Any]]:
-    """Tensions and forces in whichever arithmetic the corners are.
+    """Tensions and forces in the arithmetic of the corners.
 
     Args:
-        unit: mm in the unit of the corners. constant: plain numbers in their arithmetic.
+        unit: 1 mm in the corners' unit. constant: converts plain numbers to their arithmetic.
     """
     topology, slopes = poses.mechanism.topology, cast("Mapping[Way, Any]", poses.slopes)
     loaded = [(corner_of(poses, Wheel(topology, part)), load) for part, load in poses.axes.loads.items()]
@@ -183,7 +182,7 @@ def _forces(
             moving = one.moving(slopes[way])
             works.append(dot(constant(force), velocity_at(moving, contact_place(moving))))
             for i in np.flatnonzero(moment).tolist():
-                # How the knuckle turns about an axis: as the next axis goes along the one after it.
+                # The knuckle's rotation about an axis: how far the next axis moves along the one after it.
                 turn = turning_of(moving, constant(AXES[i - 2]))
                 works.append(dot(constant(moment[i] * unit * AXES[i - 1]), turn))
         work = works[0]
@@ -229,14 +228,14 @@ def _forces(
 
 
 def _length(corner: Corner[Any], role: str) -> Any:
-    """What the distance of the two points of a role changes by."""
+    """The change of the distance between the two points of a role."""
     line = corner.seen.role(role)
     return root(dot(line, line)).slope
 
 
 LOADS = Loads(
     name="loads",
-    gives="what rods and joints carry of the loads at the wheels, N",
+    gives="forces in rods and joints under the loads at the wheels, N",
     sign="tension of a rod or damper: positive; components along the user's axes; a thrust from the first "
     "point of a hinge to the second",
     derivative=0,

@@ -1,4 +1,4 @@
-"""The effects that are numbers of the car, as `numbers.toml` says them, with their formulas."""
+"""The effects that are numbers of the car, built from `numbers.toml` and the modules with their formulas."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ QUANTITIES = {WHEEL.name: WHEEL} | {
     name: Quantity(name, entry["words"], entry["unit"], "car") for name, entry in TABLES["quantities"].items()
 }
 WAYS: Mapping[str, Mapping[str, str]] = TABLES["ways"]
-"""By way: its words, its unit, and the quantity that an angle or a length per unit of it is."""
+"""Way -> its words, its unit, and the quantities of an angle and of a length per unit of the way."""
 READ_FIRST: tuple[str, ...] = tuple(TABLES["read_first"])
-"""The numbers that a table shows unless others are asked for, as far as a car has them."""
+"""The numbers that a table shows by default, as far as a car has them."""
 RANKED_FIRST: tuple[str, ...] = tuple(TABLES["ranked_first"])
-"""The numbers whose hardpoints are ranked unless others are asked for, as far as a car has them."""
+"""The numbers whose hardpoints are ranked by default, as far as a car has them."""
 
 OF_EFFECTS = ("gives", "nowhere", "of_axle", "gradients", "taken", "numbers")
 OF_FORMULAS = ("formula", "screw", "file", "axis")
@@ -57,7 +57,7 @@ def _number(name: str, entry: Entry, made: Mapping[str, Number]) -> Number:
     if "screw" in keys:
         like = made[keys["screw"]]
         keys |= {"words": f"{like.words} of the screw axis", "sign": like.sign}
-        keys |= {"definition": f"`{like.name}` with that axis in place of k"}
+        keys |= {"definition": f"`{like.name}` with the screw axis in place of k"}
         names = (like.name,)
         if isinstance(like, Angle):
             names, keys = ("lean", like.sine, like.cosine), {**keys, "quantity": WHEEL.name, "power": 0}
@@ -67,7 +67,7 @@ def _number(name: str, entry: Entry, made: Mapping[str, Number]) -> Number:
 
 
 def _formula(file: ModuleType, names: tuple[str, ...], axis: str) -> Callable[..., Any]:
-    """A function of a file with what it takes first, of an axis of the wheel if one is named."""
+    """A function of a module with its first arguments bound; with `axis`, applied to that axis of a wheel."""
     formula = getattr(file, names[0])
     if len(names) > 1:
         formula = partial(formula, *names[1:])
@@ -75,8 +75,8 @@ def _formula(file: ModuleType, names: tuple[str, ...], axis: str) -> Callable[..
 
 
 CAR_NUMBERS = {effect.name: effect for effect in _effects()}
-"""The effects, in the order of results."""
+"""The effects by name, in the order of results."""
 WITH_GRADIENTS = tuple(
     effect for effect in CAR_NUMBERS.values() if TABLES["effects"][effect.name].get("gradients")
 )
-"""Those whose numbers' derivatives are effects too."""
+"""The effects whose numbers' derivatives are effects too."""

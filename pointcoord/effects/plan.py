@@ -1,4 +1,4 @@
-"""Which effects are computed of a scene, and which points and derivatives they need."""
+"""The plan of a scene: which effects are computed, and which points and derivatives they need."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pointcoord.linkage.topology import Topology
 
 @dataclass(frozen=True)
 class Plan:
-    """The effects that are computed.
+    """The effects to compute.
 
     Attributes:
-        computed: what is always computed, then what the scene asks for, in the order of the registry.
+        computed: effects that are always computed, then the requested ones, in the registry's order.
         unreported: points of the car whose states are not reported.
     """
 
@@ -26,7 +26,7 @@ class Plan:
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """The names of those that the scene asks for."""
+        """Names of the requested effects."""
         return tuple(effect.name for effect in self.computed if effect.name in EFFECTS)
 
     @property
@@ -34,13 +34,13 @@ class Plan:
         return tuple(name for name in EFFECTS if name not in self.effects)
 
     def lacking(self, quantity: str, topology: Topology) -> dict[str, tuple[str, ...] | None]:
-        """What more of a quantity each of these would give; None for every point or every body."""
+        """Names of a quantity that each effect left out would add; None for every point or every body."""
         gives = {name: EFFECTS[name].gives_numbers(topology) for name in self.left_out}
         return {name: each[quantity] for name, each in gives.items() if quantity in each}
 
     @property
     def derivative(self) -> int:
-        """Highest time derivative that is solved for, of any point."""
+        """Highest time derivative to be solved for, over all points."""
         return max(effect.derivative for effect in self.computed)
 
     @property
@@ -55,7 +55,7 @@ class Plan:
         return tuple(name for name in topology.points if name not in self.unreported)
 
     def derivatives(self, topology: Topology) -> dict[str, int]:
-        """Highest time derivative that is evaluated of each point that is reported or needed."""
+        """Highest time derivative to be evaluated of each point that is reported or needed."""
         found: dict[str, int] = {}
         for effect in self.computed:
             points = self.reported(topology) if effect.reports_states else effect.needs(topology)
@@ -72,7 +72,7 @@ def plan_effects(
     """The plan for a list of effects.
 
     Args:
-        instead: by name, effects that are computed in another way than the registry's.
+        instead: name -> effect that replaces the registry's.
         unreported: points of the car whose states are not reported.
     Raises:
         UnknownName: an effect that does not exist.

@@ -1,4 +1,4 @@
-"""The position of every point, which every motion reports, and its time derivatives, an effect for each."""
+"""The position of every point, which every motion reports, and its time derivatives, one effect for each."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PointStates(Effect):
-    """The time derivative of every point's position, of the order `derivative`."""
+    """The time derivative of order `derivative` of every point's position."""
 
     @property
     def base(self) -> str:
-        """The position, of a derivative without a name of its own."""
+        """The position, for a derivative without a name of its own; else empty."""
         return "" if self.derivative < len(NAMED) else NAMED[0]
 
     @property
@@ -35,13 +35,13 @@ class PointStates(Effect):
         return topology.points
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        """The states with what the user's origin and the chassis' motion add to them, each (..., N, 3)."""
+        """The states plus the user's origin and the chassis' displacement, each (..., N, 3)."""
         states, added = poses.states[self.derivative], poses.added[self.derivative]
         reported = {name: state if added is None else state + added for name, state in states.items()}
         return {self._quantity: reported}
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
-        """Distance of what is reported from where the point is, and what a sum in doubles loses."""
+        """Distances of the reported states from the exact ones, with the expected rounding of a sum."""
         errors = {
             name: poses.reported(name, self.derivative).errors(reported)
             for name, reported in numbers[self._quantity].items()
@@ -55,10 +55,10 @@ class PointStates(Effect):
 
 
 NAMED = ("position", "velocity", "acceleration", "jerk", "snap", "crackle", "pop")
-"""By order of the time derivative, those that have names."""
+"""The derivatives that have names, in order."""
 HIGHEST = 20
-"""Bounds of doubles grow with each order. Five digits and more are proven of this one in the shipped scenes,
-but for Bricard's redundant rows; of the thirtieth there may be none."""
+"""Error bounds of doubles grow with each order. At this order, at least five digits are proven in the shipped
+scenes, except for Bricard's redundant rows; at the thirtieth there may be none."""
 
 
 def _states(derivative: int) -> PointStates:
@@ -78,5 +78,5 @@ def _states(derivative: int) -> PointStates:
 POSITION, *RATES = map(_states, range(HIGHEST + 1))
 
 STATES = tuple(effect.name for effect in (POSITION, *RATES))
-"""Their names, by order."""
+"""The names of all states, by order."""
 FIRST_NUMBERED = STATES[len(NAMED)]

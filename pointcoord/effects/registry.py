@@ -1,4 +1,4 @@
-"""The effects that there are: a line for each."""
+"""The registry of all effects, one line for each group."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pointcoord.effects.numbers import CAR_NUMBERS, WAYS, WITH_GRADIENTS
 from pointcoord.effects.point_states import POSITION, RATES
 
 ALWAYS: tuple[Effect, ...] = (POSITION,)
-"""What every motion reports."""
+"""The effects that every motion reports."""
 
 EFFECTS: Mapping[str, Effect] = {
     effect.name: effect
@@ -27,7 +27,7 @@ EFFECTS: Mapping[str, Effect] = {
         LOADS,
     )
 }
-"""What a scene may list, by name."""
+"""The effects that a scene may list, by name."""
 
 NUMBERS_OF_THE_CAR: Mapping[str, Number] = {
     number.name: number
@@ -35,16 +35,16 @@ NUMBERS_OF_THE_CAR: Mapping[str, Number] = {
     if isinstance(effect, CarNumbers)
     for number in effect.numbers
 }
-"""Numbers of a car, by their names; of a part's wheel these have its name and a dot before them."""
+"""Numbers of the car by name; for a part's wheel, the part and a dot come before these names."""
 
 
 def number_called(name: str) -> Number | None:
-    """The number of the car that has a name, which may be a part's; None if there is none."""
+    """The number of the car with a name, which may be a part's; None if there is no such number."""
     return NUMBERS_OF_THE_CAR.get(name.rpartition(".")[2])
 
 
 def words_of(name: str) -> str:
-    """A number of the car for people, with the part that it is of; its name if there is none."""
+    """A number of the car in words, with its part; the name itself if there is no such number."""
     number, part = number_called(name), name.rpartition(".")[0]
     return f"{part} {number.words}".strip() if number else name
 
@@ -52,15 +52,15 @@ def words_of(name: str) -> str:
 ANGLES: Mapping[str, Angle] = {
     name: number for name, number in NUMBERS_OF_THE_CAR.items() if isinstance(number, Angle)
 }
-"""Those that are angles of a line."""
+"""The numbers that are angles of a line."""
 
 
 def angle_called(name: str) -> Angle | None:
-    """The angle of a line by its name, which may have that of a part before it; None if there is none."""
+    """The angle of a line by name, which may be a part's; None if there is no such angle."""
     return ANGLES.get(name.rpartition(".")[2])
 
 
 QUANTITIES: Mapping[str, Quantity] = {
     quantity.name: quantity for effect in (*ALWAYS, *EFFECTS.values()) for quantity in effect.quantities
 }
-"""The kinds of numbers that a motion can report, in their order."""
+"""The quantities that a motion can report, in order."""

@@ -1,18 +1,18 @@
-r"""Where a wheel's steering axis meets the road, and how far it passes from the wheel centre.
+r"""The steering axis: where it meets the road, how far it passes from the wheel centre, and the screw axis.
 
-With k along the axis, A a point of it, c the contact point and W the wheel centre, the axis is at the height
-of a place p at
+With k along the axis, A a point of it, c the contact point and W the wheel centre, the axis at the height of
+a place p is at
 
     A + k (p_up - A_up) / k_up.
 
-*The screw axis* is that of the knuckle as the rack moves and all else is held: the axis that it is steered
-about. A mechanism without a steering axis, such as five links, has this one too ("virtual kingpin"). With w
-the turn of the knuckle and v the displacement of W per mm of rack, its direction is w, upward, and
+*The screw axis* is the knuckle's screw axis as the rack moves and all else is held: the axis about which the
+wheel is steered. A mechanism without a steering axis, such as a five-link, has one too ("virtual kingpin").
+With w the rotation of the knuckle and v the displacement of W per mm of rack, its direction is w, upward, and
 
     W + w x v / |w|^2
 
-is a point of it; w . v / |w|^2 is how far the knuckle goes along it per radian. The lengths and angles are
-those of the steering axis, of this one (suspension-explorer; Altair holds the spring's travel).
+is a point of it. w . v / |w|^2 is the knuckle's advance along it per radian. Lengths and angles are defined
+as for the steering axis (suspension-explorer; Altair holds the spring's travel).
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ from pointcoord.effects.arithmetic import (
 from pointcoord.effects.corner import Corner, View, angular_velocity, at_rest
 from pointcoord.linkage.car_axes import Direction
 
-# Turns per rack travel of one radius of the wheel that rounding does not tell from none.
+# Rotation of the knuckle for a rack travel of one wheel radius, rad: a smaller one cannot be told from zero.
 LEAST = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Axis(Generic[S]):
-    """An axis that a wheel is steered about.
+    """An axis about which a wheel is steered.
 
     Attributes:
-        view: of the wheel.
+        view: view of the wheel.
         direction: k, of any length.
         beside: from the wheel centre to A.
     """
@@ -62,43 +62,43 @@ class Axis(Generic[S]):
 
     @property
     def at_ground(self) -> S:
-        """From the axis to the contact point at its height."""
+        """From the axis at the contact point's height to the contact point."""
         contact = self.view.contact()
         return contact - self.at(self.view.along(contact - self.beside, "up"))
 
     @property
     def at_wheel(self) -> S:
-        """From the wheel centre to the axis at its height."""
+        """From the wheel centre to the axis at the wheel centre's height."""
         return self.at(-self.view.along(self.beside, "up"))
 
 
 def steering_axis(corner: Corner[S]) -> Axis[S]:
-    """The one that the mechanism's role names."""
+    """The axis of the role `steering_axis`."""
     view = corner.seen
     start, _ = view.of.role("steering_axis")
     return Axis(view, view.role("steering_axis"), view.line(view.of.centre, start))
 
 
 def kingpin_offset(axis: Axis[S]) -> S:
-    """From the axis to the contact point at ground, along the car's outboard."""
+    """From the axis to the contact point at the ground, along the car's outboard."""
     return axis.view.along(axis.at_ground, "outboard")
 
 
 def castor_offset(axis: Axis[S]) -> S:
-    """The same along the car's rearward."""
+    """From the axis to the contact point at the ground, along the car's rearward."""
     return axis.view.along(axis.at_ground, "rearward")
 
 
 def scrub_radius(axis: Axis[S]) -> S:
-    """The distance of both in the road (ISO 8855, 7.2.10)."""
+    """The distance between axis and contact point in the road (ISO 8855, 7.2.10)."""
     gap = axis.at_ground
     return root(dot(gap, gap))
 
 
 def mechanical_trail(axis: Axis[S]) -> S:
-    """From the contact point to the axis at ground, along the tyre's own x (ISO 8855, 7.2.3).
+    """From the contact point to the axis at the ground, along the tyre's own x (ISO 8855, 7.2.3).
 
-    That is level, at right angles to the spin axis, and forward where that points outboard.
+    The tyre's x is level, normal to the spin axis, and forward where the spin axis points outboard.
     """
     view = axis.view
     level = cross(view.spin, view.up)
@@ -107,30 +107,30 @@ def mechanical_trail(axis: Axis[S]) -> S:
 
 
 def kingpin_offset_at_wheel(axis: Axis[S]) -> S:
-    """From the axis to the wheel centre at its height, along the car's outboard."""
+    """From the axis to the wheel centre at the wheel centre's height, along the car's outboard."""
     return -axis.view.along(axis.at_wheel, "outboard")
 
 
 def hub_trail(axis: Axis[S]) -> S:
-    """From the wheel centre to the axis at its height, along the car's rearward (Lotus)."""
+    """From the wheel centre to the axis at the wheel centre's height, along the car's rearward (Lotus)."""
     return axis.view.along(axis.at_wheel, "rearward")
 
 
 def screw_axis(corner: Corner[Dual[Any]]) -> Axis[Any]:
-    """That axis, from W."""
+    """The screw axis of the knuckle, with W + w x v / |w|^2 as its point."""
     view, (turn, moved) = at_rest(corner.seen), _twist(corner)
     beside = times(reciprocal(dot(turn, turn)), cross(turn, moved))
     return Axis(view, times(sign_of(view.along(turn, "up")), turn), beside)
 
 
 def pitch(corner: Corner[Dual[Any]]) -> Any:
-    """W . v / |w|^2."""
+    """The advance along the screw axis per radian, w . v / |w|^2."""
     turn, moved = _twist(corner)
     return ratio(dot(turn, moved), dot(turn, turn))
 
 
 def _twist(corner: Corner[Dual[Any]]) -> tuple[Any, Any]:
-    """Turn and displacement; no number where the knuckle does not turn, or about no line that leads up."""
+    """Rotation and displacement; NaN where the knuckle does not rotate, or about a level axis only."""
     turn, moved = angular_velocity(corner), corner.seen.points[corner.seen.of.centre].slope
     if isinstance(turn, np.ndarray):
         rise = corner.seen.along(turn, "up")
@@ -139,10 +139,10 @@ def _twist(corner: Corner[Dual[Any]]) -> tuple[Any, Any]:
 
 
 def lean(sine: Direction, cosine: Direction, axis: Axis[S]) -> S:
-    """The angle of an axis that has its sine and its cosine along two directions of the car."""
+    """The angle of an axis, with its sine and cosine along two directions of the car."""
     return angle(axis.view.along(axis.direction, sine), axis.view.along(axis.direction, cosine))
 
 
 def of_axis(axis: Callable[[Corner[S]], Axis[S]], formula: Callable[[Axis[S]], S], corner: Corner[S]) -> S:
-    """What a formula gives of an axis of a wheel."""
+    """A formula applied to an axis of a wheel."""
     return formula(axis(corner))

@@ -1,13 +1,13 @@
-"""How the wheel leans and points by arcsines, and how it moves from where it is drawn.
+"""Wheel angles by arcsines, and the wheel's displacement from its drawn place.
 
-With n the spin axis, of length 1, some programs have the arcsines -asin(n . up) and asin(n . forward) for
-camber and toe, where others project n into a plane first. Adams/Car's turning tables have this camber, up to
-0.18 degrees from the projected one at steering lock; OptimumK has this toe, 0.999229 degrees where the
-projected one is 1 and camber is 2.25. The projected ones are angles of a line (see `angle`): for the left
-wheel in the paper's axes kingpin angle and camber are its eqs. (16) and (17).
+With n the unit vector of the spin axis, some programs define camber as -asin(n . up) and toe as
+asin(n . forward), where others project n into a plane first. Adams/Car's turning tables use this camber,
+which differs by up to 0.18 degrees from the projected one at steering lock. OptimumK uses this toe: 0.999229
+degrees where the projected toe is 1 and camber is 2.25. The projected angles are angles of a line (see
+`angle`); for the left wheel in the paper's axes kingpin angle and camber are its eqs. (16) and (17).
 
-Travel is counted in the chassis' frame, of the wheel centre and of the contact point by their own names: at
-equal travel they leave some thousandths of a degree between the angles (Lotus drives the contact point).
+Travel is measured in the chassis' frame, at the wheel centre and at the contact point under separate names:
+at equal travel they differ by some thousandths of a degree in the angles (Lotus drives the contact point).
 """
 
 from __future__ import annotations
@@ -42,20 +42,20 @@ def _components(view: View[S]) -> tuple[S, S, S]:
 
 
 def travel(corner: Corner[S]) -> S:
-    """(W - drawn W) . up of the wheel centre W."""
+    """Displacement of the wheel centre W, (W - drawn W) . up."""
     return corner.risen()
 
 
 def contact_travel(corner: Corner[S]) -> S:
-    """The same of the contact point of a disc that hangs along the chassis' up."""
+    """Displacement of the contact point along up, of a disc along the chassis' up."""
     return corner.chassis.along(corner.moved_in_chassis(), "up")
 
 
 def half_track_change(corner: Corner[S]) -> S:
-    """(c - drawn c) . outboard of the contact point c."""
+    """Outboard displacement of the contact point c, (c - drawn c) . outboard."""
     return corner.seen.along(corner.moved(), "outboard")
 
 
 def recession(corner: Corner[S]) -> S:
-    """(c - drawn c) . rearward."""
+    """Rearward displacement of the contact point c, (c - drawn c) . rearward."""
     return corner.seen.along(corner.moved(), "rearward")

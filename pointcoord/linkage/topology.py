@@ -203,8 +203,7 @@ class Topology:
     def paired_pieces(self) -> tuple[tuple[tuple[Piece, Piece], ...], NDArray[np.intp]]:
         """Pairs of pieces of one line, and the coordinates of their starts and ends, (pairs, 2, 2, 3).
 
-        A piece is a pair of points with a sense along the line: a link on it, or its start and a sliding
-            point.
+        A piece is a pair of points with a sense along the line: a link on it, or its start and a slider.
         """
         on_lines: dict[Piece, list[str]] = {}
         for constraint in self.constraints:

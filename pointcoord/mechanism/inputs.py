@@ -230,7 +230,7 @@ def input_of(table: object) -> object:
         hint = next((key for key in table if key not in ("along", "about")), "")
         if not found and hint:
             raise no_such("kind of input", hint, TELLING, (hint,))
-        counted = f"is of {len(found)} kinds" if found else "is of no kind"
+        counted = f"has keys of {len(found)} kinds" if found else "has no key of a known kind"
         raise TableFault((), counted, f"one of {', '.join(TELLING)}")
     kind = KINDS[found[0]] if found[0] != "angle" else Turn if table.get("from") == "drawing" else Arm
     known_keys(table, [own.alias or key for key, own in kind.model_fields.items()])

@@ -1,1 +1,1 @@
-"""Numbers and equations, and no linkage: quadratic maps, their solution, series and bounds."""
+"""Numerics without reference to linkages: quadratic maps, their solution, series and bounds."""

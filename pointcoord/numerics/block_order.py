@@ -1,14 +1,14 @@
-"""Which rows of a square system determine which unknowns, block after block.
+"""Block order of a square system: which rows determine which unknowns, block after block.
 
-A row reads some coordinates. A perfect matching gives each unknown a row of its own (Duff's MC21: depth
-first with a look ahead; ACM Trans. Math. Softw. 7 (1981) 315). With an arrow from each row to the rows of
-the unknowns that it reads, rows in a circle belong together: the strong components (Tarjan, SIAM J. Comput.
-1 (1972) 146) are the blocks, and they come out in an order in which they can be solved. In this order the
-Jacobian is block triangular, so it has full rank where each block has. Whichever perfect matching is found,
-the blocks are the same (Dulmage and Mendelsohn).
+A row reads some coordinates. A perfect matching assigns each unknown a row of its own (Duff's MC21: depth
+first with a look ahead; ACM Trans. Math. Softw. 7 (1981) 315). Draw an arrow from each row to the rows of the
+unknowns that it reads: rows on a common cycle belong together. These strong components (Tarjan, SIAM J.
+Comput. 1 (1972) 146) are the blocks, found in an order in which they can be solved. In this order the
+Jacobian is block triangular, so it has full rank if each diagonal block has. The blocks do not depend on
+which perfect matching is found (Dulmage and Mendelsohn).
 
-Both searches keep their own stacks, so that a chain of any length is no recursion. The components take one
-pass over the entries; so does the matching of a linkage, where few rows have to give way to another.
+Both searches use explicit stacks, so long chains cause no deep recursion. The components take one pass over
+the entries; so does the matching of a linkage, where few rows must give up their unknown to another.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class Block:
     """Rows that determine unknowns, given the known coordinates and the unknowns of earlier blocks.
 
     Attributes:
-        rows: their numbers, ascending.
-        unknowns: what they determine, as many, ascending.
+        rows: row numbers, ascending.
+        unknowns: the unknowns that the rows determine, one per row, ascending.
         reads: every other coordinate that the rows read, ascending.
     """
 
@@ -41,7 +41,7 @@ class Block:
 
 @dataclass(frozen=True)
 class DiagonalBlocks:
-    """Diagonal blocks of one size: their numbers, (count,), and their rows and unknowns, (count, size)."""
+    """Diagonal blocks of one size: block numbers, (count,), and rows and unknowns of each, (count, size)."""
 
     numbers: Indices
     rows: Indices
@@ -56,7 +56,7 @@ class BlockOrder:
 
     @cached_property
     def diagonal(self) -> tuple[DiagonalBlocks, ...]:
-        """The diagonal blocks of a matrix, those of one size together."""
+        """The diagonal blocks of a matrix, grouped by size."""
         sizes: dict[int, list[int]] = {}
         for number, block in enumerate(self.blocks):
             sizes.setdefault(len(block.rows), []).append(number)
@@ -70,7 +70,7 @@ class BlockOrder:
         )
 
     def needed(self, unknowns: Collection[int]) -> tuple[int, ...]:
-        """Numbers of the blocks that these unknowns hang on, their own among them, in order."""
+        """Numbers of the blocks that determine these unknowns, including earlier blocks, in order."""
         wanted, found = set(unknowns), []
         for number in range(len(self.blocks) - 1, -1, -1):
             block = self.blocks[number]
@@ -80,7 +80,7 @@ class BlockOrder:
         return tuple(reversed(found))
 
     def moved_by(self, known: Mapping[int, frozenset[int]]) -> tuple[frozenset[int], ...]:
-        """Which causes move each block, where these known coordinates are moved by some each."""
+        """The causes that move each block; `known` gives the causes that move each known coordinate."""
         moved, found = dict(known), list[frozenset[int]]()
         for block in self.blocks:
             causes = frozenset[int]().union(*(moved[i] for i in block.reads if i in moved))
@@ -90,9 +90,9 @@ class BlockOrder:
 
 
 def block_order_of(reads: Sequence[Collection[int]], unknowns: int) -> BlockOrder:
-    """The blocks of a system; one block of everything where rows and unknowns cannot be paired.
+    """The blocks of a system; a single block if rows and unknowns cannot be paired.
 
-    `QuadraticMap.block_order` remembers it.
+    `QuadraticMap.block_order` caches the result.
 
     Args:
         reads: the coordinates that each row reads, of which the first `unknowns` are unknown.
@@ -112,7 +112,7 @@ def block_order_of(reads: Sequence[Collection[int]], unknowns: int) -> BlockOrde
 
 
 def rows_too_many(reads: Sequence[Collection[int]], unknowns: int) -> tuple[int, ...]:
-    """Rows that read fewer unknowns than they are, whatever the numbers in them; empty if there are none."""
+    """Rows that together read fewer unknowns than they are, for any coefficients; empty if there are none."""
     _, spare = _matching([[i for i in row if i < unknowns] for row in reads], unknowns)
     return spare
 
@@ -123,10 +123,10 @@ def _block(patterns: Sequence[Collection[int]], rows: Collection[int], unknowns:
 
 
 def _matching(entries: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int], tuple[int, ...]]:
-    """The row of each unknown, each row once, and rows that cannot all have one.
+    """The row of each unknown, each row used once; and a set of rows that cannot all have an unknown.
 
-    A row takes a free unknown if it reads one; else it looks for a row that may give way, and so on. Where
-    none may, the rows that were looked at have all the unknowns that they read, and are one more (Hall).
+    A row takes a free unknown if it reads one; else it looks for a row that can give up its unknown, and so
+    on. If none can, the visited rows occupy all unknowns that they read, and are one more (Hall).
     """
     row_of = [FREE] * unknowns
     looked = [0] * len(
@@ -140,7 +140,7 @@ def _matching(entries: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int
             while looked[row] < len(entries[row]) and row_of[entries[row][looked[row]]] != FREE:
                 looked[row] += 1
             if looked[row] < len(entries[row]):
-                # Everyone on the path takes the unknown that the next one gives up.
+                # Each row on the path takes the unknown that the next row gives up.
                 wanted[-1] = entries[row][looked[row]]
                 for one, unknown in zip(path, wanted, strict=True):
                     row_of[unknown] = one
@@ -162,9 +162,9 @@ def _matching(entries: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int
 
 
 def _strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Nodes on a common circle, as components; a component comes after all that it has arrows to."""
+    """Nodes on common cycles, as components; each component comes after all those that it has arrows to."""
     count = len(successors)
-    number, low = [FREE] * count, [FREE] * count  # order of discovery, and the lowest that is reached
+    number, low = [FREE] * count, [FREE] * count  # order of discovery, and the lowest number reached
     open_nodes: list[int] = []
     is_open = [False] * count
     found: list[list[int]] = []

@@ -1,12 +1,13 @@
-r"""A function on [-1, 1] as a polynomial of a low degree through its values at Chebyshev's points.
+r"""A function on [-1, 1] as a polynomial of low degree through its values at the Chebyshev points.
 
 With x_j = -cos(pi j / n) and T_k Chebyshev's polynomials, the polynomial through the n + 1 values f_j is
 
     sum_k a_k T_k,      a_k = (2 / n) sum''_j f_j T_k(x_j),  a_0 and a_n halved,
 
-'' halving the first and the last term. It passes an error of the values on at most some 2.3 times for n = 8
-(the Lebesgue constant), and differs from the function by at most twice the sum of the coefficients of T_k,
-k > n, that the function has (Trefethen, Approximation Theory and Approximation Practice, theorems 4.2, 15.1).
+where '' halves the first and the last term. An error of the values is amplified by at most some 2.3 for n = 8
+(the Lebesgue constant). The polynomial differs from the function by at most twice the sum of the magnitudes
+of the function's coefficients of T_k, k > n (Trefethen, Approximation Theory and Approximation Practice,
+theorems 4.2, 15.1).
 """
 
 from __future__ import annotations
@@ -23,13 +24,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Interpolation:
-    """Matrices of a degree n.
+    """Matrices for a degree n.
 
     Attributes:
         points: x_j, ascending, shape (n + 1,).
-        coefficients: of a_k from f_j, (n + 1, n + 1).
-        powers: of the coefficients of x^m from a_k, [k, m].
-        slopes: of the polynomial's derivative at the points from f_j, (n + 1, n + 1).
+        coefficients: from f_j to a_k, (n + 1, n + 1).
+        powers: from a_k to the coefficients of x^m, [k, m].
+        slopes: from f_j to the polynomial's derivative at the points, (n + 1, n + 1).
     """
 
     points: Array
@@ -40,11 +41,11 @@ class Interpolation:
     def chebyshev(self, values: Array, moved: Array) -> Array:
         """a_k from values near the points, both shape (..., n + 1).
 
-        What the values differ by is transformed, not what they have in common, so that this is not rounded.
+        Only differences of the values are transformed, so that their common part is not rounded.
 
         Args:
-            moved: how far from its point each value was taken, below 2^-24 of the whole; corrected by the
-                slope, which leaves the square of that.
+            moved: distance of each value's place from its point, below 2^-24 of the interval; corrected to
+                first order, which leaves an error of the distance squared.
         """
         middle = values[..., len(self.points) // 2, None]
         spread = values - middle
@@ -72,5 +73,5 @@ def interpolation(degree: int) -> Interpolation:
 
 @lru_cache(maxsize=64)
 def binomials(orders: int) -> Array:
-    """binomial(j, m), [j, m], for both below `orders`."""
+    """binomial(j, m), [j, m], for j and m below `orders`."""
     return np.array([[float(comb(j, m)) for m in range(orders)] for j in range(orders)])

@@ -1,4 +1,4 @@
-"""A count of what a solver did, so that what was not asked for can be shown not to be computed."""
+"""Counts a solver's operations, to show that nothing is computed that was not requested."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ class Work:
         residuals: evaluations of the constraints.
         factorisations: Jacobians built and factorised.
         rate_solves: linear solves for rates (velocity, acceleration and higher orders).
-        unknowns_solved: unknowns of these, summed.
-        segments: power series that the motion is made of.
+        unknowns_solved: unknowns in those solves, summed.
+        segments: power series in the motion.
         series_orders: orders of those series, summed.
         derivatives_evaluated: time derivatives evaluated at the instants (0 position, 1 velocity, ...).
         coordinates_evaluated: coordinates per instant, over all derivatives.

@@ -1,11 +1,11 @@
 r"""Numbers in twice the working precision, from sums and products whose rounding is computed exactly.
 
-With fl(a + b) = s and fl(a b) = p, both rounding errors are numbers of the format and come out of a few
-more operations (Knuth's sum, Dekker's product):
+With fl(a + b) = s and fl(a b) = p, both rounding errors are doubles and take a few more operations (Knuth's
+sum, Dekker's product):
 
-    a + b = s + e,      a b = p + f      exactly, but for overflow and underflow.
+    a + b = s + e,      a b = p + f      exactly, except for overflow and underflow.
 
-A number is carried as a pair high + low.
+A number is stored as a pair high + low.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Pair = tuple[Array, Array]
 """Numbers as high and low."""
 
 SPLITTER = 2.0**27 + 1.0  # splits 53 bits into two halves whose products are exact
-# A product of pairs and a sum of four of them round some twenty times in units of u^2; three times that.
+# A product of pairs and a sum of four of them have about 20 roundings of u^2; this is three times that.
 PAIRS = 64.0 * UNIT_ROUNDOFF**2
 
 
@@ -33,7 +33,7 @@ def two_sum(a: Array, b: Array) -> tuple[Array, Array]:
     """
     high = a + b
     virtual = high - a
-    # In place, which takes two thirds of the time: a and b less their parts in high, with the other sign.
+    # In place, which takes two thirds of the time: the remainders of a and b with reversed sign.
     rest = high - virtual
     rest -= a
     virtual -= b
@@ -42,7 +42,7 @@ def two_sum(a: Array, b: Array) -> tuple[Array, Array]:
 
 
 def quick_two_sum(a: Array, b: Array) -> tuple[Array, Array]:
-    """The same where b is the smaller, in half the operations; else the low part is rounded by 2 u of b."""
+    """a + b as high and low for |b| <= |a|, in half the operations; else low is wrong by up to 2 u of b."""
     high = a + b
     return high, b - (high - a)
 

@@ -1,4 +1,4 @@
-"""Residual and polar form of a quadratic map where its coordinates are enclosed (see `enclosure`)."""
+"""Residual and polar form of a quadratic map at enclosed coordinates (see `enclosure`)."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ Edges = tuple[Enclosed, Enclosed]
 
 
 def differences(system: QuadraticMap, state: Enclosed) -> Edges:
-    """Both differences of every term, (..., terms), of coordinates (..., size)."""
+    """Both differences in every term, (..., terms), from coordinates (..., size)."""
     (first, second), (left, right) = system.differences
     each = state.take(first) - state.take(second)
     return each.take(left), each.take(right)
 
 
 def residual(system: QuadraticMap, a: Edges) -> Enclosed:
-    """C(a) of the differences of a state, (..., rows)."""
+    """C(a), from the differences of a state, (..., rows)."""
     return _row_sums(system, a[0] * a[1])
 
 
 def twice_polar(system: QuadraticMap, a: Edges, b: Edges) -> Enclosed:
-    """2 B(a, b) of two states' differences, (..., rows)."""
+    """2 B(a, b), from the differences of two states, (..., rows)."""
     return _row_sums(system, (a[0] * b[1]).scaled(2.0) if a is b else a[0] * b[1] + b[0] * a[1])
 
 
 def _row_sums(system: QuadraticMap, products: Enclosed) -> Enclosed:
-    """Sums of terms, without their coefficients, into rows."""
+    """Rows as sums of their terms' products times the coefficients."""
     coefficients, starts = system.terms
     terms = products.scaled(coefficients)
     total, lengths = terms.take(starts), np.diff(starts, append=len(coefficients))

@@ -1,25 +1,26 @@
-r"""Numbers in twice the working precision that carry two bounds through every operation.
+r"""Enclosures: numbers in twice the working precision with two error bounds, kept through every operation.
 
 An `Enclosed` is high + low with two radii:
 
-- *proven*: the exact number lies within it of high + low, whatever rounding did;
-- *expected*: what an evaluation of the same formula in plain doubles loses at most where nothing is wrong, by
-  running error analysis (Higham, Accuracy and Stability, section 3.3): each operation adds u of its result.
+- *proven*: the exact number lies within this distance of high + low, with all rounding counted;
+- *expected*: the largest error to expect if the same formula is evaluated in plain doubles, by running error
+  analysis (Higham, Accuracy and Stability, section 3.3): each operation adds u of its result.
 
-Both follow the same rules, |x| s + r |y| + r s for a product, so they are carried as one array with a
+Both follow the same rules, such as |x| s + r |y| + r s for a product, so they are stored as one array with a
 leading dimension of 2.
 
-Numbers that lie close together, such as a point's at neighbouring instants, share an anchor, high + low, and
-radii: each is high + low + change, |change| <= reach, where the arrays of anchors have 1 for a dimension. A
-change is a plain double, and what rounds it is u of it: less than u of the number by what the numbers lie
-apart, for one operation or four where twice the working precision takes thirty. A product changes by
+Numbers that lie close together, such as a point's coordinate at neighbouring instants, share an anchor,
+high + low, and radii. Each number is high + low + change, |change| <= reach; the anchor's arrays have size 1
+in the shared dimensions. A change is a plain double with a rounding of u of itself: less than u of the
+number, since the numbers differ little. This takes one to four operations instead of thirty. A product
+changes by
 
     (x + dx)(y + dy) - x y = dx (y + dy) + x dy,
 
-of which leaving out the two low parts, two sums and two products round 4 u (|dx| (|y| + |dy|) + |x| |dy|).
+where leaving out both low parts, two sums and two products cost 4 u (|dx| (|y| + |dy|) + |x| |dy|).
 
-Operations keep |low| <= u |high|, up to u^2 of their operands; with that a sum is rounded by 5 u^2 of its
-operands and a product by 8 u^2 of itself, and underflow by less than TINY.
+Operations keep |low| <= u |high|, up to u^2 of their operands. With that, a sum has a rounding of 5 u^2 of
+its operands and a product 8 u^2 of itself; underflow costs less than TINY.
 """
 
 from __future__ import annotations
@@ -40,29 +41,29 @@ Indices = NDArray[np.intp]
 
 OF_A_SUM = 8.0 * UNIT_ROUNDOFF**2
 OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2
-# What rounds changes, of their reach: a sum; a product; a difference of two numbers of instants; a turn, by
-# its sine and versine; a distance from a reported number.
+# Rounding of changes relative to their reach: for a sum; a product; a difference between two instants; a
+# rotation, by its sine and versine; a distance from a reported number.
 SUM_OF_CHANGES, PRODUCT_OF_CHANGES, CHANGE_OF_INSTANTS, TURN_OF_CHANGES, DISTANCE_OF_CHANGES = (
     count * UNIT_ROUNDOFF for count in (1.0, 4.1, 3.0, 8.0, 3.0)
 )
-TINY = 1e-307  # a product loses less to underflow, by some 16 orders
-NORMAL = float(np.finfo(float).tiny)  # below it a number has fewer digits
-HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
-STEPS, FARTHEST = 256.0, 805  # of a table of angles, and how many of them reach beyond pi
+TINY = 1e-307  # a product loses less than this to underflow, by some 16 orders of magnitude
+NORMAL = float(np.finfo(float).tiny)  # below this a number has fewer digits
+HALVINGS, TERMS = 6, 11  # halved so often, |angle| is below 0.05: omitted terms are below 1e-49
+STEPS, FARTHEST = 256.0, 805  # steps per radian of the table of angles; the step count that exceeds pi
 TURN = 6.283185307179586, 2.4492935982947064e-16
-"""2 pi as high and low."""
-# Components of both factors of a vector product: of what is added, then of what is taken off.
+"""2 pi as high and low part."""
+# Components of both factors of a vector product: first for the added products, then for the subtracted ones.
 BOTH_WAYS = np.concatenate([NEXT, LAST]), np.concatenate([LAST, NEXT])
 
 
 @dataclass(frozen=True)
 class Enclosed:
-    """high + low + change and their radii.
+    """Numbers high + low + change with their radii.
 
     Attributes:
         high, low: of the anchors, of any shape.
-        radius: the proven and the expected one, of that shape with 2 before it.
-        change: from the anchors, of that shape with any number for a dimension of 1.
+        radius: proven and expected radius, of the anchors' shape with 2 in front.
+        change: from the anchors; of their shape, where a dimension of 1 may have any size.
         reach: at least |change|, of the anchors' shape.
     """
 
@@ -76,7 +77,7 @@ class Enclosed:
     def of(
         cls, high: ArrayLike, low: ArrayLike = 0.0, proven: ArrayLike = 0.0, expected: ArrayLike = 0.0
     ) -> Enclosed:
-        """From its parts, broadcast to one shape; an exact number unless radii are given."""
+        """An enclosure from its parts, broadcast to one shape; an exact number unless radii are given."""
         number, *others = (np.asarray(part, dtype=float) for part in (high, low, proven, expected))
         if any(part.ndim and part.shape != number.shape for part in others):
             number, *others = np.broadcast_arrays(number, *others)
@@ -120,13 +121,13 @@ class Enclosed:
         return Enclosed(high, low, radius, change, reach)
 
     def times(self, count: int) -> Enclosed:
-        """A whole multiple."""
+        """The product with a whole number."""
         if count & (count - 1):
             return self * Enclosed.of(float(count))
         return self.scaled(float(count))
 
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
-        """Times powers of two, which rounds nothing but what falls below the normal numbers."""
+        """The product with powers of two, which is exact except below the normal numbers."""
         factor = np.asarray(powers_of_two, dtype=float)
         high, low, change = self.high * factor, self.low * factor, self.change * factor
         factor = np.abs(factor)
@@ -147,8 +148,8 @@ class Enclosed:
         return self.high, self.low, self.radius, self.change, self.reach
 
     def take(self, places: Indices | list[int] | slice) -> Enclosed:
-        """Elements of the last dimension; of a slice a view."""
-        # The numbers of a place lie side by side in memory, as those of a component do everywhere.
+        """Elements of the last dimension; a view for a slice."""
+        # Numbers of one component are contiguous in memory everywhere.
         return Enclosed(*(components_last(components_first(part)[places]) for part in self.parts))
 
     def component(self, place: int) -> Enclosed:
@@ -157,19 +158,19 @@ class Enclosed:
 
     @property
     def spread_out(self) -> Enclosed:
-        """With a last dimension of 1, to multiply vectors."""
+        """The numbers with a last dimension of 1, to multiply vectors."""
         return Enclosed(*(part[..., None] for part in self.parts))
 
     def cosine_sine(self) -> tuple[Enclosed, Enclosed]:
-        """Cosine and sine of an angle between -pi and pi, about the nearest of a table of angles a.
+        """Cosine and sine of an angle between -pi and pi, expanded about the nearest table angle a.
 
         With d = angle - a, s = sin d and l = 1 - cos d,
 
             cos = cos a - (l cos a + s sin a),      sin = sin a - (l sin a - s cos a).
 
-        Of s / d and 2 l / d^2 what goes with d^4 is below 1e-12, so that plain doubles do. The changes are by
-        the same formulas, in plain doubles and from the anchors. The expected radius is that of functions
-        right to a unit in the last place.
+        In s / d and 2 l / d^2, terms from d^4 on are below 1e-12, so plain doubles are enough for them.
+        Changes follow the same formulas, in plain doubles and from the anchors. The expected radius is that
+        of library functions with an error of one unit in the last place.
         """
         anchor = Enclosed.of(self.high, self.low, *self.radius)
         known = np.nan_to_num(self.high, posinf=0.0, neginf=0.0)
@@ -192,7 +193,7 @@ class Enclosed:
             -(values[0].high * versine + values[1].high * turn),
             values[0].high * turn - values[1].high * versine,
         )
-        # No sine or cosine changes by more than its angle does.
+        # A sine or cosine changes by at most the change of its angle.
         proven = outside + self.reach * (values[0].radius[0] + values[1].radius[0] + TURN_OF_CHANGES)
         first, second = (
             Enclosed(
@@ -213,12 +214,12 @@ class Enclosed:
 
     @property
     def alone(self) -> Enclosed:
-        """Each number by itself, without an anchor, with radii of its own."""
-        # Of the anchor's radii, and what rounds the middle.
+        """The numbers without anchors, each with its own radii."""
+        # The anchor's radii plus the rounding of the middle.
         return Enclosed.of(self.middle, 0.0, *(self.radius + 2.0 * UNIT_ROUNDOFF * self.size))
 
     def apart(self, reported: Array) -> Array:
-        """Largest distance of the exact number from a reported one that is close, shape of the change."""
+        """Upper bound of the distance of the exact number from a close reported one, shape of the change."""
         distance = reported - self.high
         distance -= self.low
         distance -= self.change
@@ -228,23 +229,23 @@ class Enclosed:
         return np.asarray(distance)
 
     def errors(self, reported: Array) -> Array:
-        """Proven and expected error of a reported number that is close, with a leading dimension of 2."""
+        """Proven and expected error of a close reported number, with a leading dimension of 2."""
         return both(self.apart(reported), self.radius[1])
 
     def like(self, values: Array, proven: float = 0.0, expected: float = 0.0) -> Enclosed:
-        """Plain numbers that share anchors and radii as these do."""
+        """Plain numbers with anchors and radii of the same shape as these."""
         return anchored(values, self.high.shape, proven, expected)
 
     def corrected(self, values: Array) -> Enclosed:
-        """Values that are off by these numbers, which are far smaller, with what they are off added."""
+        """Values corrected by these far smaller numbers, which are the values' errors."""
         total = self.like(values) + self
         return replace(total, radius=both(total.radius[0], self.radius[1]))
 
     def together(self, group: Callable[[Array], Array]) -> Enclosed:
-        """Single numbers of instants, (N, ...), in groups of m, (G, m, ...), about the middle one of each.
+        """Numbers of separate instants, (N, ...), in groups of m, (G, m, ...), about each group's middle.
 
         Args:
-            group: puts an array into groups.
+            group: reshapes an array into groups.
         """
         high, low = group(self.high), group(self.low)
         middle = slice(high.shape[1] // 2, high.shape[1] // 2 + 1)
@@ -252,7 +253,7 @@ class Enclosed:
         change = (high - high[:, middle]) + less
         reach, lost = (np.abs(part).max(axis=1, keepdims=True) for part in (change, less))
         proven, expected = (group(part).max(axis=1, keepdims=True) for part in self.radius)
-        # The two differences may cancel: each is rounded by what it is.
+        # The two differences may cancel: each has its own rounding.
         radius = both(proven + CHANGE_OF_INSTANTS * (reach + lost), expected)
         return Enclosed(high[:, middle], low[:, middle], radius, change, reach)
 
@@ -260,7 +261,7 @@ class Enclosed:
 def anchored(
     values: Array, shape: tuple[int, ...], proven: ArrayLike = 0.0, expected: ArrayLike = 0.0
 ) -> Enclosed:
-    """Plain numbers about the middle ones of those that share an anchor, which has 1 for some dimensions."""
+    """Plain numbers as enclosures about the middle ones; `shape` has 1 where numbers share an anchor."""
     middle = tuple(
         slice(n // 2, n // 2 + 1) if kept == 1 else slice(None)
         for n, kept in zip(values.shape, shape, strict=True)
@@ -269,14 +270,14 @@ def anchored(
     high = values[middle]
     change = values - high
     reach = np.maximum(change.max(axis=shared, keepdims=True), -change.min(axis=shared, keepdims=True))
-    # A difference of two numbers of which neither is twice the other is exact (Sterbenz).
+    # The difference of two numbers is exact if neither exceeds twice the other (Sterbenz).
     lost = np.where(2.0 * reach <= np.abs(high), 0.0, SUM_OF_CHANGES * reach)
     radius = both(proven + lost, np.broadcast_to(expected, reach.shape))
     return Enclosed(high, np.zeros_like(high), radius, change, reach)
 
 
 def aligned(a: Array, b: Array) -> tuple[Array, Array]:
-    """Radii that broadcast as the numbers do, with dimensions put in behind the first."""
+    """Radii reshaped to broadcast as the numbers do, with dimensions inserted after the first."""
     if a.ndim == b.ndim:
         return a, b
     rank = max(a.ndim, b.ndim)
@@ -287,7 +288,7 @@ def aligned(a: Array, b: Array) -> tuple[Array, Array]:
 def both(proven: ArrayLike, expected: ArrayLike) -> Array:
     """Two arrays, broadcast to one shape, as one with a leading dimension of 2.
 
-    Of three dimensions the last is the first in memory: components of groups of instants.
+    With three dimensions, the last is contiguous by components: groups of instants are stored together.
     """
     shape = np.shape(proven)
     if shape != np.shape(expected):
@@ -315,9 +316,9 @@ def cross(a: Enclosed, b: Enclosed) -> Enclosed:
 
 
 def _less(square: Enclosed, *divisors: float) -> Enclosed:
-    """1 - q/a (1 - q/b (1 - q/c (1 - q/d))) of a small square q, its higher powers in plain doubles.
+    """1 - q/a (1 - q/b (1 - q/c (1 - q/d))) for a small square q, with its higher powers in plain doubles.
 
-    These are rounded by some 8 u of themselves, and of q below 4e-6 what is left out is less.
+    The higher powers have a rounding of some 8 u of themselves; for q below 4e-6 the omitted part is smaller.
     """
     first, second, third, fourth = divisors
     q, most = square.high, square.size
@@ -331,10 +332,10 @@ def _less(square: Enclosed, *divisors: float) -> Enclosed:
 
 @cache
 def _table() -> tuple[Enclosed, Enclosed]:
-    """Cosine and sine of the whole parts of 1 / STEPS between -pi and pi.
+    """Cosine and sine of the multiples of 1 / STEPS between -pi and pi.
 
-    By Taylor's series of a 64th of each and six doublings. With c = cos - 1, which keeps its digits where the
-    angle is small, a doubling is 2 c (2 + c).
+    By Taylor's series for a 64th of each angle and six doublings. With c = cos - 1, which keeps its digits
+    for small angles, a doubling is 2 c (2 + c).
     """
     part = Enclosed.of(np.arange(-FARTHEST, FARTHEST + 1) / STEPS).scaled(2.0**-HALVINGS)
     square = part * part
@@ -358,12 +359,12 @@ def _inverse(number: int) -> Enclosed:
 
 
 def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
-    """Of two numbers, in plain doubles; an infinite radius where the divisor may be 0.
+    """The quotient of two numbers, in plain doubles; an infinite radius where the divisor may be 0.
 
-    Where divisors that share an anchor lie on both sides of 0, each quotient is looked at by itself.
+    If divisors that share an anchor lie on both sides of 0, each quotient is treated separately.
 
     With n, r the numerator and its radius and d, s the divisor's, the exact quotient differs from n/d by at
-    most (r + |n/d| s) / (|d| - s). Each middle is rounded by 2 u of itself, and the quotient by u.
+    most (r + |n/d| s) / (|d| - s). Each middle has a rounding of 2 u of itself, and the quotient one of u.
     """
     if ((divisor.reach > 0.0) & (np.abs(divisor.high) <= divisor.reach + divisor.radius[0])).any():
         numerator, divisor = numerator.alone, divisor.alone
@@ -378,10 +379,10 @@ def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
 
 
 def root(square: Enclosed) -> Enclosed:
-    """Square root of what is not negative, in plain doubles.
+    """Square root of a number that is not negative, in plain doubles.
 
-    |sqrt x - sqrt m| = |x - m| / (sqrt x + sqrt m) <= r / sqrt m, and where that says less at most
-    sqrt(m + r). The middle is rounded by 2 u of itself, and the root by u.
+    |sqrt x - sqrt m| = |x - m| / (sqrt x + sqrt m) <= r / sqrt m, or, where this is smaller, at most
+    sqrt(m + r). The middle has a rounding of 2 u of itself, and the root one of u.
     """
     found = _about(np.sqrt(np.maximum(square.middle, 0.0)), square)
     off = square.radius + 2.0 * UNIT_ROUNDOFF * square.size
@@ -392,31 +393,31 @@ def root(square: Enclosed) -> Enclosed:
 
 
 def angle(sine: Enclosed, cosine: Enclosed) -> Enclosed:
-    """atan2(sine, cosine), rad, in plain doubles; each has radii of its own, of at most pi."""
+    """atan2(sine, cosine), rad, in plain doubles; each number has its own radii, of at most pi."""
     found = np.arctan2(sine.middle, cosine.middle)
     return Enclosed.of(found, 0.0, *angle_error(sine, cosine, found))
 
 
 def within_a_turn(angle: Enclosed) -> Enclosed:
-    """An angle less whole turns, between -pi and pi."""
+    """An angle minus whole turns, between -pi and pi."""
     turns = np.rint(np.nan_to_num(angle.high, posinf=0.0, neginf=0.0) / TURN[0])
     if not turns.any():
         return angle
     high, low = two_product(turns, np.full_like(turns, TURN[0]))
-    # What the two parts of a turn leave out is below 1e-32 of it.
-    doubt = 1e-31 * np.abs(turns) + 4 * UNIT_ROUNDOFF**2 * np.abs(high)
-    return angle - Enclosed.of(high, low + turns * TURN[1], doubt, doubt)
+    # The two parts of TURN differ from 2 pi by less than 1e-32 of it.
+    error = 1e-31 * np.abs(turns) + 4 * UNIT_ROUNDOFF**2 * np.abs(high)
+    return angle - Enclosed.of(high, low + turns * TURN[1], error, error)
 
 
 def _about(values: Array, *operands: Enclosed) -> Enclosed:
-    """Plain numbers that share anchors as operands do."""
+    """Plain numbers with anchors of the same shape as those of the operands."""
     return anchored(values, np.broadcast_shapes(*(operand.high.shape for operand in operands)))
 
 
 def angle_error(sine: Enclosed, cosine: Enclosed, found: Array) -> Array:
-    """Proven and expected error of an angle atan2(sine, cosine) that was found, (2, N), rad; at most pi.
+    """Proven and expected error of a computed angle atan2(sine, cosine), (2, N), rad; at most pi.
 
-    It is off by d with sin d = (sine cos f - cosine sin f) / |(sine, cosine)| where it was found as f.
+    If the computed angle is f, its error d satisfies sin d = (sine cos f - cosine sin f) / |(sine, cosine)|.
     """
     c, s = (
         sine.like(part, 2.0 * UNIT_ROUNDOFF, 2.0 * UNIT_ROUNDOFF) for part in (np.cos(found), np.sin(found))
@@ -427,7 +428,7 @@ def angle_error(sine: Enclosed, cosine: Enclosed, found: Array) -> Array:
         reach = long - 2.0 * np.maximum(sine.radius[0], cosine.radius[0])
         proven = (np.abs(off.middle) + off.radius[0]) / np.where(reach > 0.0, reach, 0.0)
         expected = off.radius[1] / long + 4.0 * EPS
-        # The arc of a sine below 1/2 is at most 1 + x^2 times as long as the sine.
+        # For a sine x below 1/2, the arc is at most 1 + x^2 times as long as the sine.
         turn = np.stack([proven, expected])
         ahead = sine.middle * np.sin(found) + cosine.middle * np.cos(found) > 0.0
         return np.where((turn < 0.5) & np.stack([ahead, ahead | True]), turn * (1.0 + turn**2), np.pi)

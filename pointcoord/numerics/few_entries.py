@@ -1,8 +1,8 @@
-"""Large matrices of few entries: their inverse, their solutions and products with them, by sparse algebra.
+"""Large sparse matrices: their inverse, solutions and products, by sparse algebra.
 
-SuperLU's factors take as many operations as they have entries where LAPACK takes n^3 in all and a product
-with an inverse n^2. Each member of a batch is factorised by itself: so large a mechanism fills a processor
-alone.
+SuperLU's factors take as many operations as they have entries, where LAPACK takes n^3 for the inverse and n^2
+for a product with it. Each member of a batch is factorised separately: a mechanism of this size keeps a
+processor busy on its own.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-# Rows from which on it pays. Measured on chains of rockers, ms, an inverse by factors against LAPACK's: 0.18
-# and 0.08 for 60 rows, 0.4 and 0.6 for 150, 6 and 47 for 600, 115 and 490 for 1500.
+# Rows from which sparse algebra is faster. Measured on chains of rockers, ms for an inverse by SuperLU and by
+# LAPACK: 0.18 and 0.08 for 60 rows, 0.4 and 0.6 for 150, 6 and 47 for 600, 115 and 490 for 1500.
 LARGE = 100
-# Of a matrix' places at most, those that hold an entry: with more there is little to gain.
+# Largest share of nonzero entries: with more there is little to gain.
 DENSEST = 0.1
-# Columns of a product that are made at a time: what they read stays in a second-level cache.
+# Columns of a product computed at a time: the data that they read stay in the second-level cache.
 TOGETHER = 48
 
 
@@ -30,13 +30,13 @@ class SparseFactors:
     """SuperLU's factors of matrices, (..., n, n).
 
     Attributes:
-        factors: of each, an array of `scipy.sparse.linalg.SuperLU` of shape (...,).
+        factors: factors of each matrix, an array of `scipy.sparse.linalg.SuperLU` of shape (...,).
     """
 
     factors: NDArray[np.object_]
 
     def solve(self, right: Array) -> Array:
-        """x with matrix x = right, (..., n); further dimensions before those of the matrices are of one."""
+        """x with matrix x = right, (..., n); further dimensions come before those of the matrices."""
         found, batch = np.empty_like(right), self.factors.shape
         for member in np.ndindex(batch):
             place = (..., *member, slice(None))
@@ -46,24 +46,24 @@ class SparseFactors:
         return found
 
     def taken(self, members: Indices) -> SparseFactors:
-        """Some members, by number; one batch dimension."""
+        """Some members of the one batch dimension, by number."""
         return SparseFactors(self.factors[members])
 
     def reshaped(self, batch: tuple[int, ...]) -> SparseFactors:
-        """The same with other batch dimensions."""
+        """The factors with other batch dimensions."""
         return SparseFactors(self.factors.reshape(batch))
 
 
 def sparse_inverse(matrix: Array) -> tuple[Array, SparseFactors] | None:
-    """The inverse of large matrices of few entries, (..., n, n), and the factors that it is made of.
+    """The inverse of large sparse matrices, (..., n, n), and the factors that it comes from.
 
     Returns:
-        None where the plain way is as good, or there is no inverse.
+        None where dense algebra is as good, or no inverse exists.
     """
     n = matrix.shape[-1]
     if n < LARGE or not (_few(matrix) and np.isfinite(matrix).all()):
         return None
-    # Imported here: no car is so large.
+    # Imported here: no car's matrix is so large.
     from scipy.sparse import csc_matrix
     from scipy.sparse.linalg import splu
 
@@ -72,16 +72,16 @@ def sparse_inverse(matrix: Array) -> tuple[Array, SparseFactors] | None:
     for member in np.ndindex(batch):
         try:
             own: Any = splu(csc_matrix(matrix[member]))
-        except RuntimeError:  # a pivot that is exactly zero
+        except RuntimeError:  # an exactly zero pivot
             return None
         factors[member], inverse[member] = own, own.solve(np.eye(n))
     return inverse, SparseFactors(factors)
 
 
 def product_of_few_entries(left: Array, right: Array) -> Array:
-    """Products of matrices, (..., n, k) and (..., k, m), the right ones of few entries when they are large.
+    """Products of matrices, (..., n, k) and (..., k, m), where large right ones are sparse.
 
-    Some columns at a time: where none of these has an entry in a row, the left one's column adds nothing.
+    Computed for some columns at a time: rows without an entry in these columns are skipped.
     """
     n = right.shape[-1]
     if n < LARGE or not _few(right):
@@ -96,6 +96,6 @@ def product_of_few_entries(left: Array, right: Array) -> Array:
 
 
 def _few(matrix: Array) -> bool:
-    """Whether the members of a batch, (..., n, m), have few entries, each of them and all together."""
+    """Whether the members of a batch, (..., n, m), are sparse, with the entries of all members counted."""
     filled = (matrix != 0.0).reshape(-1, *matrix.shape[-2:]).any(axis=0)
     return bool(np.count_nonzero(filled) <= DENSEST * filled.size)

@@ -1,10 +1,10 @@
 r"""One factorisation of a square system, used for many right-hand sides.
 
-The rows are first scaled by powers of two to a largest entry near 1, which changes no digit. LAPACK's
-LU with partial pivoting then gives the inverse, because the condition number and the error bound of
-a pose need it anyway; each solution is refined once with its own residual, which gives it the accuracy
-of the LU solve (Higham, Accuracy and Stability of Numerical Algorithms, ch. 12 and 14). A large matrix of
-few entries is factorised by sparse algebra (see `few_entries`), and its solutions are found so too.
+The rows are first scaled by powers of two to a largest entry near 1, which is exact. LAPACK's LU with partial
+pivoting then gives the inverse, because the condition number and the error bound of a pose need it anyway.
+Each solution is refined once with its own residual, which makes it as accurate as an LU solve (Higham,
+Accuracy and Stability of Numerical Algorithms, ch. 12 and 14). A large sparse matrix is factorised, and its
+solutions are found, by sparse algebra (see `few_entries`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pointcoord.numerics.rounding import EPS
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-# Rows of a large matrix at a time: what is made of them stays in a second-level cache.
+# Rows of a large matrix processed at a time, so that intermediate results stay in the second-level cache.
 ROWS = 32
 
 
@@ -34,7 +34,7 @@ class Factors:
         inverse: the inverse of the scaled matrix.
         row_scale: the power of two that scales each row, shape (..., n).
         condition: condition number of the scaled matrix in the maximum norm, shape (...,); infinite
-            where the matrix is exactly singular, and no number where it has elements that are none.
+            where the matrix is exactly singular, and NaN where it has NaN elements.
         sparse: factors of the scaled matrix, if it is large and has few entries.
     """
 
@@ -54,7 +54,7 @@ class Factors:
         return np.asarray(found + np.matvec(self.inverse, rows - np.matvec(self.matrix, found)))
 
     def solve_many(self, rights: Array) -> Array:
-        """The same of several right-hand sides for each matrix, (m, ..., n)."""
+        """Solutions for several right-hand sides of each matrix, (m, ..., n), refined once."""
         if self.sparse is not None:
             return self.solve(rights)
         rows = rights * self.row_scale
@@ -63,22 +63,22 @@ class Factors:
         return found
 
     def moved(self, matrix: Array) -> Factors:
-        """The same inverse for a matrix of shape (..., n, n) nearby, |I - inverse matrix| = z well below 1.
+        """Factors of a nearby matrix (..., n, n) with this inverse, |I - inverse matrix| = z well below 1.
 
-        A solution's error is z^2 of itself, because it is refined with the new matrix; the condition number
-        is that of the old one.
+        A solution's relative error is z^2, because it is refined with the new matrix. The condition number
+        is kept from the old matrix.
         """
         scaled = matrix * self.row_scale[..., None]
         return Factors(scaled, self.inverse, self.row_scale, self.condition, self.sparse)
 
     def _times(self, x: Array) -> Array:
-        """The product with vectors of shape (..., n), of the matrix' entries only."""
+        """The product with vectors of shape (..., n), over the nonzero entries only."""
         rows, columns, starts = self._entries
         return np.add.reduceat(self.matrix[..., rows, columns] * x.take(columns, axis=-1), starts, axis=-1)
 
     @cached_property
     def _entries(self) -> tuple[Indices, Indices, Indices]:
-        """Rows and columns of the entries of any member, row after row, and where each row begins."""
+        """Rows and columns of the entries nonzero in any member, row by row, and the start of each row."""
         n = self.matrix.shape[-1]
         filled = (self.matrix != 0.0).reshape(-1, n, n).any(axis=0)
         rows, columns = np.divmod(np.flatnonzero(filled), n)
@@ -96,7 +96,7 @@ class Factors:
         )
 
     def taken(self, members: NDArray[np.intp]) -> Factors:
-        """Some members, by number; one batch dimension."""
+        """Some members of the one batch dimension, by number."""
         return Factors(
             self.matrix[members],
             self.inverse[members],
@@ -106,16 +106,16 @@ class Factors:
         )
 
     def part(self, rows: Indices, unknowns: Indices) -> Factors:
-        """Of some diagonal blocks of a block triangular matrix; its inverse has theirs in the same places.
+        """Factors of diagonal blocks of a block triangular matrix, whose inverse has the blocks' inverses.
 
-        The condition number is that of the whole.
+        The condition number is that of the whole matrix.
         """
         matrix = self.matrix[..., rows[:, None], unknowns]
         inverse = self.inverse[..., unknowns[:, None], rows]
         return Factors(matrix, inverse, self.row_scale[..., rows], self.condition)
 
     def replaced(self, members: NDArray[np.intp], new: Factors) -> Factors:
-        """These factors with some members, by number, taken from others; one batch dimension."""
+        """These factors with some members of the one batch dimension, by number, replaced by others."""
         if len(members) == len(self.condition):
             return new
         result = [self.matrix.copy(), self.inverse.copy(), self.row_scale.copy(), self.condition.copy()]
@@ -131,7 +131,7 @@ class Factors:
 
     @property
     def singular(self) -> NDArray[np.bool_]:
-        """Where no digit of a solution is left: n eps condition >= 1 (or a NaN), shape (...,)."""
+        """Where no digit of a solution is certain: n eps condition >= 1 (or a NaN), shape (...,)."""
         return np.asarray(~(self.matrix.shape[-1] * EPS * self.condition < 1.0))
 
 
@@ -141,7 +141,7 @@ def _times(rows: Array, matrix: Array) -> Array:
 
 
 def factorise(matrix: Array) -> Factors:
-    """Factorise matrices of shape (..., n, n); singular ones are marked, never raised or passed over."""
+    """Factorise matrices of shape (..., n, n); singular ones are marked, and raise no error."""
     row_scale = np.ldexp(1.0, 1 - np.frexp(np.abs(matrix).max(axis=-1))[1])
     scaled = matrix * row_scale[..., None]
     found = sparse_inverse(scaled)
@@ -151,7 +151,7 @@ def factorise(matrix: Array) -> Factors:
     try:
         inverse = np.linalg.inv(scaled)
     except np.linalg.LinAlgError:
-        # One member with an exact zero pivot stops the whole batch: the identity stands in for such members.
+        # An exactly zero pivot in one member stops the whole batch: the identity replaces such members.
         sound = (np.linalg.slogdet(scaled)[0] != 0.0)[..., None, None]
         inverse = np.linalg.inv(np.where(sound, scaled, np.eye(matrix.shape[-1])))
         inverse = np.where(sound, inverse, np.inf)
@@ -167,7 +167,7 @@ def _condition(matrix: Array, inverse: Array) -> Array:
 def _norm(matrix: Array) -> Array:
     """The largest sum of magnitudes of a row, shape (...,)."""
     if matrix.shape[-2] < LARGE:
-        # A product takes a fraction of the time of a reduction.
+        # A product takes a fraction of a reduction's time.
         return np.asarray((np.abs(matrix) @ np.ones(matrix.shape[-1])).max(axis=-1))
     parts = (matrix[..., low : low + ROWS, :] for low in range(0, matrix.shape[-2], ROWS))
     return np.asarray(np.max([np.abs(part).sum(axis=-1).max(axis=-1) for part in parts], axis=0))
@@ -186,5 +186,5 @@ def null_directions(matrix: Array) -> tuple[Array, Array]:
 
 
 def smallest_left_singular_vector(matrix: Array) -> Array:
-    """The unit combination of rows that nearly vanishes, for a nearly singular matrix (n, n); shape (n,)."""
+    """The unit vector of the combination of rows that nearly vanishes, for a nearly singular (n, n); (n,)."""
     return np.asarray(np.linalg.svd(matrix)[0][:, -1])

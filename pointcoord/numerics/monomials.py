@@ -1,8 +1,8 @@
-r"""Powers of several variables at many places, and their time derivatives along any laws.
+r"""Monomials of several variables at many places, and their time derivatives for any laws of the variables.
 
-The powers of a total degree are those of the degree below times one variable each: s_1 times all of them, s_2
-times those without s_1, and so on, the order of `itertools.combinations_with_replacement`. With batch last
-every such product is one call on contiguous numbers, and its derivatives follow Leibniz' rule,
+The monomials of a degree are those of the degree below times one variable each: s_1 times all of them, s_2
+times those without s_1, and so on, in the order of `itertools.combinations_with_replacement`. With the batch
+as the last dimension, every such product is one call on contiguous numbers. Derivatives follow Leibniz' rule,
 (s m)' = s m' + s' m, (s m)'' = s m'' + 2 s' m' + s'' m and so on.
 """
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Step:
-    """Powers low .. high are variable `variable` times the powers first .. last."""
+    """Monomials low .. high are the variable `variable` times the monomials first .. last."""
 
     low: int
     high: int
@@ -32,12 +32,12 @@ class Step:
 
 @lru_cache(maxsize=32)
 def steps(inputs: int, order: int) -> tuple[Step, ...]:
-    """How the powers are made of each other, in the order of their degrees."""
+    """The products that make all monomials from each other, in the order of their degrees."""
     found, last = [], 1
     for degree in range(1, order + 1):
         place = last
         for variable in range(inputs):
-            # Of the degree below, those without the variables before this one come last.
+            # In the degree below, the monomials without earlier variables come last.
             others = inputs - variable
             count = comb(degree - 1 + others - 1, others - 1)
             found.append(Step(place, place + count, variable, last - count, last))
@@ -47,13 +47,14 @@ def steps(inputs: int, order: int) -> tuple[Step, ...]:
 
 
 def monomials(states: Sequence[Array], order: int, room: Array | None = None) -> list[Array]:
-    """Powers of the variables, and their time derivatives.
+    """Monomials of the variables, and their time derivatives.
 
     Args:
-        states: the variables and as many of their derivatives as are wanted, each (p, N).
-        room: where they go, of at least so many derivatives and instants, (derivatives + 2, powers, N); a
-            new array has to be mapped by the system, which takes longer than filling it.
+        states: the variables and as many of their derivatives as wanted, each (p, N).
+        room: array for the results, with at least as many derivatives and instants, (derivatives + 2, powers,
+            N); allocating a new array takes longer than filling it.
     Returns:
+        As many arrays of shape (powers, N).
         As many arrays of shape (powers, N).
     """
     inputs, count = states[0].shape
@@ -64,7 +65,7 @@ def monomials(states: Sequence[Array], order: int, room: Array | None = None) ->
     found[0][0] = 1.0
     for rates in found[1:]:
         rates[0] = 0.0
-    # By derivative d those of a variable times their part in Leibniz' rule.
+    # For each derivative d, the variables' derivatives times their binomial coefficients in Leibniz' rule.
     parts = [
         [comb(d, k) * states[k] if 0 < k < d else states[k] for k in range(d + 1)] for d in range(len(states))
     ]

@@ -1,8 +1,8 @@
-r"""Which powers of several variables a series has, and which of them multiply to which.
+r"""Multi-indices: the powers of several variables in a series, and which pairs of powers multiply to which.
 
 A series in s = (s_1 .. s_p) up to a total degree N is  sum_k c_k s^k  with s^k = s_1^k_1 .. s_p^k_p and
-|k| = k_1 + .. + k_p <= N. Its powers are ordered by their total degree, 1 first, so that those of a lower
-order are the first ones of a higher.
+|k| = k_1 + .. + k_p <= N. Powers are ordered by total degree, 1 first, so that the powers of a lower order
+are the first ones of a higher order.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ class Products:
     """Pairs of powers i and j with s^i s^j = s^k, by k.
 
     Attributes:
-        first, second: the pairs, shape (pairs,). starts: where those of each k begin, shape (targets,).
-        targets: each k, by its place among the powers, shape (targets,).
+        first, second: the pairs, shape (pairs,). starts: index of each k's first pair, shape (targets,).
+        targets: index of each k among the powers, shape (targets,).
     """
 
     first: Indices
@@ -35,7 +35,7 @@ class Products:
 
     @cached_property
     def edges(self) -> list[int]:
-        """Where the pairs of each target begin, and where the last ones end."""
+        """Index of the first pair of each target, and the number of pairs at the end."""
         return [*self.starts.tolist(), len(self.first)]
 
 
@@ -44,7 +44,7 @@ class Powers:
     """The powers of `inputs` variables up to a total degree `order`.
 
     Attributes:
-        exponents: k of each, shape (powers, inputs).
+        exponents: k of each power, shape (powers, inputs).
     """
 
     inputs: int
@@ -53,30 +53,30 @@ class Powers:
 
     @property
     def count(self) -> int:
-        """How many there are: (order + inputs) over inputs."""
+        """Number of powers: (order + inputs) over inputs."""
         return len(self.exponents)
 
     def first_of(self, degree: int) -> int:
-        """Place of the first power of a total degree; that of one above the last ends the last."""
+        """Index of the first power of a total degree; one above the last, the number of powers."""
         return self.edges[degree]
 
     @cached_property
     def edges(self) -> list[int]:
-        """The first power of each total degree, and how many powers there are."""
+        """Index of the first power of each total degree, and the number of powers at the end."""
         degrees = self.exponents.sum(axis=-1)
         edges: list[int] = np.searchsorted(degrees, np.arange(self.order + 2), side="left").tolist()
         return edges
 
     @cached_property
     def pairs(self) -> list[tuple[Places, Places]]:
-        """For each power k, where all i and k - i, 0 <= i <= k, lie in a table of all exponents."""
+        """For each power k, slices of all i and of all k - i, 0 <= i <= k, in a table of all exponents."""
         return [
             (tuple(slice(one + 1) for one in k), tuple(slice(one, None, -1) for one in k))
             for k in self.exponents.tolist()
         ]
 
     def places(self, low: int, high: int) -> Indices | slice:
-        """Where powers lie in a table of all exponents up to `order`, laid out flat."""
+        """Indices of powers in a flat table of all exponents up to `order`."""
         return slice(low, high) if self.inputs == 1 else self._places[low:high]
 
     @cached_property
@@ -84,16 +84,16 @@ class Powers:
         return self.exponents @ (self.order + 1) ** np.arange(self.inputs)[::-1]
 
     def within(self, variables: tuple[int, ...]) -> Indices:
-        """Places of the powers of some variables alone, which are in the order of powers of so many."""
+        """Indices of the powers of only these variables, in the order of `powers` for that many variables."""
         others = [i for i in range(self.inputs) if i not in variables]
         return np.flatnonzero(~self.exponents[:, others].any(axis=-1))
 
     def variables_of(self, there: NDArray[np.bool_]) -> frozenset[int]:
-        """Which variables a series hangs on, whose coefficients are there or not, (powers,)."""
+        """The variables in a series' nonzero terms; `there` marks the nonzero coefficients, (powers,)."""
         return frozenset(np.flatnonzero((self.exponents[there] > 0).any(axis=0)).tolist())
 
     def power_of(self, variable: int, exponent: int) -> int:
-        """Place of a power of one variable alone."""
+        """Index of a power of one variable alone."""
         wanted = np.zeros(self.inputs, dtype=np.intp)
         wanted[variable] = exponent
         return int(np.flatnonzero((self.exponents == wanted).all(axis=-1))[0])
@@ -109,16 +109,16 @@ def powers(inputs: int, order: int) -> Powers:
 
 @lru_cache(maxsize=128)
 def powers_counted(inputs: int, count: int) -> Powers:
-    """The powers of a number of variables that are so many."""
+    """The powers of a number of variables, from the number of powers."""
     return powers(inputs, next(degree for degree in range(count) if comb(degree + inputs, inputs) == count))
 
 
 @lru_cache(maxsize=256)
 def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int) -> Products:
-    """The pairs among powers up to `order`, each of a degree of at least `lowest`, whose product is wanted.
+    """Pairs of powers up to `order`, each of degree `lowest` or more, with a product of wanted degree.
 
     Args:
-        degrees: of the products, the first and the last; up to 2 `order`.
+        degrees: first and last wanted degree of the products, up to 2 `order`.
     """
     of_factors, of_products = powers(inputs, order).exponents, powers(inputs, 2 * order).exponents
     degree = of_factors.sum(axis=-1)
@@ -127,7 +127,7 @@ def products(inputs: int, order: int, degrees: tuple[int, int], lowest: int) -> 
     total = degree[first] + degree[second]
     wanted = (total >= low) & (total <= high) & (np.minimum(degree[first], degree[second]) >= lowest)
     first, second = first[wanted], second[wanted]
-    # A number for each exponent, the same for factors and products.
+    # A number for each exponent, equal for factors and products.
     base = (2 * order + 1) ** np.arange(inputs)
     place = np.argsort(of_products @ base, kind="stable")
     key = (of_factors[first] + of_factors[second]) @ base

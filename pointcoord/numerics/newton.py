@@ -1,16 +1,16 @@
-r"""Newton's method on the quadratic map, carried on until it is as good as asked or rounding stops it.
+r"""Newton's method on the quadratic map, continued to the tolerance or until rounding stops it.
 
     C_u(y) du = -(C(y) - offset),      u <- u + du
 
-LU with partial pivoting (see `linear`). A step ends the iteration
+by LU with partial pivoting (see `linear`). A step ends the iteration
 
-- when it is no larger than its own rounding error, |C_u^-1| times the uncertainty of C(y): what is left is
-  noise, not progress;
-- or when what the *next* step would be at most is already below the tolerance. Because C is quadratic, a step
-  d leaves C(y + d) = B(d, d) exactly. With X = C_u(y)^-1, q = |X B(d, d)|, omega = Lipschitz(X C_u) and
+- if it is no larger than its own rounding error, |C_u^-1| times the uncertainty of C(y): it is noise then,
+  not progress;
+- or if the bound of the *next* step is already below the tolerance. Because C is quadratic, a step d leaves
+  C(y + d) = B(d, d) exactly. With X = C_u(y)^-1, q = |X B(d, d)|, omega = Lipschitz(X C_u) and
   z = omega |d| >= |I - X C_u(y + d)|, the theorem (see `kantorovich`) with eta = q bounds |u* - u|, and no
-  other solution lies nearby. So a tolerance saves the step that would only confirm it, and its factorisation;
-  an infinite one asks for no more than that the solution is the only one here.
+  other solution lies nearby. So a tolerance saves the step that would only confirm the solution, with its
+  factorisation. An infinite tolerance only asks that the solution is the only one nearby.
 """
 
 from __future__ import annotations
@@ -31,31 +31,31 @@ from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 
-# From a start inside the Kantorovich region the error squares at every step: 2^-1 falls below 2^-53 in
+# From a start inside the Kantorovich region the error is squared at every step: 2^-1 falls below 2^-53 in
 # six steps. Twice that leaves room for starts outside the region that still converge.
 LIMIT = 12
-# The rounding error of a step in parts of eps times the condition number, at most: rows are sums of some ten
-# products of coordinates near 1, each rounded a few times. A larger step need not be compared with it.
+# Upper bound of a step's rounding error in units of eps times the condition number: rows are sums of some ten
+# products of coordinates near 1, each rounded a few times. A larger step is certainly not noise.
 ROUNDINGS = 1e4
 LARGEST = float(np.finfo(float).max)
 
 
 @dataclass(frozen=True)
 class Converged:
-    """What Newton's method reached, any leading batch dimensions.
+    """Result of Newton's method, with any leading batch dimensions.
 
     Attributes:
         y: coordinates, shape (..., size).
-        factors: factorisation of C_u at y up to the last step.
-        converged: whether the last step was noise, or what it leaves is below the tolerance, shape (...,).
+        factors: factorisation of C_u at y before the last step.
+        converged: whether the last step was noise, or the remaining error is below the tolerance, shape
+            (...,).
         iterations: steps taken by each member, shape (...,).
         first_step: largest component of the first step, shape (...,).
-        left: proven distance to the solution, rounding apart, of members that ended by the tolerance,
-            shape (...,); zero of those that ended in noise.
+        left: proven distance to the solution, without rounding, of members that ended by the tolerance,
+            shape (...,); zero for those that ended in noise.
         last_step: largest component of the last step, shape (...,).
-        work: what it cost.
-        lipschitz: of X C_u, X the inverse that the last step was made with; not a number where it was not
-            needed.
+        work: operations.
+        lipschitz: Lipschitz constant of X C_u, with the inverse X of the last step; NaN where not computed.
     """
 
     y: Array
@@ -69,7 +69,7 @@ class Converged:
     lipschitz: Array | float = np.nan
 
     def lipschitz_with(self, system: QuadraticMap, factors: Factors) -> Array:
-        """The Lipschitz constant of X C_u with the inverse of some factors, shape (...,)."""
+        """The Lipschitz constant of X C_u with the inverse X of these factors, shape (...,)."""
         known = factors.inverse is self.factors.inverse and not np.isnan(self.lipschitz).any()
         return np.asarray(self.lipschitz) if known else system.lipschitz(factors.preconditioner)
 
@@ -77,14 +77,14 @@ class Converged:
 def newton_refine(
     system: QuadraticMap, y: Array, offset: Array | float = 0.0, tolerance: Array | float = 0.0
 ) -> Converged:
-    """Solve C(u, w) = offset for the unknowns of y, starting from them.
+    """Solve C(u, w) = offset for the unknowns of y, starting from y's unknowns.
 
     Args:
         y: start, shape (..., size); the known coordinates stay as they are.
         offset: wanted residual, shape (..., rows).
-        tolerance: allowed distance to the solution, rounding apart, shape (...,); none unless given.
+        tolerance: allowed distance to the solution, without rounding, shape (...,); zero unless given.
     Returns:
-        The solution; members that do not converge are marked, never raised, and keep their last y.
+        The solution; members that do not converge are marked, raise no error, and keep their last y.
     """
     n, batch, members = system.unknowns, y.shape[:-1], y.shape[:-1]
     y, offset, allowed = y.copy(), np.asarray(offset), np.minimum(tolerance, LARGEST)
@@ -97,7 +97,7 @@ def newton_refine(
     converged, iterations = np.zeros(members, dtype=bool), np.zeros(members, dtype=np.int64)
     first_step, left = np.zeros(members), np.zeros(members)
     previous, lipschitz = np.full(members, np.inf), np.full(members, np.nan)
-    # All members, of whatever dimensions, and from where the first of them ends the others by number.
+    # First all members, of any dimensions; once one has ended, the numbers of the others.
     active: EllipsisType | NDArray[np.intp] = ...
     factors: Factors | None = None
     with np.errstate(all="ignore"):
@@ -107,13 +107,13 @@ def newton_refine(
             factors = local if factors is None or active is ... else factors.replaced(active, local)
             step = -local.solve(system.residual(here) - offset[active])
             sizes = np.abs(step)
-            # A start that is not finite shows as a step that is not.
+            # A start that is not finite gives a step that is not finite.
             size = sizes.max(axis=-1)
             usable = np.isfinite(size) & ~local.singular
             y[active, :n] += np.where(usable[..., None], step, 0.0)
             if count == 0:
                 first_step = np.asarray(size)
-            # What ends in noise has no more left than that, whatever a step before it left.
+            # A member that ends in noise has no larger remaining error, whatever an earlier step left.
             rest = np.zeros(size.shape)
             done = np.zeros(size.shape, dtype=bool)
             if asked:
@@ -122,8 +122,8 @@ def newton_refine(
                 done = usable & (rest <= allowed[active])
             if np.count_nonzero(done) < size.size:
                 rounding = _noise(system, here, local, size)
-                # Below the square root of the rounding unit the error of the next step would be noise as
-                # well, so a step that no longer shrinks there is noise that the bound above judged too low.
+                # Below the square root of the rounding unit the next step would be noise too. So a step that
+                # no longer shrinks there is noise, which the bound above underestimated.
                 stalled = (size < 1e-8) & (size >= 0.5 * previous[active])
                 rest = np.where(done, rest, 0.0)
                 done = done | (usable & (stalled | (sizes <= rounding).all(axis=-1)))
@@ -134,7 +134,7 @@ def newton_refine(
                 break
             if np.count_nonzero(going) < size.size:
                 active = np.flatnonzero(going) if active is ... else active[going]
-    assert factors is not None  # LIMIT is no less than 1
+    assert factors is not None  # LIMIT is at least 1
     taken = int(iterations.sum())
     return Converged(
         y=y.reshape(*batch, y.shape[-1]),
@@ -150,10 +150,10 @@ def newton_refine(
 
 
 def factors_at(system: QuadraticMap, reached: Converged, tolerance: float = 0.0) -> tuple[Factors, Work]:
-    """Factors of C_u at a solved place; Newton's own, of the place before its last step, where these do.
+    """Factors of C_u at a solution: Newton's own, from before its last step, where these are accurate enough.
 
-    With z = omega |last step| their solutions are off by z^2 of themselves, which is to be rounding or below
-    a tolerance.
+    With z = omega |last step|, their solutions have a relative error of z^2, which must be below rounding or
+    the tolerance.
     """
     matrix = system.jacobian(reached.y)
     with np.errstate(all="ignore"):
@@ -165,7 +165,7 @@ def factors_at(system: QuadraticMap, reached: Converged, tolerance: float = 0.0)
 
 
 def rounding_of(system: QuadraticMap, reached: Converged) -> Array:
-    """Largest component of the rounding error of a last step, shape (...,); zero where that is far larger."""
+    """Largest component of the last step's rounding error, shape (...,); zero if the step is far larger."""
     return np.asarray(_noise(system, reached.y, reached.factors, reached.last_step).max(axis=-1))
 
 
@@ -178,12 +178,12 @@ def _noise(system: QuadraticMap, y: Array, factors: Factors, size: Array) -> Arr
 
 
 def what_is_left(system: QuadraticMap, factors: Factors, step: Array, size: Array, omega: Array) -> Array:
-    """Proven distance to the solution after a Newton step d, rounding apart, shape (...,).
+    """Proven distance to the solution after a Newton step d, without rounding, shape (...,).
 
-    Infinite where nothing is proven; see the formula above. Floating point warnings are the caller's.
+    Infinite where nothing is proven; see the formula above. The caller handles floating point warnings.
 
     Args:
-        factors: of C_u at the place that the step started from. step: d, shape (..., unknowns).
+        factors: of C_u at the start of the step. step: d, shape (..., unknowns).
         size: |d|, shape (...,). omega: Lipschitz constant of X C_u, shape (...,).
     """
     d = np.zeros((*step.shape[:-1], system.size))
@@ -209,9 +209,9 @@ def implicit_rate(
 def implicit_slopes(
     system: QuadraticMap, factors: Factors, states: Sequence[Array], driven: Sequence[Array]
 ) -> list[Array]:
-    r"""What poses and their time derivatives change by with a parameter x of the known coordinates.
+    r"""Derivatives of poses and of their time derivatives by a parameter x of the known coordinates.
 
-    Of C(y(t, x)) = B(y, y) = 0 the terms of order d in t and 1 in x are
+    In C(y(t, x)) = B(y, y) = 0, the terms of order d in t and 1 in x are
 
         C_u u_x^(d) = -( C_w w_x^(d) + sum_{0 < i <= d} binomial(d, i) 2 B(y^(i), y_x^(d-i)) ).
 

@@ -1,13 +1,13 @@
-r"""Some blocks of a quadratic map, as a smaller map: what the others solve for is known to it.
+r"""Partial maps: some blocks of a quadratic map as a smaller map, to which all other unknowns are known.
 
-With the unknowns u = [v, s], s those of the blocks that are left out, the map's coordinates are the same
-y in another order, [v, s, w]; it has the rows of the blocks that are kept, and v is what it solves for. What
-moves when some known coordinates do is such a part: a block that reads an unknown that moves moves too, so
-the blocks that are left out read none, and their s, once solved, is right for good.
+With the unknowns u = [v, s], s those of the blocks left out, the partial map has the same coordinates y in
+another order, [v, s, w]. It has the rows of the kept blocks and solves for v. For example, the blocks that
+move with some known coordinates are such a part: a block that reads a moving unknown moves too. So the blocks
+left out read no moving unknown, and their s needs to be solved only once.
 
-Of several inputs each moves some blocks, and a block that reads an unknown hangs on all the inputs that this
-one does. So the blocks that hang on the same inputs are a part too, a stage: to it the unknowns of the stages
-of fewer inputs are known.
+With several inputs, each moves some blocks, and a block depends on all inputs that the unknowns it reads
+depend on. The blocks that depend on the same inputs are a part too, a stage. The unknowns of stages with
+fewer inputs are known to it.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ class PartialMap:
     """A part of a map.
 
     Attributes:
-        whole: what it is a part of.
-        system: the part.
-        rows: by row of the part, its number in the whole.
-        order: by coordinate of the part, its number in the whole, shape (size,).
+        whole: the whole map.
+        system: the part as a map.
+        rows: row of the part -> its number in the whole map.
+        order: coordinate of the part -> its number in the whole map, shape (size,).
     """
 
     whole: QuadraticMap
@@ -42,7 +42,7 @@ class PartialMap:
 
     @property
     def unknowns(self) -> NDArray[np.intp]:
-        """By unknown of the part, its number in the whole."""
+        """Unknown of the part -> its number in the whole map."""
         return self.order[: self.system.unknowns]
 
     @property
@@ -51,11 +51,11 @@ class PartialMap:
         return self.system is self.whole
 
     def taken(self, y: Array) -> Array:
-        """Coordinates of the whole in the order of the part, shape (..., size)."""
+        """Coordinates of the whole map in the order of the part, shape (..., size)."""
         return y if self.is_whole else y.take(self.order, axis=-1)
 
     def back(self, y: Array) -> Array:
-        """Coordinates of the part in the order of the whole, shape (..., size)."""
+        """Coordinates of the part in the order of the whole map, shape (..., size)."""
         if self.is_whole:
             return y
         found = np.empty_like(y)
@@ -63,7 +63,7 @@ class PartialMap:
         return found
 
     def unknowns_back(self, y: Array, series: Array) -> Array:
-        """Series of the part's unknown coordinates as those of the whole; what stands still is as in y.
+        """Series of the whole map's unknowns from the part's; unknowns that stand still are constant as in y.
 
         Args:
             y: of the part, shape (..., size). series: shape (..., powers, unknowns of the part).
@@ -76,11 +76,11 @@ class PartialMap:
         return found
 
     def known(self, y: Array, known: Array) -> Array:
-        """What is known to the part: what stays as it is in y, and series of what is known to the whole.
+        """Series of what is known to the part: constants from y, and the known series of the whole map.
 
         Args:
             y: of the part, shape (..., size).
-            known: shape (..., order + 1, known coordinates of the whole).
+            known: shape (..., order + 1, known coordinates of the whole map).
         Returns:
             Shape (..., order + 1, known coordinates of the part).
         """
@@ -96,7 +96,7 @@ class PartialMap:
 
 @lru_cache(maxsize=64)
 def moving_part(system: QuadraticMap, driven: frozenset[int]) -> PartialMap:
-    """The blocks that move when some known coordinates do; all of them if none would.
+    """The blocks that move with some known coordinates; all blocks if none would move.
 
     Args:
         driven: the known coordinates that move.
@@ -112,7 +112,8 @@ class Stage:
 
     Attributes:
         inputs: ascending. part: the blocks, as a map.
-        reads: what moves that they read, beside their own unknowns, as numbers of the whole, ascending.
+        reads: moving coordinates that the blocks read, without their own unknowns, as numbers of the whole
+            map, ascending.
     """
 
     inputs: tuple[int, ...]
@@ -121,18 +122,18 @@ class Stage:
 
     @property
     def moving(self) -> NDArray[np.intp]:
-        """All that moves of what its rows read, as numbers of the whole."""
+        """All moving coordinates that the rows read, as numbers of the whole map."""
         return np.array([*self.part.unknowns, *self.reads], dtype=np.intp)
 
 
 @lru_cache(maxsize=64)
 def stages(system: QuadraticMap, driven: tuple[tuple[int, frozenset[int]], ...]) -> tuple[Stage, ...]:
-    """The blocks by the inputs that move them, each stage after those that it reads.
+    """The moving blocks grouped by the inputs that move them; each stage comes after those that it reads.
 
-    What stands still is in none.
+    Blocks that stand still are in no stage.
 
     Args:
-        driven: the known coordinates that move, and which inputs move each.
+        driven: pairs of a moving known coordinate and the inputs that move it.
     """
     order = system.block_order
     moved = order.moved_by(dict(driven))
@@ -150,7 +151,7 @@ def stages(system: QuadraticMap, driven: tuple[tuple[int, frozenset[int]], ...])
 
 
 def _part_of(system: QuadraticMap, numbers: Sequence[int]) -> PartialMap:
-    """Some blocks, by number; the map itself if they are all."""
+    """The part with some blocks, by number; the map itself if these are all blocks."""
     blocks = [system.block_order.blocks[number] for number in numbers]
     rows = sorted(row for block in blocks for row in block.rows)
     if len(rows) == len(system.rows):

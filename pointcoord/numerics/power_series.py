@@ -1,16 +1,17 @@
 r"""Power series of all coordinates in p parameters, from one factorisation.
 
-The parameters are time (p = 1), the share of a straight path (p = 1), or up to three inputs. With
+The parameters are time (p = 1), the fraction of a straight path (p = 1), or up to three inputs. With
 y(s) = sum_k y_k s^k in every coordinate, k a power of p parameters (see `multi_index`), C(y(s)) = B(y, y) = 0
-reads at each k
+gives for each k
 
     C_u u_k = -( C_w w_k + sum_{0 < i < k} B(y_i, y_{k-i}) ),
 
-all k of one total degree at once. Of several parameters each moves some blocks of the map only, and few
-blocks hang on all: those that hang on the same ones are expanded in these alone (see `partial_map`).
+solved for all k of one total degree at once. With several parameters, each moves some blocks of the map only,
+and few blocks depend on all parameters: blocks that depend on the same ones are expanded in these alone (see
+`partial_map`).
 
-In time k = 1 is the paper's velocity equation (19), k = 2 half its acceleration equation (22). Only products
-of two differences that both move take part in the sum, and many rows share one (see
+In time, k = 1 is the paper's velocity equation (19), and k = 2 half its acceleration equation (22). Only
+products of two moving differences take part in the sum, and many rows share one (see
 `QuadraticMap.moving_products`).
 """
 
@@ -33,7 +34,7 @@ from pointcoord.numerics.vectors import LAST, NEXT
 Array = NDArray[np.float64]
 Combine = Callable[[Array], Array]
 
-# Products of pairs of coefficients at once: 7 MB for a map of a hundred terms.
+# Pairs of coefficients multiplied at once: 7 MB for a map of a hundred terms.
 PAIRS = 8192
 
 
@@ -45,14 +46,14 @@ def expand(
     lacking: Array | None = None,
     inputs: int = 1,
 ) -> Array:
-    """Series of all coordinates about assembled poses, or along which what poses lack is taken back.
+    """Series of all coordinates about assembled poses, or along which a pose's residual is reduced to zero.
 
     Args:
         factors: factorisation of C_u at y.
         y: coordinates, shape (..., size).
         known: series of the known coordinates, shape (..., powers, size - unknowns).
         lacking: C(y) where y is not assembled, shape (..., rows); then C(y(s)) = (1 - s) C(y), and p is 1.
-        inputs: p, how many parameters.
+        inputs: p, the number of parameters.
     Returns:
         Coefficients by power, shape (..., powers, size).
     """
@@ -77,19 +78,19 @@ def expand_moving(
     inputs: int,
     lacking: Array | None = None,
 ) -> Array:
-    """Series of all that moves, powers first: what is done to all of a power lies side by side in memory.
+    """Series of all moving coordinates, powers first, so that the numbers of one power are contiguous.
 
     Args:
         known: series of the known coordinates that move, shape (powers, ..., moving).
-        driven: which coordinates these are.
-        lacking: as of `expand`.
+        driven: numbers of these coordinates.
+        lacking: as in `expand`.
     Returns:
         Coefficients of the unknown ones and then of these, shape (powers, ..., unknowns + moving).
     """
     if inputs == 1:
         return _recursion(system, factors, y, known, driven, inputs, lacking)
     n, every = system.unknowns, powers_counted(inputs, len(known))
-    # By members side by side in memory, which is four times as quick.
+    # With members contiguous in memory, which is four times as quick.
     members_last = np.ascontiguousarray(known.reshape(every.count, -1, len(driven)).swapaxes(1, 2))
     there = (members_last != 0.0).any(axis=-1)
     moved = tuple((number, every.variables_of(there[:, i])) for i, number in enumerate(driven))
@@ -122,20 +123,20 @@ def _recursion(
     inputs: int,
     lacking: Array | None = None,
 ) -> Array:
-    """The same of one stage, all of whose blocks hang on all inputs (see `partial_map`)."""
+    """As `expand_moving`, for one stage, all of whose blocks depend on all inputs (see `partial_map`)."""
     n, every = system.unknowns, powers_counted(inputs, len(known))
     moving, edges = tuple(driven), every.edges
     terms = system.moving_products(moving)
-    # What moves, and a last 0 for all that stands still; the constant term takes no part in a product.
+    # Moving coordinates, and a last 0 for all that stand still; the constant term takes no part in products.
     own = np.zeros((every.count, *y.shape[:-1], n + len(moving) + 1))
     own[1:, ..., n:-1] = known[1:]
-    # What the known ones alone make of each power; sums of products follow degree after degree.
+    # First the share of the known coordinates in each power; the sums of products follow degree by degree.
     by_known = factors.solve_many(powers_first(system.derivative_by(y, moving).swapaxes(-1, -2)))
     own[1:, ..., :n] = -_combined(own[1:, ..., n:-1], by_known)
     if lacking is not None:
         own[1, ..., :n] -= factors.solve(lacking)
     solved, advanced = _solved_sums(factors, terms)
-    # The factors of each power by its exponents, without the sums that are still to come.
+    # The factors of each power at its exponents, without the sums still to come.
     table = np.zeros([*[every.order + 1] * inputs, *y.shape[:-1], terms.ends.shape[-1]])
     left, right = table[..., : terms.count], table[..., -terms.count :]
     table = table.reshape(-1, *table.shape[inputs:])
@@ -146,7 +147,7 @@ def _recursion(
         each = sums[start - 1 : stop - 1]
         for place in range(start, stop):
             up, down = every.pairs[place]
-            # A power still to come is multiplied by the constant term's 0.
+            # A power still to come is multiplied by the 0 of the constant term.
             np.einsum(subscripts, left[up], right[down], out=each[place - start])
         table[every.places(start, stop)] -= advanced(each)
     own[1:, ..., :n] -= solved(sums)
@@ -156,11 +157,11 @@ def _recursion(
 
 
 def _solved_sums(factors: Factors, terms: MovingProducts) -> tuple[Combine, Combine]:
-    """From sums of products, (powers, ..., count), to what they take off the unknowns and off their factors.
+    """Functions from sums of products, (powers, ..., count), to the amounts to subtract.
 
-    The unknowns lose C_u^-1 times the rows that the sums make, (powers, ..., n), and the factors of all
-    products the differences of these. Of a matrix that is not large and sparse both are one product of
-    matrices, made beforehand.
+    The amount for the unknowns, (powers, ..., n), is C_u^-1 times the rows that the sums make; the amount for
+    the products' factors is its differences. Unless the matrix is large and sparse, each is one product with
+    a matrix made beforehand.
     """
     if factors.sparse is not None:
 
@@ -175,7 +176,7 @@ def _solved_sums(factors: Factors, terms: MovingProducts) -> tuple[Combine, Comb
 
 
 def _combined(shares: Array, vectors: Array) -> Array:
-    """Sums of vectors by shares, (powers, ..., n) from shapes (powers, ..., count) and (count, ..., n)."""
+    """Sums of vectors times shares, (powers, ..., n) from shapes (powers, ..., count) and (count, ..., n)."""
     return np.asarray(np.matmul(shares, vectors, axes=[(0, -1), (0, -1), (0, -1)]))
 
 
@@ -197,7 +198,7 @@ def multiplied(left: Array, right: Array, pairs: Products) -> Array:
     edges, block = pairs.edges, max(PAIRS // max(prod(left.shape[1:-1]), 1), 1)
     low = 0
     while low < len(pairs.targets):
-        # As many targets as make a block of pairs, one at least.
+        # As many targets as fill a block of pairs, and at least one.
         high = max(bisect_right(edges, edges[low] + block) - 1, low + 1)
         first, last = edges[low], edges[high]
         each = left[pairs.first[first:last]]
@@ -211,7 +212,7 @@ def cross_series(a: Array, b: Array, inputs: int = 1, doubled: bool = False) -> 
     """Series of a x b from the series of two vectors, shapes (..., powers, 3).
 
     Args:
-        doubled: whether to go on to twice the order, where the product ends.
+        doubled: whether to continue to twice the order, where the product ends.
     """
     order = powers_counted(inputs, a.shape[-2]).order
     pairs = products(inputs, order, (0, 2 * order if doubled else order), 0)

@@ -1,14 +1,14 @@
 r"""The quadratic map: every constraint of a mechanism is one sparse quadratic form.
 
-All coordinates are stacked in y = [u, w], the unknown ones first. The known ones hold the constants
-0 and 1 besides chassis points and inputs, so that linear and constant terms are quadratic too and
-the whole map is homogeneous:
+All coordinates are stacked in y = [u, w], unknowns first. The known coordinates w contain the constants 0 and
+1 besides chassis points and inputs. So linear and constant terms are quadratic too, and the whole map is
+homogeneous:
 
     C_r(y) = sum_t c_t (y_a - y_b)(y_c - y_d)  =  B_r(y, y)      (terms t of row r)
 
-with the polar form B(a, b) = B(b, a), the Jacobian C'(y) h = 2 B(y, h), and B constant. A term is a
-product of two differences because that is what constraints are made of, and because a difference
-taken first loses nothing when the points are close together and far from the origin.
+with the polar form B(a, b) = B(b, a), the Jacobian C'(y) h = 2 B(y, h), and B constant. Terms are products of
+two differences because constraints have this form, and because taking the difference first loses no digits
+for points that are close together and far from the origin.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ class Product:
     """c (y_a - y_b)(y_c - y_d), with left = (a, b) and right = (c, d).
 
     Attributes:
-        coefficient: a power of two with a sign, so that it rounds nothing; what else multiplies a product
-            is a coordinate.
+        coefficient: a power of two with a sign, so that it is exact; other factors of a product are
+            coordinates.
     """
 
     coefficient: float
@@ -44,20 +44,20 @@ class Product:
 
 
 Row = tuple[Product, ...]
-# Of a derivative's entries; see `_pattern`.
+# Index arrays of a derivative's entries; see `_pattern`.
 Pattern = tuple[Indices, Indices, Array, Indices, Indices]
 
 
 @dataclass(frozen=True)
 class _Curvature:
-    """The entries 2 B_rjk of a map by pairs of unknowns (j, k), proportional ones together.
+    """The entries 2 B_rjk of a map by pairs of unknowns (j, k), with proportional columns stored once.
 
-    Of a link most pairs have one entry, and the coordinates of a point all have those of its links: a few
-    directions stand for all pairs.
+    For a link most pairs have one entry, and the coordinates of a point all have those of its links. So a few
+    directions represent all pairs.
 
     Attributes:
-        first, second, scales: the pairs by direction, and what multiplies it, positive, (pairs,).
-        starts: where each direction's pairs start, (directions,).
+        first, second, scales: the pairs by direction, and their positive factors, (pairs,).
+        starts: index of each direction's first pair, (directions,).
         table: the entries of each direction, (rows of the map, directions).
     """
 
@@ -69,7 +69,7 @@ class _Curvature:
 
     @classmethod
     def of(cls, pairs: Mapping[tuple[int, int], Mapping[int, float]], count: int) -> _Curvature:
-        """From the entries of each pair by row, and the number of rows."""
+        """From the entries of each pair, by row, and the number of rows."""
         directions: dict[tuple[tuple[int, float], ...], list[tuple[int, int, float]]] = {}
         for (j, k), own in pairs.items():
             kept = sorted((row, value) for row, value in own.items() if value)
@@ -96,14 +96,14 @@ class _Curvature:
         return np.asarray(np.add.reduceat(products, self.starts, axis=-1))
 
     def bent(self, preconditioner: Array, weights: Array | None) -> Array:
-        """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns); without weights they are 1."""
+        """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns); without weights, g = 1."""
         sizes = self.plain if weights is None else self.sizes(weights)
         turned = product_of_few_entries(preconditioner, self.table)
         return np.asarray(np.matvec(np.abs(turned, out=turned), sizes))
 
     @cached_property
     def plain(self) -> Array:
-        """The sizes of weights of 1, (directions,)."""
+        """The sizes for weights of 1, (directions,)."""
         return np.asarray(np.add.reduceat(self.scales, self.starts))
 
 
@@ -111,8 +111,8 @@ class _Curvature:
 class QuadraticMap:
     """A system of quadratic rows in `size` coordinates, of which the first `unknowns` are unknown.
 
-    Every array may have leading batch dimensions, and nothing loops over them. A map is equal to itself only,
-    so that what is made of it can be remembered by it.
+    Every array may have leading batch dimensions, and no code loops over them. A map is equal to itself only,
+    so that derived data can be cached by the map.
     """
 
     rows: tuple[Row, ...]
@@ -121,8 +121,8 @@ class QuadraticMap:
 
     @cached_property
     def _terms(self) -> tuple[Array, Indices, Indices, Indices]:
-        """Coefficients of all terms, both ends of their left factors and then of their right ones, (2 terms,)
-        each, and where each row starts.
+        """Coefficients of all terms; both ends of the left and then of the right factors, (2 terms,) each;
+        and the index of each row's first term.
         """
         products = [product for row in self.rows for product in row]
         ends = np.array([p.left for p in products] + [p.right for p in products], dtype=np.intp).reshape(
@@ -138,7 +138,7 @@ class QuadraticMap:
 
     @cached_property
     def _bends(self) -> _Curvature:
-        """2 B restricted to the unknowns, proportional columns as one."""
+        """2 B restricted to the unknowns, with proportional columns stored once."""
         return _Curvature.of(self._pairs, len(self.rows))
 
     @cached_property
@@ -158,7 +158,7 @@ class QuadraticMap:
 
     @cached_property
     def reads(self) -> tuple[frozenset[int], ...]:
-        """The coordinates that each row reads; a product with no difference in it reads none."""
+        """The coordinates that each row reads; a product with a zero difference reads none."""
         return tuple(
             frozenset(
                 i
@@ -171,18 +171,18 @@ class QuadraticMap:
 
     @cached_property
     def block_order(self) -> BlockOrder:
-        """Which rows determine which unknowns, block after block."""
+        """The block order: which rows determine which unknowns."""
         return block_order_of(self.reads, self.unknowns)
 
     @property
     def terms(self) -> tuple[Array, Indices]:
-        """Coefficients of all terms, and where each row starts."""
+        """Coefficients of all terms, and the index of each row's first term."""
         coefficients, *_, starts = self._terms
         return coefficients, starts
 
     @cached_property
     def differences(self) -> tuple[tuple[Indices, Indices], tuple[Indices, Indices]]:
-        """Both ends of every difference, each once, and which of them are both factors of every term."""
+        """Both ends of every distinct difference, and for each term the indices of its two factors."""
         coefficients, plus, minus, _ = self._terms
         ends, places = np.unique(np.stack([plus, minus]), axis=1, return_inverse=True)
         count = len(coefficients)
@@ -200,9 +200,9 @@ class QuadraticMap:
         return np.add.reduceat(products * coefficients, starts, axis=-1)
 
     def moving_products(self, moving: tuple[int, ...]) -> MovingProducts:
-        """The products of two differences that both move, where all unknowns and some known coordinates do.
+        """The products of two moving differences, where all unknowns and some known coordinates move.
 
-        Differences from any coordinates that stand still move as one, so many rows share a product.
+        All coordinates that stand still are treated as one in differences, so many rows share a product.
         """
         return _moving_products(self, moving)
 
@@ -227,11 +227,11 @@ class QuadraticMap:
 
     @property
     def filled(self) -> Indices:
-        """Where C_u has entries, row after row, among all of its places."""
+        """Flat positions of the entries of C_u, row by row."""
         return self._jacobian_pattern[-1]
 
     def entries(self, y: Array) -> Array:
-        """These entries of C_u(y), shape (..., entries)."""
+        """The entries of C_u(y) at the positions `filled`, shape (..., entries)."""
         return self._entries(y, self._jacobian_pattern)
 
     def _entries(self, y: Array, pattern: Pattern) -> Array:
@@ -248,24 +248,24 @@ class QuadraticMap:
         return matrix.reshape(*y.shape[:-1], len(self.rows), columns)
 
     def jacobian_uncertainty(self, data: Array) -> Array:
-        """How far C_u may move when each coordinate does by `data`, shape (..., rows, unknowns)."""
+        """Bound of the change of C_u if each coordinate changes by `data`, shape (..., rows, unknowns)."""
         matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
         matrix[..., self.filled] = self.spread_entries(data)
         return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
 
     def spread_entries(self, data: Array) -> Array:
-        """Of this the entries that C_u has, shape (..., entries)."""
+        """The entries of `jacobian_uncertainty` at the positions `filled`, shape (..., entries)."""
         plus, minus, coefficients, first, _ = self._jacobian_pattern
         parts = data.take(plus, axis=-1) + data.take(minus, axis=-1)
         parts *= np.abs(coefficients)
         return np.add.reduceat(parts, first, axis=-1)
 
     def uncertainty(self, y: Array, data: Array) -> Array:
-        r"""How far the computed C(y) may be from the exact one, shape (..., rows).
+        r"""Bound of the error of the computed C(y), shape (..., rows).
 
-        Each factor carries the rounding of its difference and the `data` uncertainty of its two
-        coordinates (shape (..., size)); the row adds the rounding of its products and of their sum,
-        gamma = (terms + 2) u relative to the sum of magnitudes (Higham, Accuracy and Stability, ch. 3).
+        Each factor has the rounding of its difference and the `data` uncertainty of its two coordinates
+        (shape (..., size)). The row adds the rounding of its products and of their sum, gamma = (terms + 2) u
+        relative to the sum of magnitudes (Higham, Accuracy and Stability, ch. 3).
         """
         coefficients, plus, minus, starts = self._terms
         sizes, count = np.abs(y.take(plus, axis=-1) - y.take(minus, axis=-1)), len(coefficients)
@@ -290,7 +290,7 @@ class QuadraticMap:
 
 @lru_cache(maxsize=256)
 def _pattern(system: QuadraticMap, coordinates: tuple[int, ...]) -> Pattern:
-    """What each term's derivative is: ends of a factor, signed coefficient, run starts, flat position.
+    """The terms of a derivative: ends of a factor, signed coefficient, run starts, flat position.
 
     d/dy_a of c (y_a - y_b) R is c R, so an entry takes the other factor of its term.
     """
@@ -311,13 +311,13 @@ def _pattern(system: QuadraticMap, coordinates: tuple[int, ...]) -> Pattern:
 
 @dataclass(frozen=True)
 class MovingProducts:
-    """Products of differences of what moves, each once: the unknowns, known coordinates, and a last 0.
+    """Products of moving differences, each once; of unknowns, moving known coordinates, and a last 0.
 
     Attributes:
-        ends: of the left differences of all products and then of the right ones, or of one side alone where
-            both are the same of all, (2, sides * count). The last product is 0.
-        count: of the products.
-        taken, coefficients: which products a row sums, (rows, most that one does); filled up with the last.
+        ends: ends of the left differences of all products and then of the right ones; of one side only if
+            both sides are equal in all products; (2, sides * count). The last product is 0.
+        count: number of products.
+        taken, coefficients: products that each row sums, (rows, largest number), padded with the last.
     """
 
     ends: Indices
@@ -326,19 +326,19 @@ class MovingProducts:
     coefficients: Array
 
     def factors(self, moving: Array) -> Array:
-        """The differences of every product, of coordinates that move and a last 0, (..., sides * count)."""
+        """The differences in every product, from moving coordinates and a last 0, (..., sides * count)."""
         plus, minus = self.ends
         return np.asarray(moving.take(plus, axis=-1) - moving.take(minus, axis=-1))
 
     def factors_of_first(self, first: Array) -> Array:
-        """The same where the first coordinates alone are not 0."""
+        """The differences in every product if only the first coordinates are not 0."""
         moving = np.zeros((*first.shape[:-1], self.size))
         moving[..., : first.shape[-1]] = first
         return self.factors(moving)
 
     @cached_property
     def size(self) -> int:
-        """How many coordinates move, with the last 0."""
+        """Number of moving coordinates, with the last 0."""
         return int(self.ends.max()) + 1
 
     def gather(self, products: Array) -> Array:
@@ -347,7 +347,7 @@ class MovingProducts:
 
     @cached_property
     def rows_of_each(self) -> Array:
-        """What each product alone makes of all rows, (count, rows)."""
+        """The rows that each product alone makes, (count, rows)."""
         return self.gather(np.eye(self.count))
 
 
@@ -383,15 +383,15 @@ def quadratic_map(rows: Sequence[Row], unknowns: int, size: int) -> QuadraticMap
     """Build a map and check that every row has a term and every coordinate exists.
 
     Raises:
-        ValueError: a row is empty, a term names a coordinate outside 0 .. size - 1, or a coefficient is no
-            power of two.
+        ValueError: a row is empty, a term names a coordinate outside 0 .. size - 1, or a coefficient is not
+            a power of two.
     """
     for number, row in enumerate(rows):
         if not row:
             raise ValueError(f"row {number} has no terms")
         for product in row:
             if abs(frexp(product.coefficient)[0]) != 0.5:
-                raise ValueError(f"row {number}: the coefficient of {product} is no power of two")
+                raise ValueError(f"row {number}: the coefficient of {product} is not a power of two")
             if not all(0 <= i < size for i in (*product.left, *product.right)):
                 raise ValueError(f"row {number}: {product} names a coordinate outside 0..{size - 1}")
     return QuadraticMap(tuple(tuple(row) for row in rows), unknowns, size)

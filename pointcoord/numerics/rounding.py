@@ -1,4 +1,4 @@
-"""The rounding of doubles."""
+"""Rounding constants of doubles."""
 
 import numpy as np
 
@@ -6,4 +6,4 @@ EPS = float(np.finfo(float).eps)
 """Distance from 1 to the next double, 2^-52."""
 
 UNIT_ROUNDOFF = EPS / 2
-"""u = 2^-53: a sum, product, quotient or root is rounded by at most u of itself."""
+"""u = 2^-53: a sum, product, quotient or root has a rounding error of at most u of itself."""

@@ -40,8 +40,7 @@ class Ground(NamedTuple):
 
     Attributes:
         up: name of the upward direction in the chassis' frame.
-        lifts: terms to add to a height along `up` from the mechanism's origin, for the height over the
-            ground.
+        lifts: terms that a height over the ground has in addition to the place's component along `up`.
         pivots: centres of rotation of the chassis. constraints: constraints that define these vectors.
     """
 

@@ -38,8 +38,7 @@ from pointcoord.numerics.vectors import cross, lengths
 Array = NDArray[np.float64]
 Triangle = tuple[str, str, str]
 
-# Relative rounding: a product with the inverse of a 3 x 3 matrix, and the inverse itself, round about 20
-# times.
+# Relative error of a product with the inverse of a 3 x 3 matrix and of the inverse: about 20 roundings.
 SOLVED = 32.0 * UNIT_ROUNDOFF
 
 
