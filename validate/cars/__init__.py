@@ -1,1 +1,1 @@
-"""Cars and scenes to try: one of every suspension, random ones, and where their inputs end."""
+"""Cars and scenes for tests and studies: base cars, random cars and scenes, and the ends of their inputs."""

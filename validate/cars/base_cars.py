@@ -1,7 +1,6 @@
-"""The cars that others are made from: of every mechanism and closure the first shipped scene of it.
+"""The base cars from which random cars are made: one for every mechanism and closure with a shipped scene.
 
-A mechanism is here as soon as there is a scene of it among pointcoord's; a scene file of a user's does as
-well.
+The base car is that of the first built-in scene of the mechanism. A user's scene file gives a base car too.
 """
 
 from __future__ import annotations
@@ -18,17 +17,20 @@ from pointcoord.mechanism import shipped
 from validate.cars.car import Car
 from validate.cars.input_ends import condition, drawn_inputs, end
 
-ALIKE = 5.0  # times the condition number of the base car by its own inputs: what holds some freedom hardly
+# Other input sets may have a condition number up to this factor times that of the base car's own inputs; sets
+# above it hardly constrain some degree of freedom.
+ALIKE = 5.0
 Names = tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Variant:
-    """A mechanism with what closes its drawing.
+    """A mechanism with a closure.
 
     Attributes:
-        suspension: its type, as a scene names it.
-        scene: name or path of the scene whose car is its base car.
+        suspension: the type, as in a scene.
+        closure: how its drawing is closed, as in a scene.
+        scene: name or path of the scene of its base car.
     """
 
     suspension: str
@@ -42,7 +44,7 @@ class Variant:
 
     @cached_property
     def base(self) -> Car:
-        """A car to make others from."""
+        """The base car."""
         return Car.of(self.base_scene)
 
     @property
@@ -52,24 +54,24 @@ class Variant:
 
     @property
     def of_parts(self) -> bool:
-        """Whether other mechanisms are its parts, as two corners are of an axle."""
+        """Whether the mechanism is composed of other mechanisms, as an axle is of two corners."""
         return bool(self.base_scene.mechanism.file.mirrored)
 
     @property
     def holds_its_shape(self) -> bool:
-        """Whether rows follow from others in the drawing, as of parallel hinges: no point moves alone."""
+        """Whether equations are redundant as drawn, as for parallel hinges: no point may be moved alone."""
         return bool(self.base_scene.mechanism.topology.left_out)
 
     @cached_property
     def input_sets(self) -> tuple[Names, ...]:
-        """Sets of inputs that move the mechanism, that of the base car's scene first."""
+        """Sets of inputs that can drive the mechanism, the set of the base car's scene first."""
         own = tuple(name for name in self.base_scene.inputs if name not in self.chassis_motions)
         limit = ALIKE * condition(self.base, drawn_inputs(self.base, own))
         return own, *(one for one in _moving_sets(self.base, len(own), limit) if set(one) != set(own))
 
     @cached_property
     def ending_sets(self) -> tuple[Names, ...]:
-        """Those of them of which some input has an end, from the drawing of the base car."""
+        """The input sets in which some input of the base car has an end."""
         return tuple(names for names in self.input_sets if any(self._ends(names, one) for one in names))
 
     def _ends(self, inputs: Names, driven: str) -> bool:
@@ -81,7 +83,7 @@ class Variant:
 
     @property
     def words(self) -> str:
-        """In words; the closure only where there are several."""
+        """The variant in words, with the closure if there are several."""
         name = self.suspension.replace("_", " ")
         closures = {variant.closure for variant in variants() if variant.suspension == self.suspension}
         return name if len(closures) <= 1 else f"{name}, {self.closure}"
@@ -89,20 +91,20 @@ class Variant:
 
 @cache
 def variants() -> tuple[Variant, ...]:
-    """Every mechanism and closure with a shipped scene, mechanisms in the order of their names."""
+    """Every mechanism and closure with a shipped scene, in the order of the mechanisms' names."""
     found = (_of_scene(name) for name in built_in_scenes())
     known = [variant for variant in dict.fromkeys(found) if variant.suspension in shipped()]
     return tuple(sorted(known, key=lambda v: (v.suspension, v.closure != "drawn", v.closure)))
 
 
 def variants_of(suspension: str | None = None, closure: str | None = None) -> list[Variant]:
-    """Those that are asked for.
+    """The variants with a suspension and a closure.
 
     Args:
-        suspension: its type, or the path of a scene file (.toml); any shipped one if not given.
-        closure: any if not given.
+        suspension: the type, or the path of a scene file (.toml); any shipped one if not given.
+        closure: any closure if not given.
     Raises:
-        ValueError: there is none.
+        ValueError: there is no such variant.
         SceneError: the scene file cannot be read.
     """
     if suspension is not None and Path(suspension).suffix == ".toml":
@@ -123,7 +125,7 @@ def _of_scene(name: str) -> Variant:
 
 
 def input_sets(car: Car) -> tuple[Names, ...]:
-    """Sets of inputs that move a car; of a shipped mechanism those that move its base car."""
+    """Sets of inputs that can drive a car; for a shipped mechanism the sets of its base car."""
     for variant in variants():
         if (variant.suspension, variant.closure, None) == (car.suspension, car.closure, car.tables):
             return variant.input_sets
@@ -132,10 +134,10 @@ def input_sets(car: Car) -> tuple[Names, ...]:
 
 
 def _moving_sets(car: Car, size: int, limit: float = np.inf) -> tuple[Names, ...]:
-    """The sets of so many inputs that are as many as there are freedoms, and hold them all.
+    """The sets of `size` inputs that drive all degrees of freedom of a car.
 
     Args:
-        limit: of the condition number of the drawing.
+        limit: upper limit of the condition number of the drawing.
     """
 
     def moves(inputs: Names) -> bool:

@@ -1,4 +1,4 @@
-"""A car to try: hardpoints, axes, what closes its drawing; turned, moved, scaled, mirrored; its scenes."""
+"""A car: hardpoints, axes and closure. It can be turned, moved, scaled and mirrored, and makes scenes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from validate.spanning_tree.cut import car_directions
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
 Points = dict[str, Point]
-# A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.
+# The law of an input: a number is a constant, a sequence is a polynomial from t^0 up, a mapping is a law of a
+# scene.
 Law = float | Sequence[float] | Mapping[str, Any]
 
 UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
@@ -30,12 +31,12 @@ class Car:
 
     Attributes:
         points: hardpoints, mm.
-        side: of the car, `left` or `right`.
+        side: side of the car, `left` or `right`.
         up, right: the car's axes in the frame of its points, unit vectors.
-        closure: what makes a drawing close, as a scene names it.
-        suspension: its type, as a scene names it; the title of its tables if it has these.
-        tables: of a mechanism that is not a shipped one.
-        wheel_radius: mm; needed by inputs at the wheel's contact point alone.
+        closure: how the drawing is closed, as in a scene.
+        suspension: the type, as in a scene; for a mechanism with `tables`, their title.
+        tables: the tables of a mechanism that is not shipped.
+        wheel_radius: mm; needed only by inputs at the wheel's contact point.
     """
 
     points: Mapping[str, Point]
@@ -49,15 +50,15 @@ class Car:
 
     @classmethod
     def of(cls, part: Scene | MechanismPart | Mapping[str, Any]) -> Car:
-        """The car of a scene, or of the `mechanism` of one's content.
+        """The car of a scene, or of the `mechanism` of a scene's content.
 
         Raises:
-            SceneError: it is no car.
+            SceneError: the content describes no car.
         """
         part = part.mechanism if isinstance(part, Scene) else part
         part = part if isinstance(part, MechanismPart) else MechanismPart.checked(part, "a car")
         given = {name: getattr(part, name) for name in ("title", *TABLES)}
-        # A shipped mechanism has none of its own.
+        # The scene of a shipped mechanism has no tables.
         shipped = not (given["bodies"] or given["parts"])
         tables = None if shipped else {name: table for name, table in given.items() if table}
         own = part.points, part.side, part.up, part.right, part.closure
@@ -78,10 +79,10 @@ class Car:
 
     @property
     def structure(self) -> Structure:
-        """What its bodies, rods, slides and inputs are, with every point that a car may have.
+        """The bodies, rods, slides and inputs of its mechanism, with every point that a car may have.
 
         Raises:
-            SceneError: it is no car.
+            SceneError: the content describes no car.
         """
         return MechanismPart.checked(self.mechanism, "a car").file.structures[self.closure]
 
@@ -96,10 +97,10 @@ class Car:
         return float(np.ptp(np.array(list(self.points.values())), axis=0).max())
 
     def room(self, name: str, share: tuple[float, float]) -> float:
-        """A way of an input that suits the car.
+        """A range of an input that suits the size of the car.
 
         Args:
-            share: rad if it is an angle, else parts of the car's size.
+            share: the range in rad, for an angle; the range as a share of the car's size, for a length.
         """
         return share[0] if self.structure.inputs[name].unit == "rad" else share[1] * self.size
 
@@ -115,21 +116,21 @@ class Car:
         return self.drawn_as({name: put(place) for name, place in self.array.items()})
 
     def mirrored(self) -> Car:
-        """The same suspension on the other side of the car, mirrored in the plane through the origin."""
+        """The suspension of the other side, mirrored in the car's plane through the origin."""
         right, side = np.array(self.right), "left" if self.side == "right" else "right"
         return replace(self._each(lambda place: place - 2.0 * (place @ right) * right), side=side)
 
     def turned(self, turn: Array) -> Car:
-        """The whole car turned by an orthogonal matrix of determinant 1, its axes with it."""
+        """The whole car, with its axes, turned by an orthogonal matrix of determinant 1."""
         up, right = (as_tuple(turn @ np.array(axis)) for axis in (self.up, self.right))
         return replace(self._each(lambda place: turn @ place), up=up, right=right)
 
     def moved(self, away: Array) -> Car:
-        """The whole car displaced, mm."""
+        """The whole car moved by a vector, mm."""
         return self._each(lambda place: place + away)
 
     def scaled(self, scale: float) -> Car:
-        """All lengths of the car multiplied, as seen from the origin."""
+        """The car scaled about the origin."""
         radius = None if self.wheel_radius is None else scale * self.wheel_radius
         return replace(self._each(lambda place: scale * place), wheel_radius=radius)
 
@@ -145,16 +146,16 @@ def content_of(
     effects: Sequence[str] | None = None,
     title: str = "",
 ) -> dict[str, Any]:
-    """The content of a scene: every scene that is made here is made by this function.
+    """The content of a scene of a car.
 
     Args:
-        laws: of the inputs, rad and mm over s.
+        laws: laws of the inputs, rad and mm over s.
         start, stop: s; without a stop there is a single instant.
-        samples: instants; three of a motion if not given.
+        samples: number of instants; if not given, three for a motion.
         tolerance: mm.
-        effects: if not given all that the car has and every model gives.
+        effects: if not given, all effects that the car has and every model computes.
     Raises:
-        SceneError: it is no scene, and no effects are given.
+        SceneError: effects are not given, and the content is no valid scene.
     """
     stop = start if stop is None else stop
     content = {
@@ -167,7 +168,7 @@ def content_of(
     }
     if effects is not None:
         return content
-    # Gradients follow from the rest, and take as long; trees of joints have no jerks.
+    # Gradients follow from the other effects and take as long; spanning-tree models give no jerks.
     had = (EFFECTS[name] for name in Scene.from_mapping(content).mechanism.effects)
     plain = [one.name for one in had if not (one.way or one.base) and one.derivative <= 2]
     return content | {"effects": plain}
@@ -180,7 +181,7 @@ def _input(law: Law) -> dict[str, Any]:
 
 
 def rotation(axis: int, cosine: float, sine: float) -> Array:
-    """The turn about a coordinate axis (0 to 2) by the angle of this cosine and sine."""
+    """The rotation matrix about a coordinate axis (0 to 2) by the angle with this cosine and sine."""
     turn = np.eye(3)
     first, second = (axis + 1) % 3, (axis + 2) % 3
     turn[[first, second], [first, second]] = cosine
@@ -189,17 +190,17 @@ def rotation(axis: int, cosine: float, sine: float) -> Array:
 
 
 def any_rotation(seed: int | np.random.Generator) -> Array:
-    """A turn drawn at random, the same for the same seed."""
+    """A random rotation matrix; equal seeds give equal matrices."""
     turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
     return np.asarray(turn * np.sign(np.linalg.det(turn)))
 
 
 def as_tuple(vector: Array) -> Point:
-    """The three numbers of a vector."""
+    """A vector as a tuple of three floats."""
     x, y, z = (float(component) for component in vector)
     return x, y, z
 
 
 def unit(vector: Array) -> Array:
-    """A vector of length 1."""
+    """The unit vector in the direction of a vector."""
     return np.asarray(vector / np.linalg.norm(vector))

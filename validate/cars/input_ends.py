@@ -1,12 +1,12 @@
-r"""Where the inputs of a car stand in its drawing, and how far each goes from there.
+r"""The drawn values of a car's inputs, and the end of each input's range.
 
-pointcoord closes the drawing, reads its inputs, and follows each of them to the pose beyond which there is
-none. Such an end is a fold: near it all rates grow as the inverse root of the distance,
+pointcoord closes the drawing, reads its inputs, and follows each input to the last pose. Such an end is a
+fold: near it all rates grow as the inverse root of the distance,
 
     |v| = k (end - value)^(-1/2)    =>    end - b = (b - a) / ((|v_b| / |v_a|)^2 - 1)
 
-for two values a and b before it. That gives an end to the rounding of the input itself, where a path has to
-stop some 1e-12 of its length before.
+for two values a and b before the end. This formula gives the end to the rounding of the input, whereas a path
+has to stop some 1e-12 of its length before it.
 """
 
 from __future__ import annotations
@@ -21,18 +21,19 @@ from validate.cars.car import Car, Law, content_of
 
 Inputs = dict[str, float]
 
-# Of the range: where rates are taken before an end. What the formula leaves out is of the order of the root
-# of this, in parts of it: 1e-12 times a factor of the car first, which must stay far below the next one, then
-# 3e-14 times it, and at last 1e-16.
+# Distances from the end at which rates are taken, as shares of the range. The relative error of the formula
+# is of the order of the root of the distance. So the error of the end is 1e-12 times a factor that depends on
+# the car after the first step, which must be far below the next distance, then 3e-14 times this factor, and
+# finally 1e-16.
 NEAR = (1e-8, 1e-9, 2e-11)
 
 
 class End(NamedTuple):
-    """An end of an input, the others held.
+    """An end of an input, with the other inputs held.
 
     Attributes:
-        value: rad or mm; poses exist up to here.
-        reach: distance from this end to the opposite one, rad or mm.
+        value: the end, rad or mm; poses exist up to this value.
+        reach: distance from this end to the opposite end, rad or mm.
     """
 
     value: float
@@ -40,15 +41,16 @@ class End(NamedTuple):
 
 
 def at(car: Car, laws: Mapping[str, Law], effects: tuple[str, ...] = ()) -> Scene:
-    """The scene of one instant."""
+    """A scene of one instant."""
     return Scene.from_mapping(content_of(car, laws, effects=effects))
 
 
 def drawn_inputs(car: Car, inputs: Collection[str] = ("arm_angle", "rack")) -> Inputs:
-    """The inputs' values in the drawing once it is closed, rad and mm.
+    """The values of the inputs in the closed drawing, rad and mm.
 
     Raises:
-        PointcoordError: it is no car, its drawing does not close, or it has other freedoms.
+        PointcoordError: the car is wrong, its drawing does not close, or the inputs do not match its degrees
+            of freedom.
     """
     return drawing_stands.drawn_inputs(at(car, dict.fromkeys(inputs, 1.0)))
 
@@ -57,29 +59,29 @@ def condition(car: Car, inputs: Mapping[str, float]) -> float:
     """The condition number of a pose.
 
     Raises:
-        PointcoordError: there is none.
+        PointcoordError: there is no such pose.
     """
     return float(simulate(at(car, inputs)).proof().condition.max())
 
 
 def redrawn(car: Car, inputs: Mapping[str, float]) -> Car:
-    """The car drawn anew at the pose of these inputs, rad and mm, each coordinate rounded.
+    """The car redrawn at the pose of some inputs, rad and mm, each coordinate rounded.
 
     Raises:
-        PointcoordError: there is none.
+        PointcoordError: there is no such pose.
     """
     position = simulate(at(car, inputs)).position
     return car.drawn_as({name: position[name][0] for name in car.points})
 
 
 def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | None:
-    """The last value of an input that can be reached from a pose, the others held; None if there is no fold.
+    """The end of an input that is reached from a pose with the other inputs held; None if there is no fold.
 
     Args:
-        held: values of all inputs at that pose.
+        held: values of all inputs at the pose.
         ahead: whether the upper end is wanted.
     Raises:
-        PointcoordError: there is no such pose, or no straight way from the drawing to the end.
+        PointcoordError: there is no such pose, or no straight path from the drawing to the end.
     """
 
     def speed(value: float) -> float:
@@ -96,7 +98,8 @@ def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | 
         farther = value - 4.0 * near * (reach if ahead else -reach)
         slow, fast = speed(farther), speed(nearer)
         grown = (fast / slow) ** 2
-        # Four times as near a fold it is 4, but for what the end before is off.
+        # At a quarter of the distance from a fold the squared rate grows by 4, except for the error of the
+        # end.
         if not 2.0 < grown < 8.0:
             return None
         value = nearer + (nearer - farther) / (grown - 1.0)

@@ -1,4 +1,4 @@
-"""The paper's strut, Table 1."""
+"""The hardpoints of the paper's MacPherson strut, Table 1, mm."""
 
 from __future__ import annotations
 

@@ -1,15 +1,16 @@
-"""Random cars of every mechanism: points moved, mirrored, turned, scaled, displaced; and poses near a lock.
+"""Random cars of every mechanism, with points moved, mirrored, turned, scaled, displaced; and poses near a
+lock.
 
-A car is one that pointcoord reads and solves at its own drawing, and that somebody would draw: where a
-closure puts points in place it moves none far. Any other drawing is drawn back towards the base car. A
-mechanism some of whose rows follow from others in the drawing, as those of a planar one do, is only mirrored,
-turned, scaled and displaced: nothing else is sure to keep them true.
+A car is accepted if pointcoord solves it at its drawing, and if closing the drawing moves no point far, as in
+a drawing that an engineer would make. Otherwise its moves are halved towards the base car. If some equations
+of a mechanism are redundant as drawn, as in a planar mechanism, the car is only mirrored, turned, scaled and
+displaced: other changes might make these equations contradict each other.
 
-What slides is put back onto its line, which the mechanism's own tables name. A closure other than `drawn`
-puts points in place by itself, so there they may lie anywhere.
+Points on a slide are put back onto the line of the slide, from the mechanism's tables. A closure other than
+`drawn` places such points itself, so there they may be drawn anywhere.
 
-With its rods and bodies given, an input can go only so far (see `input_ends`). A near pose has one driven to
-such an end of a random car and steps back by a drawn share of its whole range.
+An input has a limited range (see `input_ends`). A near pose drives one input of a random car to such an end
+and steps back by a random share of its range.
 """
 
 from __future__ import annotations
@@ -25,17 +26,17 @@ from validate.cars.base_cars import Variant, variants
 from validate.cars.car import Array, Car, any_rotation
 from validate.cars.input_ends import Inputs, at, drawn_inputs, end
 
-SHARE = 0.2  # of the car's size: how far points are moved in every coordinate
-SLID, SLID_SHARE = 5.0, 0.15  # mm along a direction, parts of the way between two points
-LEFT_OVER = 0.05  # mm, by which a drawn point may miss its line: half of what is warned of
-HALVED = 8  # times: after that nothing is moved
-FIRST = 0.7  # of the cars of a mechanism with several closures are of the first one
-# Of the car's size: the most that closing a drawing moves a point. The paper's own strut moves by 0.022;
-# drawn much worse, a strut may be nearer to another assembly than to the one that its maker meant.
+SHARE = 0.2  # largest move of a point in each coordinate, as a share of the car's size
+SLID, SLID_SHARE = 5.0, 0.15  # largest slide: mm along a direction, or a share of the line between points
+LEFT_OVER = 0.05  # largest distance of a drawn point from its line, mm: half of the limit of the warning
+HALVED = 8  # number of halvings of the moves; after that nothing is moved
+FIRST = 0.7  # share of the cars with the first closure, for a mechanism with several closures
+# Largest movement of a point as the drawing closes, as a share of the car's size. The paper's strut moves by
+# 0.022; a strut drawn much worse may be nearer to another assembly mode than to the intended one.
 CLOSED_BY = 0.05
-OWN = 0.5  # of the cars have the inputs of their base car's scene
-NEAREST = 1e-12  # of an input's range: its own rounding is 1e-4 of that
-# How far other inputs are held from the drawing, and the chassis is moved: rad, and parts of the car's size.
+OWN = 0.5  # share of the cars with the inputs of their base car's scene
+NEAREST = 1e-12  # least distance from an end, as a share of the input's range: its rounding is 1e-4 of that
+# Largest offsets of other inputs from the drawing, and of the chassis: rad, and shares of the car's size.
 ASIDE, LIFTED = (0.3, 0.06), (0.1, 0.1)
 
 
@@ -44,11 +45,12 @@ class Moves:
     """How a car differs from its base car.
 
     Attributes:
-        points: how far each is moved, (3,), mm; not of what slides.
-        slid: how far what slides is slid along its line, -1 to 1.
-        beside: by how much it misses its line, (3,), mm.
-        without: points that are left out, as others stand in for them.
-        whole: whether moves are whole millimetres and slides whole millimetres or eighths of a line.
+        points: the move of each point, (3,), mm; not for points on slides.
+        slid: the move of each point on a slide along its line, -1 to 1.
+        beside: the offset of each point on a slide from its line, (3,), mm.
+        without: points that are left out, so that others take their place.
+        whole: whether moves are whole millimetres, and moves on slides whole millimetres or eighths of a
+            line.
     """
 
     points: Mapping[str, Array] = field(default_factory=dict)
@@ -58,7 +60,7 @@ class Moves:
     whole: bool = False
 
     def part(self, share: float) -> Moves:
-        """A part of them."""
+        """The moves multiplied by a share."""
         points = {
             n: np.trunc(share * move) if self.whole else share * move for n, move in self.points.items()
         }
@@ -68,13 +70,14 @@ class Moves:
         """The base car with its points moved."""
         drawn = {name: place for name, place in base.array.items() if name not in self.without}
         places = {name: place + self.points.get(name, 0.0) for name, place in drawn.items()}
-        # Slides of one input, as both ends of a rack, travel as far as the first of them.
+        # Slides of one input, such as both ends of a rack, travel by the same amount, that of the first
+        # slide.
         together = (one.named("slide") for one in base.structure.inputs.values())
         first = {slide: slides[0] for slides in together if len(slides) > 1 for slide in slides}
         travels: dict[str, float] = {}
         for title, slide in base.structure.slides.items() if base.closure == "drawn" else ():
             if slide.through not in drawn:
-                continue  # the sliding point stands in for it, and so is on its own line
+                continue  # the sliding point takes the place of this point, so it is on the line
             by_point = slide.along in drawn
             before, now = (
                 p[slide.along] - p[slide.through] if by_point else base.direction(slide.along)
@@ -91,21 +94,21 @@ class Moves:
 
 
 def with_every_point(base: Car) -> Car:
-    """The base car with every point that its mechanism may have, where the one that stands in for it is."""
+    """The base car with every optional point given, where the point that would take its place is."""
     left_out = {new: base.points[old] for new, old in base.structure.stand_ins.items() if old in base.points}
     return replace(base, points={**left_out, **base.points})
 
 
 def sliding(base: Car) -> tuple[str, ...]:
-    """The points that a drawing has to put on lines, which others make."""
+    """The points that must be drawn on the line of a slide, without the points that define the line."""
     slides = base.structure.slides.values() if base.closure == "drawn" else ()
     return tuple(n for slide in slides for n in slide.points if n not in (slide.along, slide.through))
 
 
 def is_accepted(car: Car, inputs: Collection[str]) -> bool:
-    """Whether pointcoord reads the car and solves it near its own drawing."""
+    """Whether pointcoord solves the car at its drawn inputs, and closing the drawing moves no point far."""
     try:
-        # Points that coincide make no number, which is no car.
+        # Coincident points give NaN; such a car is refused.
         with np.errstate(all="ignore"):
             solved = simulate(at(car, drawn_inputs(car, inputs)))
             closes = solved.closing.largest <= CLOSED_BY * solved.closing.size
@@ -115,10 +118,10 @@ def is_accepted(car: Car, inputs: Collection[str]) -> bool:
 
 
 def drawn_back(base: Car, moves: Moves, put: Callable[[Car], Car], inputs: Collection[str]) -> Car:
-    """The base car moved, by halves drawn back towards itself until what is put in place is accepted.
+    """The base car with moves applied, which are halved until the placed car is accepted.
 
     Raises:
-        AssertionError: the base car itself is not.
+        AssertionError: the base car itself is not accepted.
     """
     for halved in range(HALVED + 1):
         car = put(moves.part(0.5**halved if halved < HALVED else 0.0).of(base))
@@ -132,8 +135,8 @@ class RandomCar:
     """A random car with the inputs that drive it.
 
     Attributes:
-        inputs: names; the chassis' own motions are not among them.
-        scale: by which the whole car is multiplied.
+        inputs: names of the driven inputs, without motions of the chassis.
+        scale: factor by which the whole car is scaled.
     """
 
     variant: Variant
@@ -143,7 +146,7 @@ class RandomCar:
 
 
 def random_car(rng: np.random.Generator) -> RandomCar:
-    """A random car, of each mechanism as often as of any other, and mostly of its first closure."""
+    """A random car. All mechanisms are equally likely; the first closure of a mechanism is preferred."""
     names = tuple(dict.fromkeys(variant.suspension for variant in variants()))
     name = names[int(rng.integers(len(names)))]
     first, *rest = (variant for variant in variants() if variant.suspension == name)
@@ -157,7 +160,7 @@ def random_car(rng: np.random.Generator) -> RandomCar:
 
 
 def _moves(rng: np.random.Generator, base: Car) -> Moves:
-    """Most points moved by up to a share of the car's size; now and then a point off its line or left out."""
+    """Random moves of all points up to a share of the car's size; some are off their line or left out."""
     reach = SHARE * base.size * 10.0 ** rng.uniform(-1.0, 0.0)
     on_lines = sliding(base)
     return Moves(
@@ -169,9 +172,9 @@ def _moves(rng: np.random.Generator, base: Car) -> Moves:
 
 
 def _placing(rng: np.random.Generator, variant: Variant) -> tuple[float, Callable[[Car], Car]]:
-    """By how much a car is scaled, up to a thousand, and what puts it on the other side, turns and moves it.
+    """A random scale, 1e-3 to 1e3, and a function that mirrors, turns, scales and moves a car.
 
-    Each in one of two.
+    Each of these is done with probability one half.
     """
     mirrored = bool(rng.random() < 0.5) and not variant.of_parts
     scale = 10.0 ** rng.uniform(-3.0, 3.0) if rng.random() < 0.5 else 1.0
@@ -188,11 +191,11 @@ class NearPose:
     """A car and inputs close to the end of one of them.
 
     Attributes:
-        home: the inputs at which the car is drawn; the way from there to `inputs` is open.
-        inputs: of all that is driven, the chassis too, rad and mm.
-        driven: the input that is near its last reachable value.
-        reach: range of that input, rad or mm.
-        distance: from the last reachable value, in parts of the range.
+        home: the drawn inputs; the path from there to `inputs` is free.
+        inputs: values of all driven inputs and chassis motions, rad and mm.
+        driven: the input that is near its end.
+        reach: range of this input, rad or mm.
+        distance: distance from the end, as a share of the range.
     """
 
     variant: Variant
@@ -205,10 +208,10 @@ class NearPose:
 
 
 def near_pose(number: int, seed: int = 0, nearest: float = NEAREST, farthest: float = 0.1) -> NearPose:
-    """The pose of a number, the same again for the same seed: of a car whose inputs have an open end.
+    """A random pose near an end, reproducible from its number and seed.
 
     Args:
-        nearest, farthest: limits of the distance, drawn log-uniformly, in parts of the input's range.
+        nearest, farthest: limits of the distance, which is log-uniform, as shares of the input's range.
     """
     rng = np.random.default_rng([seed, number])
     while True:
@@ -238,15 +241,15 @@ def approach(
     distance: float,
     lifted: float = 0.0,
 ) -> NearPose | None:
-    """Drive one input of a car to its end and step back; None if it has no end that is open to reach.
+    """Drive one input of a car to its end and step back; None if no end can be reached.
 
     Args:
-        inputs: all that are driven but the chassis' own motions.
-        driven: one of them.
-        forward: to the upper end of the input, else to the lower one.
-        aside: where the other inputs are held, -1 to 1.
-        distance: from the end, in parts of the range between both ends.
-        lifted: how far the chassis is moved, -1 to 1.
+        inputs: all driven inputs, without motions of the chassis.
+        driven: the input that is driven to its end.
+        forward: whether to the upper end; otherwise to the lower one.
+        aside: offset of the other inputs from the drawing, -1 to 1.
+        distance: distance from the end, as a share of the range between both ends.
+        lifted: displacement of the chassis, -1 to 1.
     """
     chassis = {name: lifted * car.room(name, LIFTED) for name in variant.chassis_motions}
     try:

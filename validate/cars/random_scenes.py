@@ -1,12 +1,12 @@
-"""Random scenes by number: the same number is the same scene, on every machine and in every run.
+"""Random scenes by number: a number gives the same scene on every machine and in every run.
 
-Every mechanism comes up as often as any other; of several closures the first one in seven of ten. The whole
-car is mirrored, turned, moved and scaled. Inputs are every set that the mechanism allows, by laws of every
-kind, from slow and small to fast and large. A share of the scenes comes close to a singular pose: near the
-end of an input, or drawn there.
+All mechanisms are equally likely; the first of several closures has probability 0.7. The whole car is
+mirrored, turned, moved and scaled. Inputs are any set that the mechanism allows, with laws of every kind,
+from slow and small to fast and large. A share of the scenes comes close to a singular pose: near the end of
+an input, or drawn there.
 
-The recipe is that of seed 20261123: cars are perturbed base cars of every shipped mechanism. (Until 20261122
-they were struts and double wishbones alone, each with a recipe of its own.)
+The recipe has the seed 20261123: cars are perturbed base cars of every shipped mechanism. (Recipes up to
+20261122 had only struts and double wishbones, each with its own recipe.)
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ Random = np.random.Generator
 Times = tuple[float, float]
 """Start and stop, s."""
 KINDS: tuple[Kind, ...] = ("regular", "near an end", "singular drawing")
-SHARES = (0.88, 0.09, 0.03)  # of the kinds
-SEED = 20261123  # another recipe for the scenes takes another seed: a store of results keeps it
-NEAREST = -12.0  # decades: how near to a singular pose, as a share of the whole way to it
-# How far inputs go, rad and parts of the car's size: from their drawn values, by their laws, the chassis.
+SHARES = (0.88, 0.09, 0.03)  # probabilities of the kinds
+SEED = 20261123  # change the seed with the recipe: records of studies contain it
+NEAREST = -12.0  # exponent of the least distance from a singular pose, as a share of the way to it
+# Ranges of inputs, rad and shares of the car's size: offset from the drawing, motion by laws, chassis.
 OFFSET, LARGEST, HEAVED = (0.25, 0.04), (0.5, 0.12), (0.3, 0.4)
 
 
 @dataclass(frozen=True)
 class RandomScene:
-    """A scene with its number, its mechanism, and what it was made to come near to."""
+    """A scene with its number, its mechanism, and its kind."""
 
     number: int
     variant: Variant
@@ -46,7 +46,7 @@ class RandomScene:
 
 
 def random_scene(number: int) -> RandomScene:
-    """The random scene of a number, from zero up; one without an end to come near to is regular."""
+    """The random scene of a number, from zero up. If no input has an end, its kind is `regular`."""
     rng = np.random.default_rng([SEED, number])
     kind: Kind = KINDS[int(rng.choice(len(KINDS), p=SHARES))]
     drawn = random_car(rng)
@@ -73,7 +73,7 @@ def random_scene(number: int) -> RandomScene:
 
 
 def _some_end(rng: Random, drawn: RandomCar, home: Inputs) -> tuple[str, float]:
-    """An input and the value of one of its ends, the others as drawn; no name if no input has any."""
+    """A random input and one of its ends, with the others as drawn; an empty name if no input has an end."""
     ways = [(name, ahead) for name in drawn.inputs for ahead in (False, True)]
     for place in rng.permutation(len(ways)):
         driven, ahead = ways[int(place)]
@@ -89,7 +89,7 @@ def _some_end(rng: Random, drawn: RandomCar, home: Inputs) -> tuple[str, float]:
 def _drawn_near(
     rng: Random, drawn: RandomCar, home: Inputs, driven: str, last: float
 ) -> tuple[RandomCar, Inputs]:
-    """The car drawn anew near an end, and its inputs there; farther from it where it must be."""
+    """The car redrawn near an end, and its inputs there, at the first distance that can be solved."""
     left = 10.0 ** rng.uniform(NEAREST, -1.0)
     while True:
         try:
@@ -104,7 +104,7 @@ def _drawn_near(
 def _about(
     rng: Random, drawn: RandomCar, name: str, value: float, largest: tuple[float, float], times: Times
 ) -> dict[str, Any]:
-    """An input about a value or some way from it, that moves by up to about `largest`, often much less."""
+    """A random law about a value or at an offset from it, with a motion up to `largest`, often much less."""
     middle = value + float(rng.choice([0.0, rng.uniform(-1.0, 1.0)])) * drawn.car.room(name, OFFSET)
     reach = drawn.car.room(name, largest) * 10.0 ** rng.uniform(-5.0, 0.0)
     (start, stop), duration = times, times[1] - times[0]
@@ -124,19 +124,19 @@ def _about(
 
 
 def _approach(rng: Random, drawn: float, limit: float, times: Times) -> dict[str, Any]:
-    """An input that goes from its drawn value close to a limit, by one time in ten past it."""
+    """A law from the drawn value to close to a limit; one time in ten it goes past the limit."""
     left = 10.0 ** rng.uniform(NEAREST, -1.0) * float(rng.choice([1.0, -1.0], p=[0.9, 0.1]))
     end = limit + left * (drawn - limit)
-    kind = rng.choice(["held", "straight", "slowing"])
+    kind = rng.choice(["held", "straight", "sine"])
     if kind == "held":
         return {"constant": end}
     begin = end + rng.uniform(0.1, 1.0) * (drawn - end)
     if kind == "straight":
-        # The last value is `end` to the last bit, which no polynomial's would be.
+        # A table, because its last value is exactly `end`, unlike that of a polynomial.
         return {
             "table": {"times": np.linspace(*times, 4).tolist(), "values": np.linspace(begin, end, 4).tolist()}
         }
-    # end + (begin - end) cos, a quarter of a wave later: it arrives with no rate, but an acceleration.
+    # A quarter of a sine wave: at rest at `begin`, with its largest rate at `end`.
     speed = 0.5 * math.pi / (times[1] - times[0])
     wave = {"amplitude": begin - end, "angular_frequency": speed, "phase": math.pi - speed * times[1]}
     return {"sine": {**wave, "offset": end}}

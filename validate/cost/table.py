@@ -114,7 +114,7 @@ def read_rows(path: str) -> list[Row]:
     # pyarrow's errors have no common base class.
     except Exception as error:
         why = " ".join(str(error).split())[:200]
-    raise UsageError(f"{path}: is not a file of pointcoord cost --rows ({why}); give another file")
+    raise UsageError(f"{path}: is not a Parquet file of pointcoord cost --rows ({why}); give another file")
 
 
 def measured_here(command: str) -> Mapping[str, str]:

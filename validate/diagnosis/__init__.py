@@ -1,4 +1,4 @@
-"""What would explain that somebody's numbers disagree with ours."""
+"""Diagnosis: possible explanations of a disagreement between given numbers and pointcoord's."""
 
 from validate.comparison.compare import Explanation
 from validate.diagnosis.explain import explain_evidence, explain_outcome

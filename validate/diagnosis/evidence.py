@@ -1,6 +1,6 @@
-"""What a diagnosis looks at: given numbers beside the held ones, and how far apart they may be.
+"""The evidence of a diagnosis: given numbers, the trusted (`held`) numbers, and the allowed differences.
 
-Numbers are by row: the pair of a quantity and a point, body or angle.
+Numbers are stored by row: a pair of a quantity and a point, body or angle.
 """
 
 from __future__ import annotations
@@ -26,50 +26,50 @@ from validate.formulations.protocol import Numbers, Solution
 
 Array = NDArray[np.float64]
 Content = dict[str, Any]
-"""Of a scene, whose tables and lists are its own."""
+"""The content of a scene, a copy that may be changed."""
 
 
 class Row(NamedTuple):
-    """A quantity of a point, body or angle, whose numbers are looked at as one."""
+    """A quantity of a point, body or angle; its numbers are judged together."""
 
     quantity: str
     name: str
 
     @property
     def of(self) -> str:
-        """What each number belongs to: a point, a body or the car."""
+        """What the number belongs to: a point, a body or the car."""
         return QUANTITIES[self.quantity].of
 
     @property
     def unit(self) -> str:
-        """What its numbers are of, whatever rate they are: mm or rad."""
+        """The unit without time, mm or rad, also for rates."""
         return QUANTITIES[self.quantity].unit.partition("/")[0]
 
     @property
     def order(self) -> int:
-        """Which time derivative its numbers are."""
+        """The order of its time derivative."""
         return per_second(self.quantity)
 
     @property
     def is_place(self) -> bool:
-        """Whether its numbers are where a point is."""
+        """Whether it is the position of a point."""
         return self.of == "point" and self.order == 0
 
 
 Rows = Mapping[Row, Array]
 WouldBe = tuple[Array, Array]
-"""What given numbers would be, and how far from that they may be."""
+"""The numbers that a fault would give, and the allowed differences from them."""
 
-# How many times what may be left of it a difference is, to be explained; a smaller one may be chance.
+# A difference is explained only if it is more than so many times its tolerance; a smaller one may be chance.
 CLEAR = 4.0
-FEW = 25  # instants
-DECIMALS = 7  # that a round number has fewer of
-# Of a quantity's largest number: differences that are rounding, whatever is claimed.
+FEW = 25  # number of instants of a first look
+DECIMALS = 7  # a round number has fewer decimals
+# Differences below this share of a quantity's largest number are rounding, whatever the error bounds are.
 ROUNDING = 64.0 * EPS
 
 
 def together(rows: Iterable[Row]) -> list[tuple[Row, ...]]:
-    """Rows whose numbers are looked at together: a quantity's vectors; each number of the car by itself."""
+    """Groups of rows that are judged together: all vectors of a quantity; each number of the car alone."""
     groups: dict[object, list[Row]] = {}
     for row in rows:
         groups.setdefault(row if row.of == "car" else row.quantity, []).append(row)
@@ -77,24 +77,25 @@ def together(rows: Iterable[Row]) -> list[tuple[Row, ...]]:
 
 
 def numbers_in(numbers: Numbers, rows: Iterable[Row]) -> Array:
-    """The numbers of rows, one after the other."""
+    """The numbers of rows, concatenated."""
     return np.concatenate([numbers[quantity][of].ravel() for quantity, of in rows])
 
 
 def roundest(found: Array | float, fits: Callable[[Array], bool], unit: float = 1.0) -> Array:
-    """The roundest of the numbers next to found ones that fits as they do; they themselves if none does.
+    """The numbers rounded to the fewest decimals that still fit; the numbers themselves if none fits.
 
-    Least squares of printed digits miss what was meant by a little.
+    Least squares of printed digits give the intended number only approximately.
 
     Args:
-        unit: in which the numbers are round.
+        fits: whether rounded numbers fit.
+        unit: the unit in which the numbers are rounded.
     """
     rounder = (unit * np.round(np.asarray(found) / unit, places) for places in range(DECIMALS))
     return np.asarray(next((near for near in rounder if fits(near)), found))
 
 
 class Solved:
-    """A scene's own motion and those of other cars, each solved when it is first asked for."""
+    """The motion of a scene and motions of changed scenes, each solved when first needed."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
@@ -106,7 +107,11 @@ class Solved:
         put: Callable[[Content], None],
         solve: Callable[[Scene], Motion] = simulate,
     ) -> Motion | None:
-        """The motion of the scene with other content; None where that is refused."""
+        """The motion of the scene with changed content; None if it is refused.
+
+        Args:
+            key: identifies the change. put: changes the content.
+        """
         if key not in self._others:
             content = copy.deepcopy(self.content)
             put(content)
@@ -117,18 +122,18 @@ class Solved:
 
     @cached_property
     def motion(self) -> Motion | None:
-        """That of the scene itself; None where it cannot be solved."""
+        """The motion of the scene itself; None if it cannot be solved."""
         return self.other("as it is", lambda _: None)
 
     @cached_property
     def fine(self) -> Scene:
-        """The scene with every point, solved as finely as rounding allows."""
+        """The scene with every point reported, and the finest tolerance that rounding allows."""
         tolerance = min(self.scene.tolerance, finest_tolerance(self.scene))
         return self.scene.model_copy(update={"tolerance": tolerance, "points": None})
 
     @cached_property
     def content(self) -> Content:
-        """That at its first and last instant, as plain data: motions are read between them."""
+        """Its content with the first and last instant only; motions can be read at any instant between."""
         samples = min(2, self.scene.time.samples)
         ends = {"time": self.scene.time.model_copy(update={"samples": samples})}
         return self.fine.model_copy(update=ends).model_dump(mode="json", exclude_none=True)
@@ -136,18 +141,18 @@ class Solved:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Given and held numbers at the same instants.
+    """Given numbers and trusted (`held`) numbers at the same instants.
 
     Attributes:
         times: (N,), s.
         given, held: the numbers, (N, 3) or (N,).
-        allowed: how far a given number may be from the one that it is held to, likewise.
+        allowed: allowed differences between given and held numbers, likewise.
         wrong: the rows that disagree.
-        over_time: whether the instants are times; else rows of a file, of inputs or travels.
-        other_cars: whether the instants are those of the scene, so that other cars are solved there.
-        own: how far a given number may be off by itself, in its own unit, beside what is allowed.
-        known: where points are, (N, 3), beside the rows.
-        units: of rows that have another than their quantity, such as of derivatives, in words.
+        over_time: whether the instants are times; otherwise they are rows of a file over inputs or travels.
+        other_cars: whether the instants are those of the scene, so that other cars can be solved there.
+        own: further errors of the given numbers, such as their rounding, in their unit; added to `allowed`.
+        known: positions of points, (N, 3), in addition to the rows.
+        units: unit in words, for rows whose unit differs from that of their quantity, such as derivatives.
     """
 
     scene: Scene
@@ -165,7 +170,7 @@ class Evidence:
 
     @classmethod
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
-        """The numbers of all rows that both give, held to what both claim."""
+        """The evidence of all rows that both solutions give, with the tolerances of their comparison."""
         times, one, two = given_by_both(given, held, scene.instants)
         pairs = {quantity: Pair(quantity, (one, two), outcome.factor) for quantity in one.numbers}
         rows = [Row(q, name) for q, pair in pairs.items() for name in pair.names]
@@ -185,7 +190,7 @@ class Evidence:
         )
 
     def at(self, places: slice | NDArray[np.intp], theirs: slice | None = None) -> Evidence:
-        """The same at some of the instants; the given numbers from other ones, where these are stated."""
+        """The evidence at some instants; the given numbers are taken at `theirs` instead, if given."""
 
         def of(rows: Rows, some: slice | NDArray[np.intp] = places) -> Rows:
             return {row: array[some] for row, array in rows.items()}
@@ -202,18 +207,22 @@ class Evidence:
 
     @cached_property
     def few(self) -> Evidence:
-        """The same at a few of the instants, evenly: what fits there may fit at all of them."""
+        """The evidence at a few evenly chosen instants, for a first look."""
         last = len(self.times) - 1
         return self.at(np.unique(np.linspace(0, last, min(FEW, last + 1)).astype(np.intp)))
 
     def after(self, rows: Mapping[Row, WouldBe], wrong: tuple[Row, ...]) -> Evidence:
-        """The same with other numbers to hold the given ones against."""
+        """The evidence with other trusted numbers for some rows, and other rows to explain."""
         held = {**self.held, **{row: value for row, (value, _) in rows.items()}}
         allowed = {**self.allowed, **{row: width for row, (_, width) in rows.items()}}
         return replace(self, held=held, allowed=allowed, wrong=wrong)
 
     def undone(self, rows: Collection[Row], undo: Callable[[Row, Array], Array]) -> Evidence:
-        """The same with other given numbers of rows and of vectors beside; wrong is what then disagrees."""
+        """The evidence with a fault undone in the given numbers of some rows and of their quantities'
+        vectors.
+
+        Its wrong rows are those that still disagree.
+        """
         quantities = {row.quantity for row in rows if row.of != "car"}
         given = {
             row: undo(row, array) if row in rows or row.quantity in quantities else array
@@ -224,16 +233,16 @@ class Evidence:
         return replace(there, wrong=tuple(wrong))
 
     def in_words(self, row: Row, amount: Array) -> str:
-        """An amount of a row with its unit."""
-        said = ", ".join(f"{c:.6g}" for c in np.ravel(amount))
-        return f"{f'({said})' if np.ndim(amount) else said} {self.units.get(row, row.unit)}"
+        """An amount with the unit of a row."""
+        text = ", ".join(f"{c:.6g}" for c in np.ravel(amount))
+        return f"{f'({text})' if np.ndim(amount) else text} {self.units.get(row, row.unit)}"
 
     def off_by(self, row: Row) -> Array:
-        """How far a row's numbers may be from the held ones."""
+        """The allowed differences of a row, including the errors of the given numbers."""
         return np.asarray(self.allowed[row] + self.own.get(row, 0.0))
 
     def joined(self, rows: Sequence[Row]) -> tuple[Array, Array, Array]:
-        """The held and the given numbers of rows, one after the other, and how far each may be off."""
+        """Held numbers, given numbers and allowed differences of rows, concatenated."""
         held, given, off_by = (
             np.concatenate([of(row).ravel() for row in rows])
             for of in (self.held.__getitem__, self.given.__getitem__, self.off_by)
@@ -241,17 +250,17 @@ class Evidence:
         return held, given, off_by
 
     def left(self, row: Row, value: Array, allowed: Array) -> float:
-        """The largest difference of given numbers from others, in parts of what is allowed."""
+        """The largest difference of given numbers from `value` over its tolerance."""
         gap = gaps_between(self.given[row], value, QUANTITIES[row.quantity].unit)
-        with np.errstate(over="ignore"):  # nothing but zeros allows nothing
+        with np.errstate(over="ignore"):  # a tolerance may be tiny
             return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
 
     def explained(self, rows: Mapping[Row, WouldBe]) -> bool:
-        """Whether all given numbers of rows are within what they may be off."""
+        """Whether all given numbers of rows are within their tolerances."""
         return all(self.left(row, *numbers) <= 1.0 for row, numbers in rows.items())
 
     def clear(self, row: Row, allowed: Array) -> bool:
-        """Whether a row is so far off that what is allowed of it does not explain it, nor rounding."""
+        """Whether the difference of a row is clearly larger than its tolerance and than rounding."""
         if self.left(row, self.held[row], allowed) <= CLEAR:
             return False
         beside = (held for other, held in self.held.items() if other.quantity == row.quantity)
@@ -259,9 +268,9 @@ class Evidence:
         return not bool((np.abs(self.given[row] - self.held[row]) <= ROUNDING * largest).all())
 
     def rounded(self, row: Row, *others: Array | float) -> Array:
-        """What is allowed of numbers that were computed again, from the held ones or from the drawing.
+        """The tolerance of numbers that were computed from the held ones or from the drawing.
 
-        They are as far off as the held ones at most, and what made them rounds each a few times.
+        Their error is at most that of the held numbers, plus a few roundings.
         """
         largest = max(
             float(np.abs(array).max(initial=0.0)) for array in (self.held[row], *map(np.asarray, others))
@@ -269,16 +278,17 @@ class Evidence:
         return np.asarray(2.0 * self.allowed[row] + 8.0 * EPS * largest)
 
     def distinct(self, rows: Sequence[Row]) -> int:
-        """How many distinct numbers that are off rows have, beside one of each axis; the fewer of both sides.
+        """The number of distinct wrong numbers of rows, not counting one for each axis: of the given or the
+        held numbers, whichever has fewer.
 
-        One number of each axis is none to tell anything by.
+        A single number of an axis proves nothing: a fitted parameter always matches it.
         """
         axes = self.held[rows[0]][0].size
         held, given, allowed = (numbers.reshape(-1, axes) for numbers in self.joined(rows))
         off = ~(np.abs(given - held) <= allowed)
         counts = []
         for numbers in (held, given):
-            # Two numbers of which each may be off by what is allowed, on both sides.
+            # Two numbers are distinct if they differ by more than both their tolerances.
             step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(numbers).max(initial=0.0)))
             apart = (axis[there & np.isfinite(axis)] for axis, there in zip(numbers.T, off.T, strict=True))
             counts.append(sum(max(len(np.unique(np.floor(some / step))) - 1, 0) for some in apart))
@@ -286,22 +296,22 @@ class Evidence:
 
     @property
     def wrong_quantities(self) -> tuple[str, ...]:
-        """The quantities of which a row disagrees."""
+        """The quantities that have a row that disagrees."""
         return tuple(dict.fromkeys(row.quantity for row in self.wrong))
 
     @property
     def looked(self) -> tuple[Row, ...]:
-        """The rows that disagree, and those that agree of the same quantities: would they under a fault?"""
+        """The rows that disagree, and the agreeing rows of their quantities, which a fault must fit too."""
         beside = (row for row in self.held if row.quantity in self.wrong_quantities and row not in self.wrong)
         return (*self.wrong, *beside)
 
     @property
     def vectors(self) -> tuple[Row, ...]:
-        """Of `looked` those that are no numbers of the car."""
+        """The rows of `looked` that are vectors, not numbers of the car."""
         return tuple(row for row in self.looked if row.of != "car")
 
     def places(self, point: str) -> Array | None:
-        """Where a point is, (N, 3), whether the scene reports it or not; None where it cannot be solved."""
+        """The position of a point, (N, 3), even if the scene does not report it; None if not solvable."""
         (row,) = (row for quantity in QUANTITIES if (row := Row(quantity, point)).is_place)
         if point in self.known or row in self.held:
             return self.known.get(point, self.held.get(row))

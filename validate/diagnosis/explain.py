@@ -1,16 +1,16 @@
-"""What would explain a disagreement: faults are supposed one after the other, and the numbers decide.
+"""Finds possible explanations of a disagreement: possible faults are tried one after the other.
 
-A fault is claimed for rows whose numbers all come within what they may be off once it is undone. Numbers
-that are all one number decide nothing: whatever is fitted to them fits. So a claim needs at least two more
-distinct numbers than were fitted, and numbers that are off from more than one value.
+A fault explains a row if, with the fault applied to the trusted numbers, all given numbers are within their
+tolerances. If all numbers of a row are equal, any fitted parameter matches them. So an explanation needs at
+least two more distinct numbers than fitted parameters, and differences from more than one value.
 
-Of a row that is off by few times what is allowed nothing is claimed: what is allowed of other numbers is
-wider, and would explain it by itself.
+A row whose difference is only a few times its tolerance is not explained: recomputed numbers have wider
+tolerances, which alone could explain the difference.
 
-The kinds that need only arithmetic come first, then those that solve other cars, each on what is not
-explained yet. Two faults are found greedily: what else the numbers of another car have; two of the arithmetic
-in the same numbers; and another car once what all numbers may have besides (other axes, signs or units, a
-shift, every row one late) is undone.
+Kinds of faults that need only arithmetic come first, then kinds that solve other cars; each is tried on the
+rows that are not yet explained. Pairs of faults are searched greedily: a further fault in the numbers of
+another car; two arithmetic faults in the same numbers; and another car after a common fault of all numbers
+(other axes, signs or units, a shift, all rows one late) is undone.
 """
 
 from __future__ import annotations
@@ -28,16 +28,18 @@ from validate.diagnosis.evidence import Evidence, Row, together
 from validate.diagnosis.hypothesis import Hypothesis, Kind, Stage
 from validate.diagnosis.kinds import KINDS
 
-# Instants of which one at an end may be left out, and that are looked through twice more in a second or two.
+# Limits of the number of instants for which a shift by one sample is tried together with another car: one
+# instant can be left out, and the two further searches take a second or two.
 FEWEST_LATE, MOST_LATE = 8, 2000
 
 
 @dataclass(frozen=True)
 class _Found:
-    """A fault that the numbers carry.
+    """A fault that explains some rows.
 
     Attributes:
-        rows: the disagreeing rows that it explains. leftover: of these.
+        rows: the disagreeing rows that it explains.
+        leftover: the largest remaining difference / tolerance of these rows.
     """
 
     hypothesis: Hypothesis
@@ -46,13 +48,13 @@ class _Found:
 
 
 def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
-    """What would explain that one of two solutions disagrees with the other; the best first.
+    """Possible explanations of a disagreement between two solutions, the best first.
 
-    The trusted one is the one whose accuracy is proven, and the first where neither's is or both are.
+    The trusted solution is the one whose accuracy is proven; if both or neither are proven, the first one.
 
     Returns:
-        What explains most rows first, simple before far-fetched. Empty where nothing that is known here
-        explains anything.
+        Explanations of most rows first, simple before far-fetched ones. Empty if no known kind of fault
+        explains any row.
     """
     one, two = outcome.solutions
     held, given = (two, one) if two.accuracy.proven and not one.accuracy.proven else (one, two)
@@ -60,7 +62,7 @@ def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
 
 
 def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
-    """The same of numbers that are beside each other already."""
+    """Possible explanations of the wrong rows of some evidence, the best first, as `explain_outcome`."""
     if not evidence.wrong or not len(evidence.times):
         return ()
     found = _explained(evidence)
@@ -68,15 +70,15 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
         for kind, words, undone in _undone(evidence, found):
             for one in _ranked(_supposed(undone, "drawing")) if undone.wrong else ():
                 if not _open(undone, [one]):
-                    told = _in_words(undone, one)
+                    first = _in_words(undone, one)
                     return (
-                        replace(told, words=f"{told.words}, and {words}", kind=f"{told.kind} and {kind}"),
+                        replace(first, words=f"{first.words}, and {words}", kind=f"{first.kind} and {kind}"),
                     )
     return tuple(_in_words(evidence, one) for one in found)
 
 
 def _explained(evidence: Evidence) -> list[_Found]:
-    """What the numbers carry, the best first."""
+    """The faults that explain rows, the best first."""
     found = _supposed(evidence, "numbers")
     cars: list[_Found] = []
     stages: tuple[Stage, ...] = ("motion", "drawing")
@@ -84,7 +86,7 @@ def _explained(evidence: Evidence) -> list[_Found]:
         if _open(evidence, [*found, *cars]):
             cars += _supposed(evidence, stage)
     for one in _ranked(cars)[:1]:
-        # What other faults the same car has beside it.
+        # Further faults in the numbers of this other car.
         if left := tuple(row for row in evidence.wrong if row not in one.rows):
             found += _supposed(evidence.after(one.hypothesis.rows, left), "numbers")
     found += cars
@@ -96,13 +98,13 @@ def _explained(evidence: Evidence) -> list[_Found]:
 
 
 def _elsewhere(evidence: Evidence) -> bool:
-    """Whether it may be another car or another motion: not where points are given and are in their places."""
+    """Whether another car or motion is possible: not if moving points are given and all are right."""
     moving = [row for row in evidence.given if row.is_place and np.ptp(evidence.held[row], axis=0).any()]
     return not moving or any(row in evidence.wrong for row in moving)
 
 
 def _open(evidence: Evidence, found: Iterable[_Found]) -> tuple[Row, ...]:
-    """The rows that nothing explains yet."""
+    """The wrong rows that are not explained yet."""
     done = {row for one in found for row in one.rows}
     return tuple(
         row for row in evidence.wrong if row not in done and evidence.clear(row, evidence.allowed[row])
@@ -115,9 +117,9 @@ def _supposed(evidence: Evidence, stage: Stage) -> list[_Found]:
 
 
 def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
-    """The faults of a kind; the same fault of several quantities is one."""
+    """The possible faults of a kind; equal faults of several quantities are merged."""
     merged: dict[Hashable, Hypothesis] = {}
-    # A car that cannot be solved, or gives no such numbers, explains nothing.
+    # A car that cannot be solved, or does not give the numbers, explains nothing.
     with suppress(PointcoordError):
         for one in kind.suppose(evidence):
             key = one.key or one.words
@@ -127,9 +129,9 @@ def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
 
 
 def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
-    """The rows that a fault explains; None if there are none."""
+    """The rows that a fault explains; None if it explains none."""
     left: dict[Row, float] = {}
-    # What is wrong by so little tells nothing by itself, but is said where the whole car is another.
+    # Rows with small differences prove nothing, but are listed if the fault is in the whole car.
     barely: list[Row] = []
     for row, (value, allowed) in hypothesis.rows.items():
         share = evidence.left(row, value, allowed)
@@ -151,7 +153,7 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
 
 
 def _pairs(evidence: Evidence) -> Iterator[_Found]:
-    """Two faults in the same numbers: the second in what the first makes of ours."""
+    """Two faults in the same numbers: the second is sought after the first is applied to trusted numbers."""
     for place, first in enumerate(KINDS):
         for one in _merged(first, evidence) if first.opens else ():
             after = evidence.after(one.rows, tuple(row for row in evidence.wrong if row in one.rows))
@@ -175,10 +177,11 @@ def _both(one: Hypothesis, two: Hypothesis) -> Hypothesis:
 
 
 def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, str, Evidence]]:
-    """Without a fault that all numbers may have, and that hides which car it is: its kind and its words.
+    """The evidence with a common fault of all numbers undone, which may hide another car; with kind and
+    words.
 
-    It is supposed where some numbers show it; of all angles, such as another unit, where it leaves less of
-    their difference; rows in their neighbours' places always.
+    A fault is undone if some numbers show it. A fault of all angles, such as another unit, is undone if it
+    reduces their differences. A shift by one sample is always tried.
     """
     opening = (one for kind in KINDS if kind.opens for one in _merged(kind, evidence))
     hidden = (one for one in opening if _may_hide(evidence, one))
@@ -190,7 +193,7 @@ def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, 
 
 
 def _may_hide(evidence: Evidence, fault: Hypothesis) -> bool:
-    """Whether all angles that are wrong, two at least, may have a fault."""
+    """Whether a fault reduces the differences of all wrong angles, of which there are at least two."""
     angles = [row for row in evidence.wrong if row.of == "car" and row.unit == "rad"]
     return len(angles) > 1 and all(
         row in fault.rows
@@ -201,7 +204,7 @@ def _may_hide(evidence: Evidence, fault: Hypothesis) -> bool:
 
 
 def _without_a_late_sample(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
-    """The same without an end, in words, if every number that changes may be one row late or early."""
+    """The evidence with given numbers shifted by one row, in words; only if every moving number is wrong."""
     moving = {row for row, values in evidence.held.items() if np.ptp(values, axis=0).max(initial=0.0) > 0.0}
     few = FEWEST_LATE < len(evidence.times) <= MOST_LATE
     if not (few and evidence.over_time) or len(evidence.wrong) < 2 or not moving <= {*evidence.wrong}:
@@ -211,7 +214,7 @@ def _without_a_late_sample(evidence: Evidence) -> Iterator[tuple[str, Evidence]]
 
 
 def _ranked(found: Iterable[_Found]) -> list[_Found]:
-    """More rows before fewer; simple before far-fetched, and rounder amounts first."""
+    """The faults in order: more rows before fewer, simple before far-fetched, rounder amounts first."""
 
     def place(one: _Found) -> tuple[float, ...]:
         return -len(one.rows), one.hypothesis.cost, one.hypothesis.decimals, one.leftover
@@ -220,7 +223,7 @@ def _ranked(found: Iterable[_Found]) -> list[_Found]:
 
 
 def _best(ranked: Iterable[_Found]) -> Iterator[_Found]:
-    """Those that explain what none before them does; or the same rows as simply."""
+    """The faults that explain a row that no better fault explains, or the same rows as simply."""
     kept: list[_Found] = []
     for one in ranked:
         more = [other for other in kept if len(other.rows) > len(one.rows)]
@@ -237,7 +240,7 @@ def _best(ranked: Iterable[_Found]) -> Iterator[_Found]:
 
 
 def _left_out(evidence: Evidence, found: _Found, quantity: str) -> bool:
-    """Whether a quantity has rows that a fault does not explain, or that agree and would not under it."""
+    """Whether a quantity has rows that the fault does not explain, or that agree only without the fault."""
     others = (row for row in evidence.held if row.quantity == quantity and row not in found.rows)
     return any(
         evidence.left(row, *found.hypothesis.rows[row]) > 1.0
@@ -249,15 +252,15 @@ def _left_out(evidence: Evidence, found: _Found, quantity: str) -> bool:
 
 def _in_words(evidence: Evidence, found: _Found) -> Explanation:
     quantities: list[str] = []
-    said: list[str] = []
+    parts: list[str] = []
     for quantity in evidence.wrong_quantities:
         names = [row.name for row in found.rows if row.quantity == quantity]
         words, of_car = QUANTITIES[quantity].words, QUANTITIES[quantity].of == "car"
         if names and not of_car and not _left_out(evidence, found, quantity):
             quantities.append(quantity)
-            said.append(words)
+            parts.append(words)
         elif names:
             quantities += [f"{quantity}.{name}" for name in names]
-            said.append(("" if of_car else f"{words} of ") + ", ".join(names))
-    words = f"{', '.join(said)}: {found.hypothesis.words}"
+            parts.append(("" if of_car else f"{words} of ") + ", ".join(names))
+    words = f"{', '.join(parts)}: {found.hypothesis.words}"
     return Explanation(words, found.hypothesis.kind, tuple(quantities), found.leftover)

@@ -1,4 +1,4 @@
-"""A fault that numbers may have, and a kind of such faults: what it would make of the held numbers."""
+"""A possible fault of given numbers, with its effect on the trusted numbers, and a kind of such faults."""
 
 from __future__ import annotations
 
@@ -21,17 +21,19 @@ class Hypothesis:
     """One fault with its parameters.
 
     Attributes:
-        words: what was done to the numbers.
-        rows: what each row would be.
-        fitted: how many numbers were chosen so that it fits.
-        cost: how far-fetched it is; the fitted numbers and the choices made.
-        key: which fault of its kind, where its words say more: one of other rows is the same.
-        decimals: of its amount; of what is as far-fetched the rounder one is likelier meant.
-        looser: whether it says that the numbers are ours, and may be farther off than is claimed of them.
-        whole: whether it is about the whole car, so that rows that agree must agree under it too.
-        rests: whether it says where points rest, which one number tells.
-        undo: makes ours again of a given row's numbers, where all may have the fault beside another one.
-        kind: of fault, two kinds joined by "and".
+        words: the fault in words.
+        rows: the numbers that each row would have with the fault.
+        fitted: number of fitted parameters.
+        cost: how far-fetched it is, from the fitted parameters and the choices made.
+        key: identifies the fault within its kind; faults with equal keys are merged. The words, if None.
+        decimals: number of decimals of its amount; of equally far-fetched faults the rounder one is
+            preferred.
+        looser: whether the fault only widens the tolerance, such as rounding to printed digits.
+        whole: whether it concerns the whole car, so that rows that agree must also agree with the fault.
+        rests: whether it concerns points at rest, for which a single number is enough.
+        undo: removes the fault from given numbers of a row, if all numbers may have this fault in addition to
+            another one.
+        kind: the kind of fault; two kinds are joined by "and".
     """
 
     words: str
@@ -52,12 +54,11 @@ class Kind:
     """A kind of fault.
 
     Attributes:
-        name: of the kind. suppose: gives the faults of this kind that may be in the rows that disagree.
-        stage: "numbers" needs only arithmetic; "motion" solves the same car moved or closed otherwise,
-            "drawing" cars that are drawn otherwise; "last" says little. Each is tried on what those before do
-            not explain.
-        opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
-            is sought in what the first would make of the held numbers.
+        name: name of the kind. suppose: yields possible faults of this kind for some evidence.
+        stage: "numbers" needs only arithmetic; "motion" solves the same car with another motion or closure;
+            "drawing" solves cars with another drawing; "last" explains little. Each is tried on rows that
+            earlier stages do not explain.
+        opens, closes: whether it may be the first or the second of two faults in the same numbers.
     """
 
     name: str

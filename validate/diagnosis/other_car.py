@@ -1,4 +1,4 @@
-"""Another car or motion: one number of a scene that may be another, by least squares of the given numbers."""
+"""Fits one number of a scene, such as a coordinate or a length, to the given numbers by least squares."""
 
 from __future__ import annotations
 
@@ -17,36 +17,40 @@ from validate.diagnosis.hypothesis import Hypothesis
 
 Array = NDArray[np.float64]
 
-ENOUGH_NUMBERS = 3  # of the car, of which one is left out: what one or two alone say fits much
-# What a linear step from where the amount is ours must leave of the difference, to be worth a search.
+# Least number of numbers of the car, if one of them is left out: one or two numbers fit many changes.
+ENOUGH_NUMBERS = 3
+# A search is made only if the first linear step leaves at most this share of the difference.
 LIKELY = 0.5
-# What the search may leave of it at most; or of what each number may be off by, which a rounder amount, as
-# it is meant, may leave less of.
+# A fit is accepted if it leaves at most this share of the difference, or if every number is within so many
+# times its tolerance; then a rounder amount, such as the intended one, may fit better.
 PROMISING, NEARLY = 0.1, 2.0
-# Of the difference: a step that lessens it by no more than half is the last one, for near the amount that is
-# meant a step lessens it manifold, down to what remains.
+# The search ends with a step that leaves more than this share of the difference: near the solution a step
+# reduces it by a large factor, down to the remainder.
 MANIFOLD = 0.5
-PARTS = (1.0, 0.25)  # of a step, of which the first that lessens the difference is gone
-# How many times what a found amount leaves a rounder one may. Least squares leave less of rounded numbers
-# than what was meant: of 5 that one amount is fitted to by a root of 5/4 on average.
+PARTS = (1.0, 0.25)  # shares of a step; the first that reduces the difference is taken
+# A rounder amount may leave so many times the difference of the fitted one. The least-squares fit of rounded
+# numbers leaves less than the intended amount: for 5 numbers and one parameter, less by a root of 5/4 on
+# average.
 KEPT = 1.5
-# How many times what the best change leaves another may leave.
+# A change is reported if it leaves at most so many times the difference that the best change leaves.
 POORER = 30.0
 
 
 @dataclass(frozen=True)
 class Change:
-    """A number of a scene that may be another one.
+    """A number of a scene that may be wrong.
 
     Attributes:
-        key: which it is.
-        put: puts another one into the scene's content.
-        words: what is said of another one.
-        slope: of the numbers of rows by it, at a few instants, one after the other; or a step of differences.
-        ours: what it is in the scene. farthest: from ours that it may be.
-        cost: how far-fetched another one is.
-        silent: points whose numbers say nothing of it.
-        late: whether the motion is read so much later.
+        key: identifies the number.
+        put: sets another value in the scene's content.
+        words: the fault in words, from the other value.
+        slope: derivatives of the numbers of rows by it, at a few instants, concatenated; or a step for a
+            difference.
+        ours: its value in the scene.
+        farthest: largest change of the value.
+        cost: how far-fetched a change is.
+        silent: points whose numbers do not depend on it.
+        late: whether the value is a time by which the motion is read later.
     """
 
     key: Hashable
@@ -60,11 +64,11 @@ class Change:
     late: bool = False
 
     def motion(self, evidence: Evidence, amount: float) -> Motion | None:
-        """That of the scene with another number; None where it has none."""
+        """The motion of the scene with another value; None if it cannot be solved."""
         return evidence.solved.other((self.key, amount), lambda content: self.put(content, amount))
 
     def read(self, evidence: Evidence, looked: Sequence[Row], amount: float) -> Array | None:
-        """The numbers of rows with another number, one after the other; None where there are none."""
+        """The numbers of rows with another value, concatenated; None if it cannot be solved."""
         there = abs(amount - self.ours) < self.farthest
         motion = self.motion(evidence, amount) if there else None
         if motion is None:
@@ -72,22 +76,22 @@ class Change:
         return numbers_in(motion.at(evidence.times + amount * self.late).numbers, looked)
 
     def supposed(self, evidence: Evidence, amount: float) -> Iterator[Hypothesis]:
-        """The whole car with another number."""
+        """The fault that the whole car has another value."""
         motion = self.motion(evidence, amount)
         if motion is not None and amount != self.ours:
-            # A hardpoint is drawn at a round number, and a link is off by one.
+            # Either the value is round, as a drawn hardpoint, or the change, as an error of a link.
             decimals = min(map(_decimals, (amount, round(amount - self.ours, DECIMALS))))
             rows = _rows_of(evidence, motion, amount * self.late)
-            told = {row: would for row, would in rows.items() if row.name not in self.silent}
+            rows = {row: would for row, would in rows.items() if row.name not in self.silent}
             words = self.words(amount)
-            yield Hypothesis(words, told, 1, self.cost, key=self.key, decimals=decimals, whole=True)
+            yield Hypothesis(words, rows, 1, self.cost, key=self.key, decimals=decimals, whole=True)
 
 
 def _rows_of(evidence: Evidence, motion: Motion, later: float = 0.0) -> dict[Row, WouldBe]:
-    """What each row would be of another motion, and how far from that it may be.
+    """The numbers of each row in another motion, with their tolerances.
 
     Args:
-        later: when the motion is read, s after the instants.
+        later: the motion is read so much after the instants, s.
     """
     samples = motion.at(evidence.times + later)
     proven = motion.proof_of(samples, rates=True).proven
@@ -96,13 +100,13 @@ def _rows_of(evidence: Evidence, motion: Motion, later: float = 0.0) -> dict[Row
         quantity, name = row
         if name in samples.numbers[quantity]:
             value = np.array(samples.numbers[quantity][name])
-            # These are off by their own bound, and by as much again for what numbers of its laws, such as a
-            # factor that is found, are rounded by.
+            # The error bound of the motion, doubled for the rounding of numbers in its laws, such as a fitted
+            # factor.
             bound = np.nan_to_num(proven[quantity][name], posinf=0.0)
             allowed = 2.0 * (evidence.rounded(row, value) + bound)
             if later:
-                # What is claimed varies along the motion: the most of it, since it is read elsewhere. And
-                # instants are rounded, and so moves what is read there.
+                # The motion is read at other instants, where bounds may be larger: the largest is used. The
+                # rounding of instants is added.
                 speed = np.abs(np.gradient(value, evidence.times, axis=0)).max()
                 rounding = 8.0 * EPS * speed * (abs(later) + np.abs(evidence.times).max())
                 allowed = np.full_like(value, allowed.max(axis=0) + rounding)
@@ -115,9 +119,10 @@ def _decimals(amount: float) -> int:
 
 
 def _fitted(change: Change, evidence: Evidence, looked: Sequence[Row]) -> tuple[float, float] | None:
-    """The number that gives those of some rows, as round as these tell, and what it leaves of them.
+    """The value that fits the numbers of some rows, rounded as far as they allow, and the remaining
+    difference.
 
-    By the secant method; None where that leaves much of the difference.
+    By the secant method; None if much of the difference remains.
     """
     ours, theirs, off = evidence.joined(looked)
     start = change.ours
@@ -128,7 +133,7 @@ def _fitted(change: Change, evidence: Evidence, looked: Sequence[Row]) -> tuple[
     def gap_at(amount: float) -> Array:
         found = ours if amount == start else change.read(evidence, looked, amount)
         gap = np.full(len(ours), np.nan) if found is None else found - theirs
-        # A number that there is none of is as far off as can be.
+        # A missing number counts as an infinite difference.
         return np.where(np.isnan(gap), np.inf, gap)
 
     def left(amount: float) -> float:
@@ -164,7 +169,7 @@ def _fitted(change: Change, evidence: Evidence, looked: Sequence[Row]) -> tuple[
 
 
 def _step(slope: Array, gap: Array) -> float:
-    """By how much more the gap is least, were it linear."""
+    """The step to the least gap, if the gap were linear in the value."""
     square = float(slope @ slope)
     return -float(slope @ gap) / square if square > 0.0 else 0.0
 
@@ -176,17 +181,18 @@ def otherwise(
     cost: float = 1.0,
     solve: Callable[[Scene], Motion] = simulate,
 ) -> Iterator[Hypothesis]:
-    """The whole car with another content of its scene, if it can be solved so."""
+    """The fault that the whole car has another scene content, if it can be solved."""
     motion = evidence.solved.other(words, put, solve)
     if motion is not None:
         yield Hypothesis(words, _rows_of(evidence, motion), cost=cost, whole=True)
 
 
 def any_of(evidence: Evidence, changes: Sequence[Change]) -> Iterator[Hypothesis]:
-    """Each of some numbers by itself, by what tells most; where none gives all of that, by all but one of it.
+    """Each of some changes alone, fitted to positions or angles; if none explains all of them, to all but
+    one.
 
-    A number that has a fault of its own hides what the others say, and positions in another unit what angles
-    do.
+    One number with a fault of its own would hide the change that the others show; positions in another unit
+    would hide the change that angles show.
     """
 
     def suppose(looked: Sequence[Row]) -> list[Hypothesis]:
@@ -210,7 +216,7 @@ def any_of(evidence: Evidence, changes: Sequence[Change]) -> Iterator[Hypothesis
 
 
 def _telling(evidence: Evidence) -> tuple[tuple[Row, ...], ...]:
-    """Numbers of one unit that disagree: positions, angles, as far as there are any, else the first."""
+    """Groups of wrong rows to fit: positions and lengths; angles; if there are none, the first quantity."""
     of_a_pose = (
         tuple(row for row in evidence.wrong if row.unit == unit and row.order == 0) for unit in ("mm", "rad")
     )
@@ -219,6 +225,6 @@ def _telling(evidence: Evidence) -> tuple[tuple[Row, ...], ...]:
 
 
 def _gives(evidence: Evidence, one: Hypothesis, rows: Sequence[Row]) -> bool:
-    """Whether another car explains rows whole, and leaves right what agrees."""
+    """Whether a fault explains all of some rows, and rows that agree still agree with it."""
     agree = (row for row in one.rows if row not in evidence.wrong)
     return evidence.explained({row: one.rows[row] for row in (*rows, *agree)})

@@ -1,6 +1,6 @@
-"""The axes and units of other programs, turned into the scene's: x rearward, y right, z up; mm.
+"""Converts axes and units of other programs to those of the scene: x rearward, y right, z up; mm.
 
-Coordinates are decimal numbers as printed, and axes are turned by exchanging and negating them, so nothing is
+Coordinates are decimal numbers as printed. Axes are converted by permutations and signs, so nothing is
 rounded.
 """
 
@@ -24,27 +24,27 @@ DIRECTIONS = {
     "up": (0, 0, 1),
     "down": (0, 0, -1),
 }
-"""In the scene's axes."""
+"""The directions of the car in the scene's axes."""
 ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".join(DIRECTIONS)
 
 
 @dataclass(frozen=True)
 class Axes:
-    """Where the x, y and z of a file point."""
+    """The directions of a file's x, y and z."""
 
     directions: tuple[str, ...]
 
     @classmethod
     def of(cls, words: str) -> Axes:
-        """Axes from their words.
+        """Axes from text, such as `forward,left,up`.
 
         Raises:
-            UsageError: they are not three directions at right angles.
+            UsageError: the text does not give three directions at right angles.
         """
         found = re.findall(r"[^\s,;]+", words.lower())
         ways = [DIRECTIONS.get(word, (0, 0, 0)) for word in found]
         if len(ways) != 3 or not np.linalg.det(ways):
-            raise UsageError(f"axes are {words!r}; allowed: {ALLOWED}; each line of the car once")
+            raise UsageError(f"axes are {words!r}; allowed: {ALLOWED}; each axis of the car once")
         return cls(tuple(found))
 
     @property
@@ -54,24 +54,24 @@ class Axes:
 
     @property
     def option(self) -> str:
-        """The axes as the command line takes them."""
+        """The axes as the value of --axes."""
         return ",".join(self.directions)
 
     @property
     def right_handed(self) -> bool:
-        """Whether x, y and z are right-handed, as the scene's are."""
+        """Whether x, y and z are right-handed."""
         return bool(np.linalg.det(self.matrix) > 0.0)
 
     @property
     def matrix(self) -> NDArray[np.int_]:
-        """The scene's coordinates from the file's, (3, 3)."""
+        """The matrix from the file's coordinates to the scene's, (3, 3)."""
         return np.array([DIRECTIONS[word] for word in self.directions]).T
 
     def to_scene(self, place: Place, unit: str) -> Place:
-        """A place in the file's axes and unit as x rearward, y right, z up, mm."""
+        """A position in the file's axes and unit, converted to x rearward, y right, z up, mm."""
         x, y, z = self.matrix.astype(object) @ place * LENGTHS[unit] + 0
         return x, y, z
 
 
 OUR_AXES = Axes(("rearward", "right", "up"))
-"""The scene's."""
+"""The axes of a scene."""

@@ -1,9 +1,9 @@
-"""A suspension of Project Chrono, or a vehicle that names some: JSON, with comments as Chrono allows them.
+"""Reads a suspension of Project Chrono, or a vehicle that names suspensions: JSON with comments.
 
-A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`. It is
-one of the left wheel, whatever its sign says.
-A vehicle names the files of its suspensions from Chrono's folder of data, and puts each suspension at a
-place of its chassis (WheeledVehicle.cpp). What steers an axle is not read: here it is a straight rack.
+A point is a key `Location ...` or `COM` of a part, with three numbers; its name here is `Part: Key`. Points
+belong to the left wheel, whatever the sign of y. A vehicle names the files of its suspensions relative to
+Chrono's data folder, and the position of each suspension on the chassis (WheeledVehicle.cpp). Its steering is
+not read: the scene has a straight rack.
 """
 
 from __future__ import annotations
@@ -34,22 +34,22 @@ CAMBER, TOE = "Camber Angle (deg)", "Toe Angle (deg)"
 FORM = "JSON of a Project Chrono suspension"
 KINDS = "Type Suspension with a Template, or Type Vehicle with Template WheeledVehicle"
 AXLES, SUSPENSION, PLACE = "Axles", "Suspension Input File", "Suspension Location"
-STEERED = "the tie rod's inner end runs along a straight rack across the car, whatever steering the car has"
-# A text in quotes, which is kept, or a comment.
+STEERED = "the steering is not read: the tie rod's inner end moves along a straight rack across the car"
+# A string, which is kept, or a comment.
 _COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*[\s\S]*?\*/')
 
 
 def read(text: str, source: str) -> Contents:
-    """The points of a suspension, or of those that a vehicle names, and where their spin axes point.
+    """The points and spin axes of a suspension, or of the suspensions that a vehicle names.
 
     Raises:
-        FileError: it is no JSON, no suspension and no vehicle, has a point that is none, or names a
-            file that is not there.
+        FileError: the file is not JSON, is neither a suspension nor a vehicle, has an invalid point, or names
+            a file that does not exist.
         SceneError: a file that it names cannot be read.
     """
     data = _table(text, source)
     if _is_suspension(data):
-        framed = "points are in the frame of the suspension, which the car's own file puts somewhere"
+        framed = "points are in the frame of the suspension; the vehicle's file, which is not read, places it"
         points, axle = _suspension(data, source, framed)
         return Contents(tuple(points), {"": axle})
     if data.get("Type") == "Vehicle" and isinstance(data.get(AXLES), list):
@@ -58,18 +58,18 @@ def read(text: str, source: str) -> Contents:
 
 
 def _table(text: str, source: str) -> Mapping[str, Any]:
-    """A table in JSON, its numbers with their digits.
+    """The JSON object of a text; numbers keep their digits.
 
     Raises:
-        FileError: it is none.
+        FileError: the text is not a JSON object.
     """
-    # Comments leave the line breaks in them.
+    # The line breaks of comments are kept, so that line numbers stay right.
     clean = _COMMENT.sub(lambda f: f[0] if f[0][0] == '"' else "\n" * f[0].count("\n") + " ", text)
     try:
         data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=Decimal)
     except (ValueError, RecursionError, DecimalException) as error:
         line = getattr(error, "lineno", 0)
-        raise FileError(source, line, f"is no JSON: {getattr(error, 'msg', error)}", FORM) from None
+        raise FileError(source, line, f"is not JSON: {getattr(error, 'msg', error)}", FORM) from None
     if not isinstance(data, dict):
         raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
     return data
@@ -78,7 +78,7 @@ def _table(text: str, source: str) -> Mapping[str, Any]:
 def _kind(data: Mapping[str, Any]) -> str:
     """The type and template of a file, in words."""
     kind, template = (short(str(data.get(key))) for key in ("Type", "Template"))
-    return f"is a file of Chrono's of Type {kind} and Template {template}"
+    return f"is a Chrono file of Type {kind} and Template {template}"
 
 
 def _is_suspension(data: Mapping[str, Any]) -> bool:
@@ -99,7 +99,7 @@ def _suspension(data: Mapping[str, Any], source: str, note: str) -> tuple[list[F
         if not abs(value) < 90:
             raise FileError(source, 0, f"{key} is {value}", "an angle below 90 deg")
     camber, toe = (radians(float(value)) for value in angles.values())
-    # The left spindle's own y axis: R_z(-toe) R_x(-camber) e_y in Chrono's axes (ChDoubleWishbone.cpp).
+    # The y axis of the left spindle: R_z(-toe) R_x(-camber) e_y in Chrono's axes (ChDoubleWishbone.cpp).
     axis = (sin(toe) * cos(camber), cos(toe) * cos(camber), -sin(camber))
     taken = " and ".join(f"{key} {data.get(key, 'not given, which is 0')}" for key in angles)
     return points, Axle(str(data["Template"]), {}, SpinAxis(axis, taken), (note, STEERED))
@@ -114,8 +114,8 @@ def _vehicle(axles: Sequence[Any], source: str) -> Contents:
     read: dict[str, Axle] = {}
     for label, axle, place in zip(_labels(places), axles, places, strict=True):
         if place[1]:
-            told = f"{PLACE} of its {label} axle has y {place[1]}, beside the middle of the car"
-            raise FileError(source, 0, told, "y 0")
+            problem = f"{PLACE} of its {label} axle has y {place[1]}, which is not the middle of the car"
+            raise FileError(source, 0, problem, "y 0")
         data, path = _named(axle.get(SUSPENSION), source)
         into = f"moved by its {PLACE} {[float(n) for n in place]} m into the frame of the chassis"
         theirs, read[label] = _suspension(data, path, f"points are those of {path}, {into}")
@@ -126,19 +126,19 @@ def _vehicle(axles: Sequence[Any], source: str) -> Contents:
 
 
 def _named(name: object, source: str) -> tuple[Mapping[str, Any], str]:
-    """The suspension that a vehicle names, from the nearest folder above it that has such a file."""
+    """The suspension file that a vehicle names, from the nearest folder above the vehicle that has it."""
     if not isinstance(name, str):
         raise FileError(source, 0, f"has no {SUSPENSION} of an axle", "the name of a file")
     paths = (folder / name for folder in Path(source).absolute().parents)
     path = next((path for path in paths if path.is_file()), None)
     if path is None:
-        told = f"names {short(name)}, which is in none of the folders above it"
-        allowed = "a vehicle in Chrono's folder of data with the files that it names"
-        raise FileError(source, 0, told, f"{allowed}, or a suspension's own file")
+        problem = f"names {short(name)}, which is in none of the folders above it"
+        allowed = "a vehicle in Chrono's data folder with the files that it names"
+        raise FileError(source, 0, problem, f"{allowed}, or the file of a suspension")
     text = read_file(path, f"the path of a file that {source} names").decode("utf-8-sig", "replace")
     data = _table(text, str(path))
     if not _is_suspension(data):
-        raise FileError(str(path), 0, f"{_kind(data)}, and {source} has it as a suspension", KINDS)
+        raise FileError(str(path), 0, f"{_kind(data)}, but {source} names it as a suspension", KINDS)
     return data, str(path)
 
 
@@ -150,7 +150,7 @@ def _place(value: object, source: str, name: str) -> Place:
 
 
 def _labels(places: Sequence[Place]) -> list[str]:
-    """Front and rear of two axles, by where they are; the numbers in the file of more; none of one."""
+    """Labels of the axles: front and rear for two, by their positions; numbers for more; none for one."""
     if len(places) == 1:
         return [""]
     if len(places) == 2 and places[0][0] != places[1][0]:

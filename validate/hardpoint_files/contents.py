@@ -1,4 +1,4 @@
-"""What a file of hardpoints holds, whatever its form: points as they stand there, with their lines."""
+"""The contents of a file of hardpoints in any format: points as given, with their lines."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from validate.plain_text import shown
 from validate.tables.errors import FileError
 
 Place = tuple[Decimal, Decimal, Decimal]
-"""Three coordinates with the digits that were printed: a metre is 1000 mm and not 1000.0000000000001."""
+"""Three coordinates with the printed digits: a metre is 1000 mm and not 1000.0000000000001."""
 
-# No hardpoint is farther off, in any unit, and no number of a file is longer than this makes it.
+# Largest coordinate in any unit. It also limits the length of numbers.
 FARTHEST = Decimal("1e9")
 
 
 @dataclass(frozen=True)
 class FilePoint:
-    """A point as the file has it.
+    """A point as given in the file.
 
     Attributes:
-        name: what the file calls it.
+        name: its name in the file.
         place: its coordinates in the file's axes and unit.
-        line: where it is, counted from 1; 0 where a file has no lines to speak of.
-        side: the wheel that the file says it belongs to, left or right; empty if it does not say.
-        part: the axle that the file says it belongs to, front or rear; empty if it does not say.
-        section: the heading that it stands under; empty if there is none.
+        line: its line, counted from 1; 0 if the format has no meaningful lines.
+        side: its wheel according to the file, left or right; empty if the file does not say.
+        part: its axle according to the file, front or rear; empty if the file does not say.
+        section: the heading above it; empty if there is none.
     """
 
     name: str
@@ -38,7 +38,7 @@ class FilePoint:
     section: str = ""
 
     def of(self, part: str, side: str) -> bool:
-        """Whether it may belong to that wheel; an empty axle or side leaves it open."""
+        """Whether it may belong to a wheel; an empty axle or side matches any."""
         return all(mine in ("", its) or not its for mine, its in ((self.part, part), (self.side, side)))
 
     @property
@@ -48,13 +48,13 @@ class FilePoint:
 
     @property
     def told(self) -> str:
-        """The same in a sentence."""
+        """Its name and its line, for a sentence."""
         return short(self.name) + (f" on line {self.line}" if self.line else "")
 
 
 @dataclass(frozen=True)
 class SpinAxis:
-    """Where a wheel's spin axis points, forward, outboard and up, and what that is taken from."""
+    """The direction of a wheel's spin axis, (forward, outboard, up), and its source in words."""
 
     direction: tuple[float, float, float]
     words: str
@@ -62,13 +62,13 @@ class SpinAxis:
 
 @dataclass(frozen=True)
 class Axle:
-    """What a file says of an axle beside its points.
+    """Data of an axle in a file, in addition to its points.
 
     Attributes:
-        called: what it calls the suspension; empty if it does not say.
-        angles: static angles that it prints, by its own words, deg, each with its line.
-        spin_axis: where its wheel's spin axis points, if said without a point.
-        notes: what the user should know of its points.
+        called: the file's name of the suspension type; empty if the file does not say.
+        angles: printed static angles by their names in the file, deg, each with its line.
+        spin_axis: direction of the wheel's spin axis, if given without a point.
+        notes: remarks on its points for the user.
     """
 
     called: str = ""
@@ -79,13 +79,13 @@ class Axle:
 
 @dataclass(frozen=True)
 class Contents:
-    """A file, read.
+    """The contents of a file.
 
     Attributes:
         points: in the order of the file.
-        axles: by part; what is said of the whole file under the empty one.
-        unit: of its lengths, if it says so.
-        lines: those that name something and are no points, in words.
+        axles: data of the axles by part; data of the whole file under the empty name.
+        unit: unit of lengths, if the file gives it.
+        lines: lines with a name that are not points, in words.
     """
 
     points: tuple[FilePoint, ...]
@@ -94,7 +94,7 @@ class Contents:
     lines: tuple[str, ...] = ()
 
     def axle(self, part: str) -> Axle:
-        """What is said of an axle, or else of the whole file."""
+        """The data of an axle, or else of the whole file."""
         return self.axles.get(part) or self.axles.get("", Axle())
 
 
@@ -102,13 +102,13 @@ def number_of(value: object, source: str, line: int, what: str) -> Decimal:
     """A finite number with the digits of its text.
 
     Raises:
-        FileError: it is none, or farther off than any car.
+        FileError: the text is not a number, or the number is too large.
     """
     try:
         number = Decimal(value.strip() if isinstance(value, str) else str(value))
     except InvalidOperation:
         number = Decimal("nan")
-    # The exponent too: 1e-999999999 compares as small and has a billion digits.
+    # The exponent is limited too: 1e-999999999 is small but has a billion digits.
     if not number.is_finite() or number.copy_abs() > FARTHEST or int(number.as_tuple().exponent) < -1100:
         raise FileError(source, line, f"{what} is {short(str(value))}", "a number up to 1e9")
     return number
@@ -118,7 +118,7 @@ def place_of(numbers: Sequence[object], source: str, line: int, name: str) -> Pl
     """Three coordinates with the digits of their texts.
 
     Raises:
-        FileError: one is no number, or there are not three.
+        FileError: a text is not a number, or there are not three of them.
     """
     if len(numbers) != 3:
         raise FileError(source, line, f"has {len(numbers)} numbers for {short(name)}", "x, y and z")
@@ -130,10 +130,10 @@ def place_of(numbers: Sequence[object], source: str, line: int, name: str) -> Pl
 
 
 def plain(name: str) -> str:
-    """A name without capitals and signs: `CHAS_LowFor` and `chas lowfor` are one."""
+    """A name without capitals and punctuation: `CHAS_LowFor` and `chas lowfor` are equal."""
     return " ".join(re.findall(r"[^\W_]+", name.casefold()))
 
 
 def short(text: str) -> str:
-    """A text of a file in at most 60 characters, in quotes."""
+    """A text of a file in quotes, shortened to 60 characters."""
     return shown(repr(text if len(text) <= 60 else text[:57] + "..."))

@@ -1,6 +1,6 @@
-"""The formats that are known, each a table in `formats/`: a program's names of points, its axes, its unit.
+"""The known formats, each a table in `formats/`: names of points, axes and unit of a program.
 
-A new format of a form that is read already is a new table and nothing else.
+A new format of a form that can already be read needs only a new table.
 """
 
 from __future__ import annotations
@@ -23,29 +23,31 @@ from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
 READERS = {"lotus_report": lotus_report.read, "chrono_json": chrono_json.read}
-"""How a text becomes points, by the form that a format names; of a table it is said below."""
+"""The function that reads each form of text, except tables; see `Format.read`."""
 TABLE = "table"
 MJCF = "mjcf"
-"""The form of files that are whole mechanisms and no points."""
+"""The form of files that contain a whole mechanism, not hardpoints."""
 
-# Characters at the beginning of a file in which its format is looked for.
+# Number of characters at the beginning of a file in which its format is looked for.
 HEAD = 4000
 
 
 class Format(BaseModel):
-    """A format, as its table says it.
+    """A format, from its table.
 
     Attributes:
-        name: what the command line calls it. words: the same for people.
-        known_by: a pattern by which the beginning of a file shows it; empty fits every file.
-        axes: of a file, by a pattern of names that tell them; empty if every file has them.
-        unit: of a file that does not say.
-        angles: for our names, a pattern of its own words for a static angle.
-        names: what it calls our points in every suspension that has them.
-        suspensions: the same by our type of suspension. called: our type, by a pattern of its own words for
-            it. notes: what the user should know of the points of each.
-        titles: of a table, what its columns are called. wheels: side and axle, by what names begin or end
-            with.
+        name: on the command line. words: its name in messages.
+        form: how the text is read.
+        known_by: a pattern that the beginning of a file contains; the empty pattern fits every file.
+        axes: axes by a pattern of point names that use them; the empty pattern fits every file.
+        unit: unit of a file that does not give one.
+        angles: for each of our angles, a pattern of its name in the file.
+        names: names in the file of each of our points, in all suspensions.
+        suspensions: further names by our type of suspension.
+        called: our type of suspension by a pattern of its name in the file.
+        notes: remarks for the user on the points of each type.
+        titles: for a table, the possible titles of each column.
+        wheels: side and axle by the beginning or end of a name.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -65,17 +67,17 @@ class Format(BaseModel):
     wheels: dict[str, tuple[str, str]] = {}
 
     def names_of(self, kind: str) -> dict[str, tuple[str, ...]]:
-        """What it calls each point of a suspension of ours; in a table our own names will do."""
+        """Names in the file of each point of a suspension; a table may also use our names."""
         points = mechanism_file(kind).points
         shared = {ours: self.names[ours] for ours in points if ours in self.names}
         found = shared | self.suspensions.get(kind, {})
         return {ours: (*found.get(ours, ()), ours) for ours in points} if self.form == TABLE else found
 
     def ours(self, name: str, known: Mapping[str, str]) -> tuple[str, tuple[str, str]] | None:
-        """Our name of a point and its wheel, side and axle; None if it is none of ours.
+        """Our name of a point and its wheel, (side, axle); None if the name is not recognised.
 
         Args:
-            known: our names, by plain ones of the file.
+            known: our names by plain names of the file.
         """
         whole = plain(name)
         if whole in known:
@@ -86,18 +88,18 @@ class Format(BaseModel):
                     return known[base], wheel
         return None
 
-    def kind_called(self, said: str) -> str | None:
-        """Our type of the suspension that a file calls so; None if it is none of ours."""
-        found = (k for pattern, k in self.called.items() if re.fullmatch(pattern, said, re.IGNORECASE))
+    def kind_called(self, name: str) -> str | None:
+        """Our type of the suspension with this name in the file; None if the name is not recognised."""
+        found = (k for pattern, k in self.called.items() if re.fullmatch(pattern, name, re.IGNORECASE))
         return next(found, None)
 
     def read(self, text: str, source: str, said: Mapping[str, str | int]) -> Contents:
-        """What a file of this format holds.
+        """Read a file of this format.
 
         Args:
-            said: which columns the user means, of a table.
+            said: for a table, the columns that the user names.
         Raises:
-            FileError: it is not written as it must be.
+            FileError: the file does not have this format.
         """
         if self.form == TABLE:
             return table.read(text, source, self.titles, said, self.wheels)
@@ -108,7 +110,7 @@ class Format(BaseModel):
 
 @lru_cache
 def formats() -> Mapping[str, Format]:
-    """Every format by name; the one that fits every file comes last."""
+    """All formats by name; the format that fits every file is last."""
     found = [
         Format.model_validate({"name": path.stem} | tomllib.loads(path.read_text("utf-8")))
         for path in FORMATS.glob("*.toml")
@@ -117,10 +119,10 @@ def formats() -> Mapping[str, Format]:
 
 
 def format_of(text: str, name: str | None) -> Format:
-    """The format that is named, or the first that the beginning of a text shows.
+    """The named format, or the first format that fits the beginning of a text.
 
     Raises:
-        UnknownName: there is none of that name.
+        UnknownName: there is no format of this name.
     """
     known = formats()
     if name is not None and name not in known:

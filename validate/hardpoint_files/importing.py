@@ -1,7 +1,7 @@
-"""From a file of another program to a scene of ours.
+"""Makes a scene from another program's file.
 
-What is not known is refused or listed, never guessed: axes and units that the points speak against, points
-without a name of ours, points of ours that the file lacks.
+Nothing is guessed. Axes and units that contradict the points are refused, unknown points are listed, and
+missing points are refused.
 """
 
 from __future__ import annotations
@@ -28,14 +28,16 @@ from validate.tables.errors import FileError
 
 @dataclass(frozen=True)
 class Imported:
-    """A scene from another program's file, and what became of everything that the file holds.
+    """A scene from another program's file, with the source of every point.
 
     Attributes:
-        scene: checked, with a way of the wheel. text: the same as a scene file, each point with a comment.
-        points: of the scene, in its axes, with where each comes from.
-        others: points of the file that are none of ours.
-        angles: static angles that the file prints, held to the drawing's.
-        stands: the drawing, closed. facts: what was taken for granted, in words.
+        scene: the checked scene, with wheel travel.
+        text: the scene as a file, with a comment on each point.
+        points: points of the scene in its axes, with their sources.
+        others: points of the file that are not recognised.
+        angles: static angles printed in the file, compared with the drawing.
+        stands: the closed drawing.
+        facts: assumptions made, in words.
     """
 
     format: Format
@@ -53,10 +55,10 @@ def import_hardpoints(path: str | Path, **said: Any) -> Imported:
 
     Raises:
         SceneError: the file cannot be read.
-        FileError: it is not as it must be, or does not say all that is needed.
+        FileError: the file has a wrong format, or lacks something that is needed.
         UnknownName: no such format, suspension, side, part, unit or point.
-        UsageError: `axes` are none.
-        AssemblyError: its points cannot be put together.
+        UsageError: `axes` are not valid.
+        AssemblyError: the points cannot be assembled.
     """
     choices, source = Choices(**said), str(path)
     found, text = _opened(source, choices)
@@ -69,7 +71,7 @@ def import_hardpoints(path: str | Path, **said: Any) -> Imported:
 
 
 def names_of(path: str | Path, format: str | None = None, suspension: str | None = None) -> str:
-    """A file of names (TOML) for a file of hardpoints, ready to be filled in, with the points that are known.
+    """A file of names (TOML) to fill in for a file of hardpoints, with the recognised points filled in.
 
     Raises:
         SceneError, FileError, UnknownName: as `import_hardpoints`.
@@ -81,7 +83,7 @@ def names_of(path: str | Path, format: str | None = None, suspension: str | None
     try:
         contents = found.read(text, source, {})
     except FileError:
-        # Such as a table whose columns are not known: they can be said in the same file.
+        # Such as a table with unknown columns: the file of names can give them.
         contents = Contents(())
     one = OneWheel(source, choices, found, contents, NO_NAMES)
     kind = suspension or one.closest()[0]
@@ -90,24 +92,24 @@ def names_of(path: str | Path, format: str | None = None, suspension: str | None
 
 
 def _opened(source: str, choices: Choices) -> tuple[Format, str]:
-    """A file's format and its text."""
+    """The format and the text of a file."""
     text = text_of(read_file(source, "the path of a file of hardpoints"))
     if text is None:
-        raise FileError(source, 0, "is no text", "a text file; of a workbook, one sheet saved as CSV")
+        raise FileError(source, 0, "is not text", "a text file; for a workbook, save one sheet as CSV")
     return format_of(text, choices.format), text
 
 
 def _takes_no(source: str, option: str) -> FileError:
-    allowed = "--axes, where x, y and z point; names of sites are those of points"
-    return FileError(source, 0, f"is a whole mechanism, for which --{option} means nothing", allowed)
+    allowed = "--axes, the directions of x, y and z; names of sites become names of points"
+    return FileError(source, 0, f"is a whole mechanism, for which --{option} has no meaning", allowed)
 
 
 def _whole_mechanism(source: str, choices: Choices) -> Drawing:
-    """What a file draws that has bodies and joints of its own."""
+    """The drawing of a file that contains a whole mechanism."""
     for one in fields(choices):
         if one.name not in ("format", "axes") and getattr(choices, one.name) != one.default:
             raise _takes_no(source, one.name)
-    axes, by = OUR_AXES, "ours unless --axes says others"
+    axes, by = OUR_AXES, "the default of --axes"
     if choices.axes is not None:
         axes, by = Axes.of(choices.axes), "by --axes"
     if not axes.right_handed:
@@ -118,7 +120,7 @@ def _whole_mechanism(source: str, choices: Choices) -> Drawing:
 
 
 def _imported(found: Format, drawing: Drawing) -> Imported:
-    """A scene of a drawing, and its file."""
+    """The scene of a drawing, and its file."""
     drawn = scene_of(drawing)
     stands = standing(drawn)
     laws, scene = travel_of(drawn, stands)

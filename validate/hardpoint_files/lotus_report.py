@@ -1,6 +1,6 @@
-"""The text report of Lotus Suspension Analysis: a block of points for each axle, then its static values.
+"""Reads a text report of Lotus Suspension Analysis: a block of points for each axle, then static values.
 
-A point is a line `X Y Z POINT ( number ) = name`. Tables of results follow, which are not read here.
+A point is a line `X Y Z POINT ( number ) = name`. The tables of results that follow are not read.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def read(text: str, source: str) -> Contents:
     """The points and static angles of a report.
 
     Raises:
-        FileError: a line of a point is not as it must be, or there is none.
+        FileError: the line of a point is wrong, or there are no points.
     """
     points: list[FilePoint] = []
     called: dict[str, str] = {}

@@ -1,7 +1,7 @@
-"""A MuJoCo model (MJCF), read by MuJoCo, in its home pose and in the scene's axes.
+"""Reads a MuJoCo model (MJCF) with MuJoCo, in its home pose and in the scene's axes.
 
-What changes no motion (geoms, masses, forces, contacts, sensors, pictures, ranges of joints) is passed over;
-equalities other than connect and weld, and bodies moved from outside, are refused.
+Elements that do not change the kinematics (geoms, masses, forces, contacts, sensors, pictures, ranges of
+joints) are ignored. Equalities other than connect and weld, and mocap bodies, are refused.
 """
 
 from __future__ import annotations
@@ -19,20 +19,21 @@ from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
 
-# A car has some thirty, and time grows with the third power.
+# A car has some thirty bodies, and the time grows with the third power of their number.
 MOST_BODIES = 100
-# m and rad: a weld that is drawn apart by more is no weld as drawn; MuJoCo saves models with six digits.
+# Largest distance, m, and angle, rad, of a weld in the home pose; MuJoCo saves models with six digits.
 APART = 1e-5
-SOLREF = (0.02, 1.0)  # of an equality that says nothing of it
+SOLREF = (0.02, 1.0)  # the default of an equality
 KINDS = ("free", "ball", "slide", "hinge")  # in the order of mjtJoint
 
 
 @dataclass(frozen=True)
 class Equality:
-    """Two bodies, by number, that meet or are one.
+    """A connect or a weld between two bodies, which are given by number.
 
     Attributes:
-        places: where it is of either, (2, 3), m. sites: by number, those that say so.
+        places: the position of the joint on each body, (2, 3), m.
+        sites: numbers of the sites that define it, if any.
     """
 
     name: str
@@ -42,25 +43,27 @@ class Equality:
 
 
 class HomePose:
-    """A model in its home pose; bodies, joints and sites by MuJoCo's numbers, of which body 0 is the world.
+    """A model in its home pose. Bodies, joints and sites have MuJoCo's numbers; body 0 is the world.
 
     Attributes:
-        to_scene: by what rows of the file's coordinates are multiplied, (3, 3).
-        parents: of each body, its parent; of the world, itself.
-        sites, site_bodies: where they are, (n, 3), m; the body of each.
-        joints: those of each body to its parent, in their order; without one it is a piece of it.
-        kinds, anchors, axes: of joints, where they are, m, and along or about which unit vector, (n, 3).
-        connects, welds: what closes loops; bodies that are one.
-        actuated: names of actuators by the joints that they drive. texts: of `custom`, by name.
+        to_scene: matrix that multiplies rows of the file's coordinates, (3, 3).
+        parents: the parent of each body; the world is its own parent.
+        sites, site_bodies: positions of the sites, (n, 3), m; the body of each site.
+        joints: the joints of each body to its parent, in order; a body without a joint is fixed to its
+            parent.
+        kinds, anchors, axes: kinds of the joints, positions, (n, 3), m, and unit vectors of the axes, (n, 3).
+        connects, welds: connects, which close loops; welds, which fix two bodies to each other.
+        actuated: names of actuators by names of the joints that they drive.
+        texts: texts of `custom`, by name.
     """
 
     def __init__(self, path: str, axes: Axes) -> None:
         """Read a model, with the files that it includes.
 
         Args:
-            axes: where its x, y and z point.
+            axes: directions of its x, y and z.
         Raises:
-            FileError: MuJoCo does not take it, or it has what changes its motion and is not known here.
+            FileError: MuJoCo refuses the model, or the model has an element that is not supported.
             MissingLibrary: MuJoCo is not installed.
         """
         self.path, self.to_scene, self.mujoco = path, axes.matrix.T, needed("import", "mujoco", "peers")
@@ -69,8 +72,8 @@ class HomePose:
             self.model = model = spec.compile()
             self.texts: dict[str, str] = {one.name: one.data for one in spec.texts}
         except ValueError as error:
-            problem = f"is no model that MuJoCo takes ({' '.join(str(error).split())})"
-            raise FileError(path, "", problem, "MJCF, as MuJoCo reads it") from None
+            problem = f"is refused by MuJoCo ({' '.join(str(error).split())})"
+            raise FileError(path, "", problem, "an MJCF model that MuJoCo can read") from None
         if model.nbody > MOST_BODIES:
             raise FileError(path, "", f"has {model.nbody - 1} bodies", f"fewer than {MOST_BODIES}")
         self.data = data = self.mujoco.MjData(model)
@@ -78,10 +81,10 @@ class HomePose:
         self.mujoco.mj_comPos(model, data)
         self.mujoco.mj_makeConstraint(model, data)
         if not (np.abs([*data.site_xpos.flat, *data.xanchor.flat]) <= float(FARTHEST)).all():
-            problem = "has places that are farther off than any car"
+            problem = "has positions too far from the origin"
             raise FileError(path, "", problem, f"at most {FARTHEST:g} m")
         for body in np.flatnonzero(model.body_mocapid >= 0).tolist():
-            raise self._refuse("body", body, "is moved from outside (mocap)", "joints")
+            raise self._refuse("body", body, "is a mocap body", "bodies on joints")
         self.parents: list[int] = model.body_parentid.tolist()
         first, count = model.body_jntadr, model.body_jntnum
         self.joints = [range(*ends) for ends in zip(first, first + count, strict=True)]
@@ -99,7 +102,7 @@ class HomePose:
                 self._require_as_drawn(one)
                 self.welds.append(self._equality(one))
             else:
-                raise self._refuse("equality", one, "is not known", "connect or weld")
+                raise self._refuse("equality", one, "is of a kind that is not supported", "connect or weld")
         self.actuated: dict[str, str] = {
             self.name("joint", joint): self.name("actuator", one)
             for one, (joint, _) in enumerate(model.actuator_trnid)
@@ -107,11 +110,11 @@ class HomePose:
         }
 
     def name(self, kind: str, number: int) -> str:
-        """An element's name, or its kind and number."""
+        """The name of an element, or its kind and number if it has none."""
         return str(getattr(self.model, kind)(number).name) or f"{kind}_{number}"
 
     def ignored(self) -> Iterator[str]:
-        """Tendons, and how softly an equality holds: forces, which no linkage has."""
+        """Messages on ignored tendons and on soft equalities, which are taken as rigid."""
         for one in range(self.model.ntendon):
             yield f"tendon {short(self.name('tendon', one))} is ignored"
         soft = self.model.eq_active0 & (self.model.eq_solref != SOLREF).any(axis=1)
@@ -122,7 +125,7 @@ class HomePose:
         return FileError(self.path, f"{kind} {short(self.name(kind, number))}", problem, allowed)
 
     def _equality(self, one: int) -> Equality:
-        """What an equality joins, and where it holds either body."""
+        """The bodies that an equality joins, and its position on each."""
         model, data, name = self.model, self.data, self.name("equality", one)
         ends = int(model.eq_obj1id[one]), int(model.eq_obj2id[one])
         if model.eq_objtype[one] == self.mujoco.mjtObj.mjOBJ_SITE:
@@ -137,7 +140,7 @@ class HomePose:
         return Equality(name, ends, places @ self.to_scene)
 
     def _require_as_drawn(self, one: int) -> None:
-        """Refuse a weld that would move its bodies, or lets them turn."""
+        """Refuse a weld that would move its bodies from the home pose, or that leaves rotations free."""
         data, equality = self.data, self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
         apart = data.efc_pos[(data.efc_type == equality) & (data.efc_id == one)]
         if np.abs(apart).max(initial=0.0) > APART or not self.model.eq_data[one, 10] > 0.0:

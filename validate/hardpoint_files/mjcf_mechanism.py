@@ -1,15 +1,15 @@
-"""The mechanism that a MuJoCo model is: its points, and the tables of a mechanism file.
+"""Converts a MuJoCo model to points and the tables of a mechanism file.
 
-    hinge            two points of both bodies on its axis
-    ball, connect    a point of both bodies
-    slide            two points of the body on a line of its parent, which do not turn
-    no joint, weld   one body
-    free joint, or   nothing
+    hinge            two common points of both bodies on its axis
+    ball, connect    a common point of both bodies
+    slide            two points of the body on a line of its parent, without rotation
+    no joint, weld   the two bodies are one
+    free joint, or   no constraint
     three slides and a ball joint
 
-A body of one point is that point, and one that two ball joints hold is a rod. A body that holds nothing but
-one other body stands between that one's joints and its own; there is such a body between two joints of one
-body too. Points are the sites; where a joint has none, one is made.
+A body with one point becomes this point, and a body between two ball joints becomes a rod. A body that
+carries only one other body, and a body between two joints of the same body, are intermediate bodies. Points
+are the sites; a joint without a site gets a new point.
 """
 
 from __future__ import annotations
@@ -36,18 +36,19 @@ from validate.tables.units import LENGTHS
 
 Array = NDArray[np.float64]
 
-# Of the model's size: places that are one but for the six digits that MuJoCo saves a model with.
+# Positions closer than this share of the model's size are equal: MuJoCo saves models with six digits.
 NEAR = 1e-5
-# Of the model's size: how far from a joint's first point its second one is made.
+# Distance between the two points that are made for a joint, as a share of the model's size.
 ARM = 0.125
-# Of a metre: a tenth of what rounding leaves of a car's coordinates, so that 0.57 m is 570 mm.
+# Decimals of a metre to which coordinates are rounded, a tenth of their rounding error, so that 0.57 m is 570
+# mm.
 DIGITS = 15
 TRAVEL = "wheel_travel"
 
 
 @dataclass
 class _Point:
-    """A point: where it is, (3,), m, the bodies that have it, and what it comes from."""
+    """A point: its position, (3,), m, its bodies, and its source in words."""
 
     at: Array
     bodies: set[str]
@@ -56,9 +57,7 @@ class _Point:
 
 @dataclass(frozen=True)
 class _Joint:
-    """A joint: the body that it carries and the one that it is on, where it is, (3,), m, and along or about
-    which unit vector, (3,).
-    """
+    """A joint: the body that it carries, its parent body, its position, (3,), m, and unit axis, (3,)."""
 
     name: str
     kind: str
@@ -73,16 +72,16 @@ class _Joint:
 
 
 def drawing_of(pose: HomePose) -> Drawing:
-    """What a model draws: a mechanism of its own.
+    """The drawing of a model: its points and its mechanism.
 
     Raises:
-        FileError: two sites that must meet are apart in the home pose.
+        FileError: the two positions of a connect are apart in the home pose.
     """
     return _Builder(pose).drawing()
 
 
 class _Builder:
-    """A mechanism while it is made."""
+    """Builds the points and tables of a mechanism from a model."""
 
     def __init__(self, pose: HomePose) -> None:
         self.pose = pose
@@ -98,7 +97,7 @@ class _Builder:
         self.bodies = self._merged()
 
     def _merged(self) -> list[str]:
-        """By number of a body in the model, our name: without a joint, or welded, several are one."""
+        """Our name of each body in the model; bodies fixed to each other or welded share a name."""
         pose, found = self.pose, list[str]([CHASSIS])
         for body, joints in enumerate(pose.joints[1:], 1):
             found.append(self._named(pose.name("body", body)) if joints else found[pose.parents[body]])
@@ -108,7 +107,7 @@ class _Builder:
         return found
 
     def _named(self, wish: str) -> str:
-        """A name that no body, point or slide has, made of letters, digits and underscores."""
+        """A new unique name of letters, digits and underscores."""
         name, base, number = _word(wish), _word(wish), 2
         while name in self.names:
             name, number = f"{base}_{number}", number + 1
@@ -130,14 +129,14 @@ class _Builder:
                 self._shared(joint.name, joint.at, {joint.body, joint.parent}, joint.source)
         for connect in pose.connects:
             self._connect(connect)
-        # Last what slides: whether a body is more than a point shows by then.
+        # Slides are last: by then it is known whether a body has more than one point.
         for joint in joints:
             if joint.kind == "slide":
                 self._slide(joint)
         return self._tables()
 
     def _joints(self) -> Iterator[_Joint]:
-        """The joints of bodies that are not free; between two joints of one body there is a body more."""
+        """The joints of bodies that are not free; two joints of one body have a new body between them."""
         pose = self.pose
         for parent, chain in self._chains():
             if self._is_free([joint for _, joint in chain]):
@@ -151,10 +150,10 @@ class _Builder:
                 base = carried
 
     def _chains(self) -> Iterator[tuple[int, list[tuple[int, int]]]]:
-        """For each body that holds something, the next such body above it, and the joints from there down,
-        each with the body that it is of.
+        """For each body with sites or loops, the next such body above it, and the joints between the two,
+        each with its body.
 
-        A body that holds nothing, such as a wheel that spins, is left out.
+        A body without sites or loops, such as a spinning wheel, is left out.
         """
         pose = self.pose
         holding = {0, *pose.site_bodies}
@@ -163,11 +162,11 @@ class _Builder:
         for body in reversed(range(1, len(pose.parents))):
             needed |= {pose.parents[body]} if body in needed else set()
         children = Counter(pose.parents[body] for body in needed if body)
-        # One that holds nothing but one other body is on the way to that one.
+        # A body that carries only one other body is an intermediate body.
         ends = {body for body in needed if body in holding or children[body] > 1}
         for body, parent in enumerate(pose.parents):
             if body not in needed:
-                self.facts.append(f"body {pose.name('body', body)} holds no site or loop, and is left out")
+                self.facts.append(f"body {pose.name('body', body)} has no site or loop, and is left out")
             elif body in ends:
                 chain = [(body, joint) for joint in pose.joints[body]]
                 while parent not in ends:
@@ -176,7 +175,7 @@ class _Builder:
                 yield parent, chain
 
     def _is_free(self, joints: Sequence[int]) -> bool:
-        """Whether joints leave a body all of its six freedoms."""
+        """Whether joints leave a body all six degrees of freedom."""
         kinds = {joint: self.pose.kinds[joint] for joint in joints}
         if sorted(kinds.values()) != ["ball", "slide", "slide", "slide"]:
             return [*kinds.values()] == ["free"]
@@ -191,7 +190,7 @@ class _Builder:
         return name
 
     def _shared(self, wish: str, at: Array, bodies: set[str], source: str) -> str:
-        """A point of bodies at a place: one that any of them has there, or a new one."""
+        """A common point of bodies at a position: an existing point of any of them, or a new one."""
         for name, point in self.points.items():
             theirs = not point.bodies.isdisjoint(bodies)
             if theirs and np.linalg.norm(point.at - at) <= NEAR * self.size:
@@ -200,7 +199,7 @@ class _Builder:
         return self._made(wish, at, bodies, source)
 
     def _pair(self, wish: str, joint: _Joint, names: Iterable[str], bodies: set[str]) -> list[str]:
-        """Two points of bodies on the axis of a joint: the farthest of those named, or else new ones."""
+        """Two common points of bodies on the axis of a joint: the outermost of `names`, or else new ones."""
         along = {name: float((self.points[name].at - joint.at) @ joint.axis) for name in names}
         lines = {name: joint.at + size * joint.axis for name, size in along.items()}
         near = [n for n, at in lines.items() if np.linalg.norm(self.points[n].at - at) <= NEAR * self.size]
@@ -217,7 +216,7 @@ class _Builder:
         return pair
 
     def _of(self, body: str) -> list[str]:
-        """A body's points, those of the hinge that carries it in the hinge's order."""
+        """The points of a body, first those of the hinge that carries it."""
         first = self.first.get(body, [])
         return [*first, *(n for n, p in self.points.items() if body in p.bodies and n not in first)]
 
@@ -237,8 +236,8 @@ class _Builder:
         first, second = connect.places
         apart = float(np.linalg.norm(second - first))
         if apart > NEAR * self.size:
-            told = f"joins places that are {1e3 * apart:.4g} mm apart in the home pose"
-            raise FileError(self.pose.path, f"connect {connect.name}", told, "places that meet as drawn")
+            problem = f"joins positions that are {1e3 * apart:.4g} mm apart in the home pose"
+            raise FileError(self.pose.path, f"connect {connect.name}", problem, "positions that coincide")
         if one != other:
             self._shared(connect.name, first, {one, other}, f"connect {connect.name}")
 
@@ -249,11 +248,12 @@ class _Builder:
         ends = own if is_point else self._pair(joint.name, joint, only, {body})
         start, step = self.points[ends[0]].at, ARM * self.size * joint.axis
         if not is_point and self.points[ends[0]].bodies & self.points[ends[1]].bodies - {body}:
-            # Of a hinge about the line: its two points do not say which of its bodies is kept from turning.
-            # A step either way there may be a point that was made already.
+            # These are points of a hinge on this line. They belong to both its bodies, so they do not show
+            # which body may not rotate. A new point is made, two steps away, where no other point has been
+            # made.
             ends[1] = self._made(f"{joint.name}_end", start - 2.0 * step, {body}, joint.source)
         words = [word for word, way in DIRECTIONS.items() if np.array_equal(way, joint.axis)]
-        # Along a direction the travel is 0 as drawn. A line through two points needs these apart.
+        # Along a direction the drawn travel is 0. A line through two points needs them at a distance.
         through = self._shared(f"{joint.name}_zero", start if words else start - step, {parent}, joint.source)
         line = {"body": parent, "through": through, "along": words[0] if words else ends[-1]}
         name = self._named(f"{joint.name}_slide")
@@ -290,7 +290,7 @@ class _Builder:
         return Drawing(self.pose.path, "mechanism", side, tuple(points), tuple(self.facts), tables=tables)
 
     def _beside(self, body: str, own: list[str]) -> list[str]:
-        """A point more, of a body whose points lie in one line."""
+        """A further point of a body whose points are collinear; empty for other bodies."""
         start = self.points[own[0]].at
         arms = np.array([self.points[name].at - start for name in own[1:]])
         axis = arms[np.argmax(np.linalg.norm(arms, axis=1))]
@@ -298,10 +298,10 @@ class _Builder:
         if np.linalg.norm(np.cross(arms, axis), axis=1).max() > NEAR * self.size:
             return []
         at = start + ARM * self.size * across(axis)[0]
-        return [self._made(f"{body}_beside", at, {body}, f"body {body}, whose points lie in one line")]
+        return [self._made(f"{body}_beside", at, {body}, f"body {body}, whose points are collinear")]
 
     def _roles(self, bodies: Mapping[str, Any]) -> dict[str, Any]:
-        """Roles that texts of the model name, of bodies and points that are there."""
+        """Roles from the texts of the model, if their bodies and points exist."""
         found: dict[str, Any] = {}
         for role in ROLES:
             words = [_word(word) for word in self.pose.texts.get(role, "").split()]
@@ -312,7 +312,7 @@ class _Builder:
 
 
 def _in_mm(at: Array) -> Place:
-    """A place in m as a decimal one, mm."""
+    """A position in m as decimal numbers in mm."""
     x, y, z = (Decimal(repr(round(number, DIGITS))) * LENGTHS["m"] for number in at.tolist())
     return x, y, z
 

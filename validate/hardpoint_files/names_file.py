@@ -1,15 +1,15 @@
-"""A file of one's own that says what another file calls our points, or gives points that it does not have.
+"""A file by the user with another file's names of our points, or with points that the other file lacks.
 
 [names]
 wheel_centre = "Hub centre"             # our name = the file's name
-wheel_axis_inner = [0.0, 658.0, 210.0]  # or x, y and z in the file's own axes and unit
+wheel_axis_inner = [0.0, 658.0, 210.0]  # or x, y and z in the file's axes and unit
 
-[table]                                 # of a table whose titles are not understood
+[table]                                 # for a table with unknown titles
 name = "Punkt"                          # the title of a column, or its number from 1
 x = "Hoch"
 y = "Quer"
 z = "Laengs"
-corner = 6                              # only if there is one
+corner = 6                              # only if there is such a column
 """
 
 from __future__ import annotations
@@ -33,10 +33,11 @@ FORM = '[names] with lines such as our_name = "its name", or our_name = [x, y, z
 
 @dataclass(frozen=True)
 class NamesFile:
-    """What a file of names says.
+    """The content of a file of names.
 
     Attributes:
-        names: the other file's name of our points. points: those that are given here.
+        names: the other file's names by our names.
+        points: points that are given in this file, by our names.
         table: titles or numbers of the columns name, x, y, z and corner.
     """
 
@@ -52,17 +53,17 @@ def read_names(path: str) -> NamesFile:
     """Read a file of names.
 
     Raises:
-        SceneError: it cannot be read.
-        FileError: it is not written as it must be.
-        UnknownName: a point is none of ours.
+        SceneError: the file cannot be read.
+        FileError: its content is wrong.
+        UnknownName: a name of a point is unknown.
     """
     text = read_file(path, "a file of names, TOML").decode("utf-8-sig", "replace")
     try:
         data = tomllib.loads(text, parse_float=Decimal)
     except (ValueError, RecursionError, DecimalException) as error:
         raise FileError(path, 0, f"is not TOML: {error}", FORM) from None
-    table, said = data.get("table", {}), data.get("names", {})
-    if data.keys() - {"table", "names"} or not isinstance(said, dict) or not isinstance(table, dict):
+    table, given = data.get("table", {}), data.get("names", {})
+    if data.keys() - {"table", "names"} or not isinstance(given, dict) or not isinstance(table, dict):
         raise FileError(path, 0, f"has {short(', '.join(data))}", FORM)
     known = COLUMNS <= table.keys() <= COLUMNS | {"corner"}
     if table and not (
@@ -71,14 +72,14 @@ def read_names(path: str) -> NamesFile:
         allowed = "name, x, y, z and corner, each a title or a number from 1"
         raise FileError(path, 0, f"[table] is {short(str(table))}", allowed)
     ours = tuple(dict.fromkeys(point for kind in shipped() for point in mechanism_file(kind).points))
-    if wrong := next((name for name in said if name not in ours), None):
-        raise UnknownName(f"point of ours in {path}", wrong, ours)
-    for name, value in said.items():
+    if wrong := next((name for name in given if name not in ours), None):
+        raise UnknownName(f"point of pointcoord in {path}", wrong, ours)
+    for name, value in given.items():
         if not isinstance(value, str | list):
             raise FileError(path, 0, f"{name} is {short(str(value))}", FORM)
-    names = {name: value for name, value in said.items() if isinstance(value, str)}
+    names = {name: value for name, value in given.items() if isinstance(value, str)}
     points = {
-        n: FilePoint(f"given in {path}", place_of(v, path, 0, n)) for n, v in said.items() if n not in names
+        n: FilePoint(f"given in {path}", place_of(v, path, 0, n)) for n, v in given.items() if n not in names
     }
     return NamesFile(names, points, table)
 
@@ -89,12 +90,12 @@ def names_to_fill_in(
     """The text of a file of names (TOML).
 
     Args:
-        needed: our names of the points that a car of this kind has.
-        ours: the points of the file that are known. others: those that are not.
+        needed: our names of the points of a car of this kind.
+        ours: recognised points of the file, by our names. others: points that are not recognised.
     """
     points = [f"#   {shown(point.source)}" for point in others]
-    lines = [f"# Which points of {shown(source)} are which of a {kind}. Fill in, and take the # away."]
-    lines += ["# Points of the file that are not known:", *points] if points else []
+    lines = [f"# Names in {shown(source)} of the points of a {kind}. Fill in, and remove the #."]
+    lines += ["# Points of the file that are not recognised:", *points] if points else []
     lines += ["", "[names]"]
     for name in needed:
         if name in ours:

@@ -1,4 +1,4 @@
-"""One wheel of a file of hardpoints: which points are which of ours, and where they lie in the car."""
+"""One wheel of a file of hardpoints: identifies its points, and converts them to the axes of the scene."""
 
 from __future__ import annotations
 
@@ -30,28 +30,31 @@ Array = NDArray[np.float64]
 
 SIDES = ("left", "right")
 PARTS = ("front", "rear")
-# mm: the points of one wheel's suspension, from model cars to lorries, span no less and no more.
+# Limits of the extent of one wheel's suspension, from model cars to lorries, mm.
 SMALLEST, LARGEST = Decimal(150), Decimal(4000)
-# mm from the wheel centre to the inner point of an axis that is known by its direction only.
+# Distance from the wheel centre of the inner point of a spin axis that is given by its direction, mm.
 INWARD = 100.0
-# A coordinate of that point is rounded to 1e-12 mm, which is 1e-14 rad of the axis's direction.
+# A coordinate of this point is rounded to 1e-12 mm, which changes the direction of the axis by 1e-14 rad.
 DIGITS = Decimal("1e-12")
-# Points or lines that are named one by one.
+# Largest number of points or lines named in a message.
 NAMED = 12
 
 
 @dataclass(frozen=True)
 class Choices:
-    """What the user says of a file; what is left out is read from it or is the format's own.
+    """Choices of the user about a file; choices left out are read from the file or are the format's defaults.
 
     Attributes:
-        format: its name. suspension: our type. side: of the wheel, left or right. part: the axle, front or
-            rear, of a file that holds both.
+        format: name of the format.
+        suspension: our type of suspension.
+        side: the wheel to import, left or right.
+        part: the axle to import, front or rear or a number, if the file has several.
         names: path of a file of names (see `names_file`).
-        axes: where x, y and z point, such as "forward,left,up". unit: of its lengths.
-        camber, toe: static angles of a wheel whose spin axis the file does not give, deg, + leaning out at
-            the top and + toe in, projected.
-        mirror: make the wheel of the other side of it.
+        axes: directions of x, y and z, such as "forward,left,up".
+        unit: unit of lengths.
+        camber, toe: static angles, if the file does not give the spin axis; deg, projected, + leaning out at
+            the top and + toe in.
+        mirror: whether to mirror the wheel to the other side.
     """
 
     format: str | None = None
@@ -80,8 +83,8 @@ class _Wheel:
     """The points of one wheel.
 
     Attributes:
-        ours: by our names. others: the file's others.
-        part, side: its axle and side, by the file; empty where that does not say.
+        ours: recognised points, by our names. others: the other points of the file.
+        part, side: its axle and side according to the file; empty if the file does not say.
     """
 
     ours: Mapping[str, FilePoint]
@@ -91,7 +94,7 @@ class _Wheel:
 
     @cached_property
     def places(self) -> dict[str, Place]:
-        """Where its points are, in the file's axes and unit."""
+        """The positions of its points, in the file's axes and unit."""
         return {name: point.place for name, point in self.ours.items()}
 
 
@@ -99,7 +102,7 @@ class _Wheel:
 class OneWheel:
     """The wheel of a file that the user asks for.
 
-    What the user says is taken, and the scene warns of what looks odd in it.
+    Choices of the user are used even if they look wrong; the scene then gives warnings.
     """
 
     source: str
@@ -112,20 +115,25 @@ class OneWheel:
         return FileError(self.source, line, problem, allowed)
 
     def checked(self, drawn: Mapping[str, float]) -> Iterator[AngleCheck]:
-        """The static angles that the file prints, held to those of the drawing, by our names, rad."""
+        """Compare the static angles printed in the file with those of the drawing.
+
+        Args:
+            drawn: angles of the drawing by our names, rad.
+        """
         return check_angles(self.format.angles, self.axle.angles, self.chosen.places, self.topology, drawn)
 
     def drawing(self) -> Drawing:
-        """The wheel's points in the order of its topology, and those that follow from them.
+        """The wheel's points in the order of its topology, and points that follow from them.
 
         Raises:
-            FileError: the file does not say all that is needed, or its points speak against what it says.
-            UnknownName: a name in the user's file is none of this file's. UsageError: `axes` are none.
+            FileError: the file lacks something that is needed, or its points contradict it.
+            UnknownName: a name in the user's file of names is not in this file.
+            UsageError: `axes` are not valid.
         """
         if not (self.topology.wheel_axis and self.topology.role("inboard")):
             raise self.refuse(
-                f"is read as {self.kind}, whose file names no wheel: the roles wheel_axis and inboard",
-                "a suspension of one wheel; else a scene written by hand (pointcoord new)",
+                f"is read as {self.kind}, whose mechanism file lacks the roles wheel_axis and inboard",
+                "a suspension of one wheel; for others write a scene (pointcoord new)",
             )
         self.require_all()
         (axes, axes_by), (unit, unit_by) = self.axes, self.unit
@@ -137,17 +145,17 @@ class OneWheel:
         facts = [
             f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
             "here x rearward, y right, z up, in mm",
-            *([] if axes.right_handed else ["these axes are left-handed: is one of them turned round?"]),
+            *([] if axes.right_handed else ["these axes are left-handed: is one of them reversed?"]),
             *self.axle.notes,
             *([self.format.notes[self.kind]] if self.kind in self.format.notes else []),
             *([f"lines without a point: {self.lines}"] if self.lines else []),
         ]
         if self.choices.mirror:
-            facts.append(f"the file's wheel is a {side} one; here it is mirrored in the middle of the car")
+            facts.append(f"the file has the {side} wheel; here it is mirrored to the other side of the car")
             side = SIDES[side == "left"]
             points = [point.mirrored for point in points]
         facts += [
-            f"{name} is not in the file: {other} stands in for it"
+            f"{name} is not in the file: {other} is used instead"
             for name, other in self.topology.stand_ins.items()
             if name not in found
         ]
@@ -155,51 +163,51 @@ class OneWheel:
 
     @property
     def lines(self) -> str:
-        """Lines that name something and are no points, in words."""
+        """Lines with a name that are not points, in words."""
         return some_of(self.contents.lines, NAMED)
 
-    # Which suspension, and which of the file's points are which of ours.
+    # The suspension type, and the identification of points.
 
     @cached_property
     def kind(self) -> str:
-        """Our type of the suspension: as the user or the file says, or the one whose points are there."""
+        """Our type of suspension: from the user, from the file, or the type whose points the file has."""
         if self.choices.suspension:
             return self.choices.suspension
         if called := self.called:
             part = self.one_of("part", "axle", self.choices.part, {*called})
-            said = called.get(part) or next(iter(called.values()))
-            if kind := self.format.kind_called(said):
+            name = called.get(part) or next(iter(called.values()))
+            if kind := self.format.kind_called(name):
                 return kind
             known = ", ".join(f"{theirs} ({ours})" for theirs, ours in self.format.called.items())
             at = f" at its axle {part}" if part else ""
-            allowed = f"{known}; a like one by another name: say so with --suspension"
-            raise self.refuse(f"holds a suspension called {short(said)}{at}", allowed)
+            allowed = f"{known}; if it is one of these under another name, give --suspension"
+            raise self.refuse(f"has a suspension called {short(name)}{at}", allowed)
         best = self.closest()
         if len(best) > 1:
-            told = f"could be a {' or a '.join(best)}"
-            raise self.refuse(told, f"--suspension {' or --suspension '.join(best)}")
+            problem = f"could be a {' or a '.join(best)}"
+            raise self.refuse(problem, f"--suspension {' or --suspension '.join(best)}")
         return best[0]
 
     @cached_property
     def topology(self) -> Topology:
-        """Of our type of the suspension."""
+        """The topology of our type of suspension."""
         return mechanism_file(self.kind).topology()
 
     @property
     def called(self) -> dict[str, str]:
-        """What the file calls its suspensions, by part."""
+        """The file's names of its suspensions, by part."""
         return {part: axle.called for part, axle in self.contents.axles.items() if axle.called}
 
     def closest(self) -> list[str]:
-        """The suspensions that lack the fewest points in the file; of these, those with the most."""
+        """The suspension types with the fewest missing points; among these, those with the most points."""
         known = {kind: dict(self.named(kind)[0]) for kind in self.format.suspensions}
         fits = {kind: (-len(missing(kind, there)), len(there)) for kind, there in known.items()}
         return [kind for kind, fit in fits.items() if fit == max(fits.values())]
 
     def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
-        """The points that are ours, by our names and with the wheels of theirs, and the file's others.
+        """The recognised points with our names and their wheels, and the other points of the file.
 
-        What the user says goes before what the format says, of a point of ours and of a name of the file.
+        Names from the user have precedence over names of the format.
         """
         known, others = [*self.own.points.items()], []
         taken = self.own.names.keys() | self.own.points.keys()
@@ -228,7 +236,7 @@ class OneWheel:
                 raise UnknownName(f"point in {self.source}", their, every)
         parts = {point.part for _, point in known}
         part = self.one_of("part", "axle", self.choices.part, parts)
-        # A file that does not say its axle is of the one that is said.
+        # If the file does not give axles, it is taken to be the requested one.
         part = part if part in parts else ""
         known = [(ours, point) for ours, point in known if point.of(part, "")]
         sides = {point.side for _, point in known} - {""}
@@ -237,55 +245,55 @@ class OneWheel:
         for ours, point in known:
             other = found.setdefault(ours, point) if point.of(part, side) else point
             if other.place != point.place:
-                told = f"has {ours} twice, {other.told} and {short(point.name)} elsewhere"
+                problem = f"has {ours} twice, {other.told} and {short(point.name)} at another position"
                 allowed = "one of them; the points of one wheel of one axle, or a file of names (--names)"
-                raise self.refuse(told, allowed, point.line)
-        # Of a table all is told that is none of ours; a file by axles has much of the other ones.
+                raise self.refuse(problem, allowed, point.line)
+        # All unrecognised points of a table are listed; of a file by axles only those of this wheel.
         if self.contents.axles:
             others = [point for point in others if point.of(part, side)]
         return _Wheel(found, tuple(others), part, side)
 
     def one_of(self, option: str, what: str, chosen: str | None, there: set[str]) -> str:
-        """The part or side of a file that may hold several."""
+        """The part or side to import, of a file that may have several."""
         labels = sorted(there - {""})
         every = " or ".join(f"--{option} {label}" for label in labels)
         if chosen and labels and chosen not in labels:
             raise self.refuse(f"has no points of {what} {chosen}", every)
         if not chosen and len(labels) > 1:
             called = self.called
-            told = [f"{label} ({called[label]})" if label in called else label for label in labels]
-            raise self.refuse(f"has points of more than one {what}: {', '.join(told)}", every)
+            names = [f"{label} ({called[label]})" if label in called else label for label in labels]
+            raise self.refuse(f"has points of more than one {what}: {', '.join(names)}", every)
         return chosen or (labels[0] if labels else "")
 
-    # What is needed and is not there.
+    # Missing points.
 
     @property
     def axle(self) -> Axle:
-        """What the file says of the wheel's axle."""
+        """The file's data of the wheel's axle."""
         return self.contents.axle(self.chosen.part)
 
     @cached_property
     def spin_axis(self) -> SpinAxis | None:
-        """Where the file or the user says that the wheel's spin axis points."""
-        camber, toe, said = self.choices.camber, self.choices.toe, self.axle.spin_axis
+        """The direction of the wheel's spin axis from the file, or from --camber and --toe."""
+        camber, toe, given = self.choices.camber, self.choices.toe, self.axle.spin_axis
         if camber is None and toe is None:
-            return said
+            return given
         inner = self.topology.wheel_axis[0]
-        if said is not None or inner in self.chosen.places:
-            by = f" by {inner}" if said is None else ""
-            raise self.refuse(f"says where its spin axis points{by}", "neither --camber nor --toe")
+        if given is not None or inner in self.chosen.places:
+            by = f" by {inner}" if given is None else ""
+            raise self.refuse(f"gives the direction of its spin axis{by}", "neither --camber nor --toe")
         if camber is None or toe is None or not max(abs(camber), abs(toe)) < 45.0:
             allowed = "both --camber and --toe, each of less than 45 deg, or neither"
-            raise self.refuse(f"has --camber {camber} and --toe {toe} said of it", allowed)
+            raise self.refuse(f"is given --camber {camber} and --toe {toe}", allowed)
         # Projected angles: tan(toe) = forward / outboard, tan(camber) = -up / outboard.
         direction = (tan(radians(toe)), 1.0, -tan(radians(camber)))
         return SpinAxis(direction, f"--camber {camber:g} and --toe {toe:g}, deg")
 
     def following(self, places: Mapping[str, Place], out: int) -> dict[str, ScenePoint]:
-        """Points that the file lacks and that follow from what it has.
+        """Points that the file lacks and that follow from its points.
 
         Args:
-            places: of the points that there are, x rearward, y right, z up, mm.
+            places: positions of the file's points, x rearward, y right, z up, mm.
             out: 1 if outboard is to the right, -1 if it is to the left.
         """
         lost, axis, found = missing(self.kind, places), self.spin_axis, dict[str, ScenePoint]()
@@ -294,55 +302,61 @@ class OneWheel:
             how = f"from {centre}: {INWARD:g} mm inboard on the spin axis, from {axis.words}"
             found[inner] = ScenePoint(inner, _inboard(places[centre], out, axis), how)
         for slide in mechanism_file(self.kind).structures[AS_DRAWN].slides.values():
-            # One of two points of a body that slide on a line through the other may be anywhere on that line.
+            # A sliding point that only defines the line together with another point may be anywhere on it.
             ends = slide.along, slide.through
             if slide.along in slide.points and places.keys() >= {*ends}:
                 x, y, z = ((a + b) / 2 for a, b in zip(*(places[end] for end in ends), strict=True))
-                how = f"from {' and '.join(ends)}: halfway, for the file does not say where on this axis"
-                how += ": nothing else hangs on it"
+                how = (
+                    f"from {' and '.join(ends)}: halfway between them; the file does not give its position on"
+                    " this axis, and nothing else depends on it"
+                )
                 found |= {one: ScenePoint(one, (x, y, z), how) for one in slide.points if one in lost}
         return found
 
     def require_all(self) -> None:
-        """Refuse a file without a point that is needed and does not follow from others."""
-        # That a point follows does not hang on axes, unit and side.
+        """Refuse a file that lacks a point that is needed and does not follow from others."""
+        # Whether a point follows does not depend on axes, unit and side, so these are not applied yet.
         there, names = self.chosen.places, self.format.names_of(self.kind)
         lost = missing(self.kind, {**there, **self.following(there, 1)})
         if not lost:
             return
         looked = (f"{n} (looked for: {', '.join(map(short, names[n]))})" if n in names else n for n in lost)
-        told = f"lacks {', '.join(looked)} of a {self.kind}"
+        problem = f"lacks {', '.join(looked)} of a {self.kind}"
         if others := [point.told for point in self.chosen.others]:
-            told += f"; not known in it: {some_of(others, NAMED)}"
-        told += f"; without three numbers: {self.lines}" if self.lines else ""
+            problem += f"; not recognised: {some_of(others, NAMED)}"
+        problem += f"; without three numbers: {self.lines}" if self.lines else ""
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
         if self.topology.wheel_axis[0] in lost:
-            advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
-        raise self.refuse(told, advice)
+            advice += (
+                "; for the spin axis you may give --camber and --toe, + leaning out at the top and + toe in"
+            )
+        raise self.refuse(problem, advice)
 
-    # Axes, unit and side, and what speaks against them.
+    # Axes, unit and side, and checks of them.
 
     @cached_property
     def axes(self) -> tuple[Axes, str]:
-        """The axes, and who says them; refused where the car's points speak against them.
+        """The axes and their source; refused if the points contradict them.
 
-        Which way is left no point shows: it decides which wheel this is.
+        No point shows the direction to the left, which determines the wheel's side.
         """
         if self.choices.axes is not None:
             return Axes.of(self.choices.axes), "--axes"
         lie = " and ".join(words for words, *_ in self.ways())
         if (said := self.said_axes()) is None:
             allowed = f"--axes with {ALLOWED}{f', where {lie}' if lie else ''}"
-            raise self.refuse("does not say where x, y and z point", allowed)
+            raise self.refuse("does not give the directions of x, y and z", allowed)
         axes, by = said
         if any((axes.matrix @ along != DIRECTIONS[way]).any() for _, along, way in self.ways()):
-            told = f"has axes {axes.words} by {by}, but {lie}"
-            raise self.refuse(told, f"--axes of the file, or --axes {axes.option} if that is so")
+            problem = f"has axes {axes.words} by {by}, but {lie}"
+            raise self.refuse(
+                problem, f"--axes with the right directions, or --axes {axes.option} if they are right"
+            )
         return axes, by
 
     def said_axes(self) -> tuple[Axes, str] | None:
-        """The axes that names or the format say; points of a table under our own names have our own axes."""
+        """The axes from names of points or from the format; a table with our names has our axes."""
         read = {ours: point.name for ours, point in self.chosen.ours.items() if ours not in self.own.points}
         if self.format.form == TABLE and all(ours in theirs for ours, theirs in read.items()):
             return OUR_AXES, "its points' names, which are ours"
@@ -353,10 +367,10 @@ class OneWheel:
         return None
 
     def ways(self) -> Iterator[tuple[str, Array, str]]:
-        """How a point lies in the file that lies ahead of or above another one by what they are.
+        """The directions in the file of pairs of points whose direction in the car is known from their roles.
 
-        In words, along which axis of the file, (3,), and which way that is in the car. The mechanism need not
-        say which of its points these are.
+        Yields the direction in words, as a vector in the file's axes, (3,), and its direction in the car. If
+        the mechanism does not have these roles, nothing is yielded.
         """
         topology, places = self.topology, self.chosen.places
         for way, ends in (
@@ -373,25 +387,25 @@ class OneWheel:
 
     @cached_property
     def unit(self) -> tuple[str, str]:
-        """The unit of lengths, and who says it; refused where the points make no car in it."""
-        said, chosen = self.contents.unit, self.choices.unit
-        if said and said not in LENGTHS:
-            raise self.refuse(f"has lengths in {short(said)}", ", ".join(LENGTHS))
-        if said and chosen and said != chosen:
-            raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
-        by = {"the file": said, "--unit": chosen, "its format": self.format.unit}
+        """The unit of lengths and its source; refused if the points do not have the size of a car in it."""
+        given, chosen = self.contents.unit, self.choices.unit
+        if given and given not in LENGTHS:
+            raise self.refuse(f"has lengths in {short(given)}", ", ".join(LENGTHS))
+        if given and chosen and given != chosen:
+            raise self.refuse(f"states that its lengths are in {given}", f"--unit {given}, or no --unit")
+        by = {"the file": given, "--unit": chosen, "its format": self.format.unit}
         unit, who = next((unit, who) for who, unit in by.items() if unit)
         columns = zip(*self.chosen.places.values(), strict=True)
         span = max(max(column) - min(column) for column in columns)
         fitting = {name: span * size for name, size in LENGTHS.items() if SMALLEST <= span * size <= LARGEST}
         if unit not in fitting and chosen is None:
-            told = f"spans {float(span * LENGTHS[unit]):.4g} mm if its lengths are in {unit}"
+            problem = f"spans {float(span * LENGTHS[unit]):.4g} mm if its lengths are in {unit}"
             others = (f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
-            raise self.refuse(told, "; ".join(others) or f"--unit {unit} if that is so")
+            raise self.refuse(problem, "; ".join(others) or f"--unit {unit} if this is right")
         return unit, who
 
     def side(self, turned: Mapping[str, Place]) -> str:
-        """The wheel's side, from where it lies; it must be the one that the file or the user says."""
+        """The wheel's side, from its position; it must be the side that the file or the user gives."""
         wheel, (inner,) = self.topology.wheel_centre, self.topology.role("inboard")
         lies, out = turned[wheel][1], turned[wheel][1] - turned[inner][1]
         if not out:
@@ -402,26 +416,27 @@ class OneWheel:
         for by, said in by_whom.items():
             if said and said != seen:
                 axes = self.axes[0].option
-                allowed = f"--axes with the other of left and right than {axes}, or the {seen} side"
-                # Not where the file has the wheel that is asked for: a mirrored other one is another wheel.
+                allowed = f"--axes with left and right exchanged in {axes}, or the {seen} side"
+                # Not offered if the file has the requested wheel: the mirrored other wheel may differ from
+                # it.
                 if by == "--side" and self.chosen.side != said:
                     allowed += f"; or --side {seen} --mirror makes the {said} wheel of it"
                 raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
         if (lies > 0) != (out > 0) and not any(by_whom.values()):
-            told = f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car"
-            raise self.refuse(told, f"--side {seen} if y is not counted from the middle, or other --axes")
+            problem = f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car"
+            raise self.refuse(problem, f"--side {seen} if y is not counted from the middle, or other --axes")
         return seen
 
 
 def missing(kind: str, known: Iterable[str]) -> list[str]:
-    """Points that a car of ours must have; its spin axis is not left to what may stand in for it."""
+    """The required points that are missing; points of the spin axis are required too, without defaults."""
     topology, there = mechanism_file(kind).topology(), {*known}
     needed = dict.fromkeys((*topology.required_points, *topology.wheel_axis))
     return [name for name in needed if name not in there]
 
 
 def _inboard(centre: Place, out: int, axis: SpinAxis) -> Place:
-    """The point on the spin axis; only its direction counts, its place on the axis changes no angle."""
+    """A point inboard on the spin axis; its distance from the centre does not affect any angle."""
     forward, outboard, up = axis.direction
     step = INWARD / sum(part * part for part in axis.direction) ** 0.5
     steps = (Decimal(step * part).quantize(DIGITS) for part in (forward, -out * outboard, -up))

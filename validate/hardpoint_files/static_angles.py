@@ -1,6 +1,6 @@
-"""Static angles that a file prints of its own drawing, held to those of the drawing as it was read.
+"""Compares static angles printed in a file with those of the imported drawing.
 
-Names that are mistaken, a side or an axis turned round show here as angles that are off.
+A misread name, a wrong side or a reversed axis shows as a difference of angles.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ class AngleCheck:
     """One angle, deg.
 
     Attributes:
-        name: ours. words, line: the file's. printed: by the file. drawn: of the drawing that was read.
-        tolerance: what the printed digits of the angle and of the points leave open.
+        name: our name of the angle.
+        words, line: its name in the file, and the line.
+        printed: the value in the file.
+        drawn: the value of the imported drawing.
+        tolerance: from the printed digits of the angle and of the points.
     """
 
     name: str
@@ -33,7 +36,7 @@ class AngleCheck:
 
     @property
     def verdict(self) -> str:
-        """agrees or disagrees."""
+        """`agrees` or `disagrees`."""
         return "agrees" if abs(self.printed - self.drawn) <= self.tolerance else "disagrees"
 
 
@@ -44,14 +47,17 @@ def check_angles(
     topology: Topology,
     drawn: Mapping[str, float],
 ) -> Iterator[AngleCheck]:
-    """Each angle that the file prints and the drawing has.
+    """The check of each angle that the file prints and the drawing has.
 
-    The digits of points leave the direction of an axis of the wheel open: half a digit h in both coordinates
-    of both ends moves them apart by 2 sqrt(2) h in the plane of an angle, where an axis within 45 deg of the
-    plane is seen at least 1 / sqrt(2) of its length L long: by 4 h / L.
+    The digits of the points limit the accuracy of an axis. Half a digit h in both coordinates of both ends
+    moves them apart by 2 sqrt(2) h in the plane of an angle. An axis of length L within 45 deg of this plane
+    has a projected length of at least L / sqrt(2). So the angle changes by at most 4 h / L.
 
     Args:
-        patterns: of the file's words, for our names. places: as the file has them. drawn: our angles, rad.
+        patterns: patterns of the file's names, by our names.
+        printed: printed angles with their lines, by the file's names, deg.
+        places: positions of the points in the file.
+        drawn: angles of the drawing, rad.
     """
     axes = [
         ends for ends in map(topology.role, ("wheel_axis", "steering_axis")) if ends and {*ends} <= {*places}

@@ -1,9 +1,8 @@
-"""A table of points: a name and three numbers on each line, as spreadsheets and programs write them.
+"""Reads a table of points: a name and three numbers on each line, as spreadsheets and programs write it.
 
-A line of titles that the format knows says which columns are x, y and z, in which unit, and of which wheel a
-line is. Without one a line is a name and three numbers. Titles that are not known are not guessed at: a table
-[table] in the file of names says which columns are meant. Words alone on a line are the heading of the points
-that follow.
+A line of known titles gives the columns of x, y and z, their unit, and the column of the wheel. Without
+titles, a line is a name and three numbers. Unknown titles are refused; [table] in the file of names can give
+the columns. A line of words only is the heading of the points that follow.
 """
 
 from __future__ import annotations
@@ -25,11 +24,13 @@ NEEDED = ("name", "x", "y", "z")
 
 @dataclass(frozen=True)
 class _Columns:
-    """Which columns a table has.
+    """The columns of a table.
 
     Attributes:
-        at: by name, x, y, z, and corner if there is one. unit: of lengths, if titles say it.
-        row: of the titles; -1 if there is none. said: whether somebody says them.
+        at: index of the columns name, x, y, z, and corner if there is one.
+        unit: unit of lengths, if the titles give it.
+        row: index of the row of titles; -1 if there is none.
+        said: whether titles or the user give the columns.
     """
 
     at: Mapping[str, int]
@@ -48,15 +49,15 @@ def read(
     """The points of a table.
 
     Args:
-        titles: what columns are called. said: titles or numbers of the columns that the user means.
-        wheels: side and axle, by what a column of corners or a heading over the points says of them.
+        titles: possible titles of the columns. said: titles or numbers of the columns from the user.
+        wheels: side and axle by the text in the column of corners or in a heading.
     Raises:
-        FileError: titles are not as they must be, a point has no name, or there is no point.
+        FileError: the titles are wrong, a point has no name, or there are no points.
     """
     lines = lines_of(text)
     if lines.mixed:
-        told = "has numbers with points and with commas"
-        raise FileError(source, lines.mixed, told, "one sign before the decimals, none between thousands")
+        problem = "has numbers with points and with commas"
+        raise FileError(source, lines.mixed, problem, "one decimal sign, and none between thousands")
     known = {plain(title): key for key, some in titles.items() for title in some}
     rows = [(line, row if lines.mark else _named(row, known)) for line, row in lines.rows]
     columns = _said(rows, said, source) if said else _titled(rows, known, source)
@@ -73,8 +74,8 @@ def read(
             others += [f"{short(name)} on line {line}"] if name and any(cells) else []
             continue
         if not columns.said and (count := sum(map(is_number, row))) > 3:
-            told = f"has {count} numbers for {short(name)}, in columns without a title"
-            raise FileError(source, line, told, f"three, {SAY}")
+            problem = f"has {count} numbers for {short(name)}, in columns without a title"
+            raise FileError(source, line, problem, f"three, {SAY}")
         corner = columns.at.get("corner", len(row))
         side, part = wheels.get(plain(row[corner]) if corner < len(row) else over, ("", ""))
         points.append(FilePoint(name, place_of(cells, source, line, name), line, side, part, section))
@@ -84,7 +85,7 @@ def read(
 
 
 def _named(words: Row, titles: Mapping[str, str]) -> Row:
-    """The cells of a line between blanks: numbers at its end, or their titles, and a name before."""
+    """The cells of a line separated by blanks: a name, then the numbers or their titles at the end."""
     count = next((n for n, word in enumerate(reversed(words)) if not is_number(word)), len(words))
     if not count:
         words = joined(words)
@@ -98,15 +99,15 @@ def _said(rows: Sequence[tuple[int, Row]], said: Mapping[str, str | int], source
     titles = {plain(one) for one in said.values() if isinstance(one, str)}
     at = next((i for i, (_, row) in enumerate(rows) if titles and titles <= {*map(plain, row)}), -1)
     if titles and at < 0:
-        told = f"has no line with the titles {', '.join(map(str, said.values()))}"
-        raise FileError(source, 0, told, "titles as they stand there, or numbers of columns from 1")
+        problem = f"has no line with the titles {', '.join(map(str, said.values()))}"
+        raise FileError(source, 0, problem, "titles as in the file, or numbers of columns from 1")
     heads = [*map(plain, rows[at][1])] if titles else []
     of = {key: heads.index(plain(one)) if isinstance(one, str) else one - 1 for key, one in said.items()}
     return _Columns(of, row=at)
 
 
 def _titled(rows: Sequence[tuple[int, Row]], known: Mapping[str, str], source: str) -> _Columns:
-    """The columns that the first line of titles names; without one the name comes first, and then x, y, z."""
+    """The columns from the first line of titles; without titles the columns are name, x, y, z."""
     ahead = [*rows[1:], (0, [""])]
     for i, (line, row) in enumerate(rows):
         if any(map(is_number, row)):
@@ -114,18 +115,18 @@ def _titled(rows: Sequence[tuple[int, Row]], known: Mapping[str, str], source: s
         heads = [name_and_unit(cell) for cell in row]
         keys = [known.get(plain(head), "") for head, _ in heads]
         if {"x", "y", "z"}.isdisjoint(keys):
-            # Between blanks a title of a table is one cell, and so is a line of titles that are not known.
+            # If cells are separated by blanks, a heading is one cell, and so is a line of unknown titles.
             over = is_number(ahead[i][1][-1]) and len(row) == 1 and len(row[0].split()) > 3
             if sum(map(bool, row)) > 3 or over:
-                told = f"has titles that are not known: {short(', '.join(row))}"
-                raise FileError(source, line, told, f"Point, X, Y, Z; {SAY}")
+                problem = f"has unknown titles: {short(', '.join(row))}"
+                raise FileError(source, line, problem, f"Point, X, Y, Z; {SAY}")
             continue
         if wrong := next((key for key in NEEDED if keys.count(key) != 1), ""):
-            told = f"has {keys.count(wrong) or 'no'} columns of {wrong} in {short(', '.join(row))}"
-            raise FileError(source, line, told, f"one of each of Point, X, Y, Z; {SAY}")
+            problem = f"has {keys.count(wrong) or 'no'} columns of {wrong} in {short(', '.join(row))}"
+            raise FileError(source, line, problem, f"one of each of Point, X, Y, Z; {SAY}")
         units = {unit for key, (_, unit) in zip(keys, heads, strict=True) if key in "xyz" and key}
         if len(units) > 1:
-            raise FileError(source, line, f"says units {sorted(units)}", "one unit in all columns")
+            raise FileError(source, line, f"has units {sorted(units)}", "one unit in all columns")
         (unit,) = units
         at = {key: column for column, key in enumerate(keys) if key}
         return _Columns(at, length_called(unit) or unit, i)

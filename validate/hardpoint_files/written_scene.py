@@ -1,4 +1,4 @@
-"""A scene file of points from elsewhere: each with its source in a comment, and a way of the wheel."""
+"""Writes a scene file from imported points: each with its source in a comment, and with wheel travel."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
 from validate.toml_written import key_of, value_of
 
-# mm of wheel travel up and down, where both ends are far enough: far from where links lie in line.
+# Wheel travel up and down, mm, if both ends of its range are at least FAR_ENOUGH away from the drawing.
 TRAVEL, FAR_ENOUGH = 30.0, 40.0
-# Else a part of the way from the drawing to the nearer end of the input that moves the wheel.
+# Otherwise the input moves by this share of the way from the drawing to the nearer end.
 PART = 0.25
-TURN = 6.2831  # rad: the way of one that goes all the way round
+TURN = 6.2831  # rad: the range of an input without ends
 TOLERANCE = 1e-9
 
 
@@ -35,7 +35,7 @@ class ScenePoint:
     """A point of the scene.
 
     Attributes:
-        name: ours. place: x rearward, y right, z up, mm. source: where it comes from, in words.
+        name: our name. place: x rearward, y right, z up, mm. source: its source in words.
     """
 
     name: str
@@ -44,32 +44,35 @@ class ScenePoint:
 
     @property
     def mirrored(self) -> ScenePoint:
-        """The same point of the other wheel."""
+        """The point mirrored to the other side."""
         x, y, z = self.place
         return replace(self, place=(x, -y + 0, z))
 
     @property
     def coordinates(self) -> tuple[float, float, float]:
-        """The same as doubles."""
+        """The position as floats."""
         x, y, z = map(float, self.place)
         return x, y, z
 
     @property
     def written(self) -> str:
-        """Its coordinates as TOML, with the digits they have."""
+        """The position as TOML, with its digits."""
         numbers = (f"{number.normalize() + 0:f}" for number in self.place)
         return f"[{', '.join(numbers)}]"
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a file draws.
+    """The drawing in a file.
 
     Attributes:
-        source: the file. kind: a shipped mechanism, or what tables are to be called. side: of the wheel.
-        points: of the scene. others: those of the file that are none of ours.
-        facts: what was taken for granted, in words.
-        tables: of a mechanism file, for what is no shipped mechanism.
+        source: the file.
+        kind: a shipped mechanism, or the name of the mechanism in `tables`.
+        side: side of the wheel.
+        points: points of the scene.
+        facts: assumptions made, in words.
+        others: points of the file that are not recognised.
+        tables: tables of a mechanism file, if the mechanism is not a shipped one.
     """
 
     source: str
@@ -82,14 +85,14 @@ class Drawing:
 
 
 Laws = Mapping[str, tuple[Mapping[str, Any], str]]
-"""Of each input its law as in a scene, and the same for people."""
+"""For each input its law as in a scene, and a comment on it."""
 
 
 def scene_of(drawing: Drawing) -> Scene:
-    """A scene of a drawing that stands still; its inputs have no meaning yet.
+    """A scene of a drawing at one instant; the values of its inputs are placeholders.
 
     Raises:
-        SceneError: the points make no car, or the tables no mechanism.
+        SceneError: the points make no car, or the tables make no mechanism.
     """
     kind, places = drawing.kind, {point.name: point.coordinates for point in drawing.points}
     try:
@@ -105,7 +108,7 @@ def scene_of(drawing: Drawing) -> Scene:
         "time": {"start": 0.0, "stop": 0.0, "samples": 1},
     }
     scene = Scene.from_mapping(content, drawing.source)
-    # Angles of lines, rates and accelerations; a table seldom says the wheel's radius, or has a damper.
+    # Effects are angles of lines, rates and accelerations; files seldom have the wheel radius or a damper.
     plain = [
         effect
         for effect in map(EFFECTS.__getitem__, scene.mechanism.effects)
@@ -116,7 +119,7 @@ def scene_of(drawing: Drawing) -> Scene:
 
 
 def driven_inputs(file: MechanismFile, topology: Topology) -> tuple[str, ...]:
-    """The inputs that hold every freedom, with the travel of the wheel for what moves it."""
+    """Inputs for all degrees of freedom, with wheel travel instead of the input that moves the wheel."""
     drawn, moving = file.structures[AS_DRAWN].inputs, topology.driven_along(BY_TRAVEL)
     travel = {one.height: name for name, one in drawn.items() if isinstance(one, Height)}
     if len(moving) != 1 or topology.wheel_centre not in travel:
@@ -125,16 +128,17 @@ def driven_inputs(file: MechanismFile, topology: Topology) -> tuple[str, ...]:
 
 
 def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
-    """A way of the wheel about the drawing, with the others held as drawn, well within its reach.
+    """Laws and scene of wheel travel about the drawing, well within its range; other inputs are held as
+    drawn.
 
-    The wheel goes from 30 mm below to 30 mm above; where it reaches less than 40 mm, or what moves it is no
-    travel, a quarter of the way to the nearer end to either side.
+    The wheel moves from 30 mm below to 30 mm above. If it can move less than 40 mm, or if its input is not a
+    travel, the input moves a quarter of the way to the nearer end on either side.
     """
     laws: dict[str, tuple[Mapping[str, Any], str]] = {}
     drives = drawn.mechanism.topology.drives
     for drive in drives:
         name, unit, here = drive.input, drive.unit, stands.inputs[drive.input]
-        # The travel of a slide steers; what is none carries the wheel up and down.
+        # The travel of a slide is taken as steering; other inputs move the wheel up and down.
         if drive.of_slide and not all(other.of_slide for other in drives):
             laws[name] = {"constant": here}, f"{unit}, as drawn"
             continue
@@ -150,7 +154,7 @@ def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
 
 
 def scene_text(drawing: Drawing, drawn: Scene, laws: Laws, format_words: str) -> str:
-    """The scene as a file; a mechanism that is not a shipped one stands in it."""
+    """The text of the scene file, with the tables of a mechanism that is not shipped."""
     tables = drawing.tables or {}
     rows = [(point.name, point.written, point.source) for point in drawing.points]
     first, second = (max(len(row[i]) for row in rows) for i in (0, 1))

@@ -1,1 +1,1 @@
-"""Result files, measured or printed by another program, held to the car of a scene."""
+"""Compares files of results, measured or printed by another program, with the car of a scene."""

@@ -1,4 +1,4 @@
-"""A file of results beside the car of a scene: the verdict of every number, and what would explain it."""
+"""Compares a file of results with the car of a scene: the verdict on every number, and explanations."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 TOO_COARSE = (
-    "what its rows are taken by is rounded so coarsely that no number could tell its curve from a level line"
+    "the independent column is rounded so coarsely that any value would agree, even that of a constant curve"
 )
-FEWEST = 5  # rows that other cars are solved at
+FEWEST = 5  # least number of rows for which other cars are solved
 
 
 @dataclass(frozen=True)
 class DataOutcome:
-    """What came of a file.
+    """The comparison of a file.
 
     Attributes:
-        outcome: its comparison as that of any two solutions; its instants are values of the independent
-            column, in s, rad or mm, or numbers of rows from 0 on where several inputs are independent.
-        over: what these are, with their unit.
-        accuracy: how far the file's numbers may be off beside their digits, in their columns' units.
-        absent: quantities that the scene asks for and the file does not give, in words; they are no rows of
-            the outcome, so that it agrees where all that is given does.
-        columns: each beside ours. rows: what to call each row of these.
+        outcome: the comparison, in the form of that of two solutions. Its instants are values of the
+            independent column, in s, rad or mm, or indices of rows if there are several independent columns.
+        over: name of the independent column with its unit, or `row`.
+        accuracy: error of the file's numbers in addition to their rounding, in the units of their columns.
+        absent: quantities that the scene asks for and the file does not give, in words. They have no rows in
+            the outcome, so that it agrees if all given numbers agree.
+        columns: the columns with our numbers. rows: names of the rows.
     """
 
     outcome: Outcome
@@ -54,11 +54,11 @@ class DataOutcome:
 
     @property
     def at(self) -> Array:
-        """Values of the independent column, or numbers of rows, (N,)."""
+        """Values of the independent column, or indices of rows, (N,)."""
         return self.outcome.solutions[0].times
 
     def columns_of(self, row: Comparison) -> tuple[Held, ...]:
-        """The columns that a row of the outcome is of."""
+        """The columns that belong to a row of the outcome."""
         return tuple(held for held in self.columns if held.series.meaning.row == (row.quantity, row.name))
 
 
@@ -68,18 +68,18 @@ def compare_results(
     """Compare a file with the scene's car, at the file's own values.
 
     Args:
-        name: what to call the scene.
-        accuracy: how far the file's numbers may be off beside their digits, each in its column's own unit;
-            what a map says of a column goes before it. None: not said, see `tolerances`.
-        factor: how many times the tolerance to hold differences to.
+        name: name of the scene.
+        accuracy: error of the file's numbers in addition to their rounding, each in its column's unit; the
+            map may give another one for a column. None: not stated, see `tolerances`.
+        factor: multiple of the tolerance that is allowed.
     Raises:
         FileError: no row can be reached.
-        MissingLibrary: it needs the extra `validate`.
+        MissingLibrary: the extra `validate` is not installed.
         PointcoordError: the scene cannot be solved.
     """
     driven = Driven.of(scene, measured)
     held, ours, notes = held_of(measured, driven, accuracy)
-    # What neither has anywhere, such as Ackermann of wheels that are not steered, is no difference.
+    # A number that neither has in any row, such as Ackermann of wheels that are not steered, is left out.
     there = [h for h in held if np.isfinite(h.series.values).any() or np.isfinite(h.ours).any() or h.unknown]
     by_row: dict[Row, list[Held]] = {}
     for h in sorted(there or held, key=lambda h: [*QUANTITIES].index(h.series.meaning.quantity)):
@@ -102,7 +102,7 @@ def compare_results(
 
 
 def _judged(scene: str, measured: Measured, row: Row, columns: Sequence[Held], factor: float) -> Comparison:
-    """The comparison of a point, body or angle by the columns that are given of it."""
+    """The comparison of a quantity of a point, body or angle, from its columns."""
     ends = (scene, measured.source, OURS, *row, columns[0].series.meaning.unit)
     gaps, shares = np.stack([h.gap for h in columns]), np.stack([h.share for h in columns]) / factor
     compared = ~np.isnan(shares)
@@ -110,7 +110,7 @@ def _judged(scene: str, measured: Measured, row: Row, columns: Sequence[Held], f
         why = next((h.unknown for h in columns if h.unknown), NO_NUMBERS)
         return Comparison(*ends, verdict="not tested", rests_on=measured.source, why=why)
     share = float(np.nanmax(shares))
-    # The largest difference; of a column that disagrees, the largest of those that are too large.
+    # The largest difference; if the row disagrees, the largest of those that exceed their tolerance.
     seen = shares > 1.0 if share > 1.0 else compared
     worst = int(np.argmax(np.where(seen, gaps, -1.0)))
     column, place = divmod(worst, gaps.shape[1])
@@ -121,7 +121,7 @@ def _judged(scene: str, measured: Measured, row: Row, columns: Sequence[Held], f
     elif all(h.blind for h in columns):
         why = TOO_COARSE
     elif any((h.gap > factor * h.close).any() for h in columns):
-        why = f"it agrees only because {rounded(measured)} (= 1 and the like if it is rounded so)"
+        why = f"it agrees only because {rounded(measured)} (or = 1 and so on if it is rounded to this)"
     elif few := [h.counts for h in columns if h.few]:
         why = "only {} of its {} numbers can be compared".format(*min(few))
     else:
@@ -141,10 +141,10 @@ def _judged(scene: str, measured: Measured, row: Row, columns: Sequence[Held], f
 
 
 def _too_few(held: Sequence[Held], compared: int) -> tuple[str, ...]:
-    """That most of what is given cannot be compared."""
+    """Messages if most rows, or most numbers of a column, cannot be compared."""
     there = int(np.any([np.isfinite(h.series.values) for h in held], axis=0).sum())
     if 2 * compared < there:
-        return (f"only {compared} of {there} rows that hold numbers can be compared",)
+        return (f"only {compared} of {there} rows with numbers can be compared",)
     return tuple(
         f"only {h.counts[0]} of {h.counts[1]} numbers of {shown(h.series.column)} can be compared"
         for h in held
@@ -160,7 +160,7 @@ def _explained(
     wrong: Sequence[Row],
     factor: float,
 ) -> tuple[Explanation, ...]:
-    """What would explain that a file disagrees: of numbers of the car and of vectors that are given whole."""
+    """Possible explanations of a disagreement, from numbers of the car and vectors with all components."""
     whole = {
         row: columns
         for row, columns in by_row.items()
@@ -169,12 +169,12 @@ def _explained(
     if not whole.keys() & wrong:
         return ()
     every = [h.share for columns in whole.values() for h in columns]
-    told, there = _as_motion(driven, measured, np.flatnonzero(np.isfinite(every).all(axis=0)))
+    places, there = _as_motion(driven, measured, np.flatnonzero(np.isfinite(every).all(axis=0)))
 
     def of(number: Callable[[Held], Array]) -> dict[Row, Array]:
-        return {row: _side_by_side(row, columns, number)[told] for row, columns in whole.items()}
+        return {row: _side_by_side(row, columns, number)[places] for row, columns in whole.items()}
 
-    times = measured.instants[told] if driven.over_time else np.arange(float(len(told)))
+    times = measured.instants[places] if driven.over_time else np.arange(float(len(places)))
     evidence = Evidence(
         scene=there or driven.scene,
         times=there.instants if there else times,
@@ -187,17 +187,17 @@ def _explained(
         other_cars=driven.over_time or there is not None,
         own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
         units={row: columns[0].series.meaning.unit for row, columns in whole.items()},
-        known={} if driven.over_time else {n: a[told] for n, a in ours.numbers[PLACES].items()},
+        known={} if driven.over_time else {n: a[places] for n, a in ours.numbers[PLACES].items()},
     )
     try:
         return explain_evidence(evidence)
     except MissingLibrary:
-        # Laws in many digits are an extra that the verdict needs not.
+        # Laws in many digits need an extra package, which the verdict does not need.
         return ()
 
 
 def _side_by_side(row: Row, columns: Sequence[Held], number: Callable[[Held], Array]) -> Array:
-    """A number of the columns of a row, (N, 3) or (N,); NaN of an axis that is not given."""
+    """A number of the columns of a row, (N, 3) or (N,); NaN for a component without a column."""
     if row.of == "car":
         return number(columns[0])
     found = np.full((len(columns[0].ours), 3), np.nan)
@@ -207,9 +207,10 @@ def _side_by_side(row: Row, columns: Sequence[Held], number: Callable[[Held], Ar
 
 
 def _as_motion(driven: Driven, measured: Measured, rows: Rows) -> tuple[Rows, Scene | None]:
-    """Some rows of a file as a motion, at whose instants other cars are solved, and their order in it.
+    """Some rows of a file in order, and a scene with a motion through them, for solving other cars.
 
-    None where the file's times are not evenly apart, rows go along several columns, or are few.
+    The scene is None if times are not in even steps, if there are several independent columns, or too few
+    rows.
     """
     at = measured.instants[rows]
     if driven.over_time:
@@ -228,7 +229,7 @@ def _as_motion(driven: Driven, measured: Measured, rows: Rows) -> tuple[Rows, Sc
 
 
 def _solution(measured: Measured, by_row: Mapping[Row, Sequence[Held]]) -> Solution:
-    """The file as a solution of its own."""
+    """The file in the form of a solution."""
     numbers: dict[str, dict[str, Array]] = {}
     claims: dict[str, dict[str, Array]] = {}
     for row, columns in by_row.items():
@@ -242,7 +243,7 @@ def _solution(measured: Measured, by_row: Mapping[Row, Sequence[Held]]) -> Solut
 
 
 def _lacking(scene: Scene, measured: Measured) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """What the scene asks for and the file does not give, in lines; and quantities of which it gives none."""
+    """Lines on asked numbers that the file lacks, and the quantities that the file lacks completely."""
     given = {s.meaning.row for s in measured.numbers}
     lines, absent = [], []
     for quantity, names in asked_numbers(scene).items():

@@ -1,24 +1,24 @@
-"""What each column of a file is: by its own name, or by a map that the user writes.
+"""The meaning of each column of a file: from its name, or from a map that the user writes.
 
 A map is TOML:
 
     rolling_radius = 270.0        # mm; for travel.contact only
-    convention = "adams"          # whose names they are: adams, optimumk, lotus; as the scene if not said
+    convention = "adams"          # definitions of the names: adams, optimumk, lotus; the scene's if not given
 
-    [held]                        # what is the same in every row; inputs that nothing is said of: as drawn
+    [held]                        # inputs with one value in every row; other inputs are as drawn
     rack = 0.0
 
     [columns.camber]              # by the name in the file
     is = "wheel.camber"           # time, input.NAME, travel.POINT or .contact, QUANTITY.NAME[.AXIS], ignore
-    unit = "deg"                  # if the file does not say it
+    unit = "deg"                  # if the file does not give it
     sign = -1                     # ours = sign * theirs + offset, the offset in the column's unit
     offset = 0.0
     printed = 0.0001              # unit of the last digit, in the column's unit; 0: written in full or exact
-    accuracy = 0.001              # how far its numbers may be off beside that, in the column's unit
+    accuracy = 0.001              # error of its numbers in addition to rounding, in the column's unit
 
-Columns that a map does not name are found by their own names all the same, where the file says their unit and
-no other column is said to be that. Rows are taken by time where there is one, or else by a travel and inputs;
-what is not to count is ignored.
+Columns that a map does not name are recognised by their names if the file gives their unit and no other
+column has the same meaning. The pose of a row is given by time, if there is such a column, or else by a
+travel and inputs; other columns of these kinds are ignored.
 """
 
 from __future__ import annotations
@@ -58,13 +58,13 @@ from validate.toml_written import key_of, value_of
 
 Array = NDArray[np.float64]
 
-# Values in even steps that are taken as set exactly: two always are.
+# Least number of values to decide that a column is in even steps: two values always are.
 FEWEST = 3
-BY_CHANCE = 1e-3  # of a step or a last digit: what is even to less is hardly so by chance
-# No length, time, angle or rate of a car is larger in our units; the square of what is may be no number. Of a
-# higher derivative the limit is this for every two seconds that it is divided by.
+BY_CHANCE = 1e-3  # steps that are equal to this share of a step or a last digit are not so by chance
+# Upper limit of lengths, times, angles and rates in our units: squares of larger numbers might overflow. For
+# a higher derivative the limit is raised to the power of half its order.
 FARTHEST = 1e12
-NAMED = 5  # numbers of the car, where a message says what there is
+NAMED = 5  # largest number of names listed in a message
 
 
 Number = Annotated[float, Field(strict=True, ge=-FARTHEST, le=FARTHEST)]
@@ -81,7 +81,7 @@ class _Said(BaseModel):
 
 
 class ColumnSaid(_Said):
-    """What a map says of a column, as the top of this file has it; None what it does not say."""
+    """The entries of a column in a map, see the top of this file; None if not given."""
 
     is_: str | None = Field(default=None, alias="is")
     unit: str | None = None
@@ -92,7 +92,7 @@ class ColumnSaid(_Said):
 
 
 class MapSaid(_Said):
-    """What a map says, likewise."""
+    """The content of a map, see the top of this file."""
 
     rolling_radius: Number = math.nan
     convention: ConventionName | None = None
@@ -101,10 +101,10 @@ class MapSaid(_Said):
 
     @classmethod
     def of(cls, content: Mapping[str, Any], where: str) -> MapSaid:
-        """A map as plain data, checked.
+        """A map from plain data.
 
         Raises:
-            FileError: the first fault.
+            FileError: the map is wrong; the first fault.
         """
         try:
             return cls.model_validate(content)
@@ -118,11 +118,12 @@ class Series:
     """A column in our units.
 
     Attributes:
-        column: its name in the file. meaning: what it is.
-        values: (N,), NaN where the file has none.
-        off: how far what was rounded may be from what is written, half a unit of the last digit, (N,).
-        factor: how many of ours its unit is. accuracy: that a map says, in its unit; None if it says none.
-        said: whether a map says what its last digit is.
+        column: its name in the file. meaning: its meaning.
+        values: (N,), NaN for no number.
+        off: rounding error of the values, half a unit of the last digit, (N,).
+        factor: its unit in our unit.
+        accuracy: accuracy from the map, in its unit; None if not given.
+        said: whether the map gives the unit of its last digit.
     """
 
     column: str
@@ -135,15 +136,16 @@ class Series:
 
     @property
     def rounded_unasked(self) -> bool:
-        """Whether it is taken as rounded though no map says so."""
+        """Whether it is taken as rounded although the map does not say so."""
         return not self.said and bool(self.off.any())
 
     @property
     def set_exactly(self) -> bool:
-        """Whether its values go in even steps, as those do that are set and not measured.
+        """Whether its values are in even steps, as set values are, unlike measured ones.
 
-        Programs leave zeros off: -30 is -30.0000000000 beside -26.6666666667, and is written the coarsest.
-        Digits that are cut off come out even by chance only.
+        Programs omit trailing zeros: -30 may stand for -30.0000000000 next to -26.6666666667, although it
+            seems to
+        be rounded most. Rounded values are in even steps only by chance.
         """
         there = np.isfinite(self.values)
         values = np.unique(self.values[there])
@@ -153,31 +155,31 @@ class Series:
         return bool(np.ptp(steps) <= BY_CHANCE * min(float(self.off[there].max()), float(steps.min())))
 
     def apart(self, ours: Array, theirs: Array) -> Array:
-        """Ours less theirs; whole turns apart is the same angle."""
+        """The difference `ours - theirs`; for angles without whole turns."""
         gap, turn = ours - theirs, 2.0 * math.pi
         return gap - turn * np.rint(gap / turn) if self.meaning.unit == "rad" else gap
 
     def taken(self, rows: NDArray[np.bool_]) -> Series:
-        """Some of its rows."""
+        """The series at some rows."""
         return replace(self, values=self.values[rows], off=self.off[rows])
 
     def accuracy_or(self, accuracy: float) -> float:
-        """How far its numbers may be off beside their digits, in our unit."""
+        """The error of its numbers in addition to rounding, in our unit: from the map, or else `accuracy`."""
         return self.factor * (accuracy if self.accuracy is None else self.accuracy)
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A file of results, read and understood.
+    """A file of results, with the meaning of its columns.
 
     Attributes:
         source: the file.
-        independent: what the others are given over: the time, a travel and inputs, or inputs.
-        numbers: what is to be compared.
-        held: inputs and travels that are the same in every row, in our units.
-        rolling_radius: mm; NaN if not said.
-        rows: what to call each row.
-        notes: what was left out.
+        independent: the independent columns: time, a travel and inputs, or inputs.
+        numbers: the columns to compare.
+        held: inputs and travels with one value in every row, in our units.
+        rolling_radius: mm; NaN if not given.
+        rows: name of each row.
+        notes: remarks on columns and rows that were left out.
     """
 
     source: str
@@ -190,12 +192,12 @@ class Measured:
 
     @property
     def instants(self) -> Array:
-        """Values of the independent column; numbers of rows where there are several, (N,)."""
+        """Values of the independent column, (N,); indices of rows if there are several."""
         one, *others = self.independent
         return np.arange(len(self.rows), dtype=float) if others else one.values
 
     def taken(self, keep: NDArray[np.bool_]) -> Measured:
-        """Some of its rows."""
+        """The file with some of its rows."""
         return replace(
             self,
             independent=tuple(s.taken(keep) for s in self.independent),
@@ -205,12 +207,12 @@ class Measured:
 
 
 def read_results(file: str, map: str | None, scene: Scene) -> Measured:
-    """Read a file of results of a scene's car.
+    """Read a file of results for a scene's car.
 
     Args:
-        map: file that says what the columns are; None where they carry our own names.
+        map: file that describes the columns; None if the columns have our names.
     Raises:
-        FileError: the file or the map is wrong, or nothing in it can be compared.
+        FileError: the file or the map is wrong, or nothing in the file can be compared.
         MissingLibrary: Parquet needs pyarrow.
     """
     columns = read_columns(file)
@@ -224,10 +226,10 @@ def read_results(file: str, map: str | None, scene: Scene) -> Measured:
 
 
 def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where: str) -> Measured:
-    """What columns mean, by a map as plain data.
+    """Find the meaning of columns, with a map as plain data.
 
     Args:
-        where: what to call the map in messages.
+        where: name of the map in messages.
     Raises:
         FileError: see `read_results`.
     """
@@ -237,24 +239,25 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     numbers = tuple(s for s in found if s.meaning.kind == "number")
     if not numbers:
         allowed = f"columns such as {', '.join(map.numbers[:NAMED])}"
-        raise FileError(columns.source, "", "holds nothing to compare", allowed)
+        raise FileError(columns.source, "", "has no numbers to compare", allowed)
     notes, over_names = list[str](), [s.column for s in over]
     if out := [name for name, one in map.meant.items() if one is None]:
         notes.append(f"ignored: {listed(out)} (name not recognised, without a unit, or as the map says)")
     if even := [s.column for s in over if s.set_exactly]:
         names = listed(even, " and ")
-        notes.append(f"{names}: in even steps, taken as exact; if rounded, say printed = STEP of it in a map")
+        notes.append(f"{names}: in even steps, taken as exact; if rounded, give its printed = STEP in a map")
     if beside := [s.column for s in found if s.meaning.kind != "number" and s.column not in over_names]:
-        notes.append(f"{listed(beside)} is not compared: rows are taken by {listed(over_names, ' and ')}")
+        given = listed(over_names, " and ")
+        notes.append(f"{listed(beside)} not used: the pose of a row is given by {given}")
     for s in numbers:
         if lacking := int(np.isnan(s.values).sum()):
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
     lost: NDArray[np.bool_] = np.asarray(np.isnan([s.values for s in over]).any(axis=0))
     if lost.all():
-        raise FileError(columns.source, "", "no row says at which pose it is", "at least one")
+        raise FileError(columns.source, "", "no row gives its pose", "at least one row with its pose")
     if lost.any():
         first = columns.rows[int(np.argmax(lost))]
-        notes.append(f"rows that do not say at which pose they are: {int(lost.sum())}, from {first} on")
+        notes.append(f"{int(lost.sum())} rows do not give their pose and are left out, the first: {first}")
     return Measured(
         source=columns.source,
         independent=tuple(replace(s, off=0.0 * s.off) if s.column in even else s for s in over),
@@ -267,7 +270,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
 
 
 def map_to_fill_in(file: str, scene: Scene) -> str:
-    """The text of a map (TOML) of a file of results: what is known of each column, and a line for the others.
+    """The text of a map (TOML) to fill in for a file of results, with the recognised columns filled in.
 
     Raises:
         FileError: the file cannot be read.
@@ -276,31 +279,31 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
     columns = read_columns(file)
     map = _Map("", MapSaid(), columns, scene)
     lines = [
-        f"# What the columns of {columns.source} are. Fill in what is missing, and take its # away.",
+        f"# The columns of {columns.source}. Fill in what is missing, and remove the #.",
         fill(f"is: {map.there_is}", 100, initial_indent="# ", subsequent_indent="#     "),
-        "# unit: mm, deg, rad, s and the like. More keys: sign = -1, offset = 0.5, accuracy = 0.001,",
+        "# unit: mm, deg, rad, s and so on. Further keys: sign = -1, offset = 0.5, accuracy = 0.001,",
         "#     printed = 0.01 (the unit of the last digit; 0: exact as written)",
         f"# rolling_radius = 300.0    # mm, of travel.{CONTACT}",
         "",
         "[columns]",
     ]
     for (name, one), unit in zip(map.meant.items(), columns.units, strict=True):
-        said = {"is": one[0].words if one else "", "unit": shown(unit)}
-        lines.append(f"{'' if all(said.values()) else '# '}{key_of(shown(name))} = {value_of(said)}")
+        entry = {"is": one[0].words if one else "", "unit": shown(unit)}
+        lines.append(f"{'' if all(entry.values()) else '# '}{key_of(shown(name))} = {value_of(entry)}")
     return "\n".join(lines) + "\n"
 
 
 def listed(names: Iterable[str], by: str = ", ") -> str:
-    """Names of a file as they can be shown, the long ones shortened."""
+    """Names from a file for a message, long ones shortened."""
     return by.join(shown(shown_key(name)) for name in names)
 
 
 @dataclass(frozen=True)
 class _Map:
-    """A map of columns and what it is about.
+    """A map with the columns and the scene that it describes.
 
     Attributes:
-        where: what to call it in messages.
+        where: its name in messages.
     """
 
     where: str
@@ -322,30 +325,30 @@ class _Map:
 
     @cached_property
     def meanings(self) -> dict[str, Meaning]:
-        """Everything that a column can be, by its whole name."""
+        """All possible meanings of a column, by their full names."""
         return meanings_of(self.scene.mechanism.topology)
 
     @property
     def numbers(self) -> tuple[str, ...]:
-        """What can be compared, the car's own numbers first."""
+        """The full names of numbers that can be compared, numbers of the car first."""
         numbers = [one for one in self.meanings.values() if one.kind == "number"]
         return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
 
     @property
     def poses(self) -> str:
-        """What rows can be taken by, in words."""
+        """The columns that can give the pose of a row, in words."""
         inputs = [f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs]
         return ", ".join((TIME, *inputs, f"{TRAVEL}.POINT", f"{TRAVEL}.{CONTACT}"))
 
     @property
     def there_is(self) -> str:
-        """What a column can be, in words."""
+        """The possible meanings of a column, in words."""
         centre = self.scene.mechanism.topology.wheel_centre
         some = ", ".join((*([f"{PLACES}.{centre}.z"] if centre else ()), *self.numbers[:NAMED]))
         return f"{self.poses}, QUANTITY.NAME[.AXIS] such as {some}, or {IGNORE}"
 
     def _lookup(self, name: str) -> tuple[Meaning | None, int]:
-        """Its meaning and sign; of a name that is no whole one of ours, by the convention."""
+        """The meaning and sign of a name; names other than our full names are read by the convention."""
         found = named(name, self.meanings)
         if found is None or found.kind != "number" or name in self.meanings:
             return found, 1
@@ -354,12 +357,12 @@ class _Map:
 
     @cached_property
     def meant(self) -> dict[str, tuple[Meaning, int] | None]:
-        """What each column is, and its sign: of the map, of a minus before its name, or of the convention.
+        """The meaning and sign of each column; None for a column that is left out.
 
-        None of what is left out.
+        The sign is from the map, from a minus before the name, or from the convention.
 
         Raises:
-            FileError: the map gives a column a name that there is not.
+            FileError: the map gives an unknown meaning.
         """
         every = self.said.columns
         taken = [self._lookup(part.is_ or name)[0] for name, part in every.items()]
@@ -380,7 +383,7 @@ class _Map:
         return found
 
     def series(self) -> list[Series]:
-        """Every column that means something, in our units."""
+        """All columns with a meaning, in our units."""
         found: dict[str, Series] = {}
         for at, (name, one) in enumerate(self.meant.items()):
             if one is None:
@@ -391,7 +394,7 @@ class _Map:
             found[words] = self._in_ours(at, name, *one)
         if not found:
             near = next((h for n in self.columns.names if (h := meant(n, self.numbers))), "")
-            problem = f"none of {listed(self.columns.names)} is a name that we know{near}"
+            problem = f"none of {listed(self.columns.names)} is recognised{near}"
             allowed = f"names such as time, {', '.join(self.numbers[:NAMED])}, or a map of them (--map)"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return list(found.values())
@@ -401,13 +404,13 @@ class _Map:
         source, column = self.columns.source, f"column {shown(name)!r}"
         if holds := self.columns.words.get(name):
             allowed = f'columns of numbers, or is = "{IGNORE}" in a map'
-            raise FileError(source, column, f"holds {holds}", allowed)
+            raise FileError(source, column, f"contains {holds}", allowed)
         part = self.said.columns.get(name, ColumnSaid())
         unit = self.columns.units[at] if part.unit is None else part.unit
         factor = factor_of(unit, meaning.unit) if unit else None
         if factor is None:
-            problem = "its unit is not said, neither behind its name nor in a map"
-            problem = f"{shown(unit)!r} is no unit of {meaning.words}" if unit else problem
+            problem = "its unit is not given, neither after its name nor in a map"
+            problem = f"{shown(unit)!r} is not a unit of {meaning.words}" if unit else problem
             wrong = (source, column) if part.unit is None else (self.where, f"columns.{name}.unit")
             raise FileError(*wrong, problem, allowed_units(meaning.unit))
         theirs, steps = self.columns.values[at], self.columns.steps[at]
@@ -415,20 +418,20 @@ class _Map:
             values = factor * (sign * theirs + part.offset)
         farthest = FARTHEST ** max(1.0, meaning.per_second / 2.0)
         for row in np.flatnonzero(np.abs(values) > farthest)[:1].tolist():
-            problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
-            allowed = f"at most {farthest:g} {meaning.unit}, or nothing or nan for none"
+            problem = f"is {theirs[row]:.6g}, which is too large for {meaning.words} of a car"
+            allowed = f"at most {farthest:g} {meaning.unit}, or an empty cell or nan for no number"
             raise FileError(source, f"{self.columns.rows[row]}, {column}", problem, allowed)
         said = part.printed is not None
         last = np.full(len(steps), part.printed) if said else steps
         return Series(name, meaning, values, 0.5 * factor * last, factor, part.accuracy, said)
 
     def independent(self, found: Sequence[Series]) -> tuple[Series, ...]:
-        """What the rows are taken by: time, or a travel and inputs."""
+        """The columns that give the pose of a row: time, or a travel and inputs."""
         times, travels, inputs = ([s for s in found if s.meaning.kind == k] for k in (TIME, TRAVEL, INPUT))
         if len(travels) > 1 and not times:
-            problem = f"{listed(s.column for s in travels)} could each be what rows are taken by"
-            raise FileError(self.where, "columns", problem, f'is = "{IGNORE}" of all but one')
+            problem = f"each of {listed(s.column for s in travels)} could give the pose of a row"
+            raise FileError(self.where, "columns", problem, f'is = "{IGNORE}" for all but one')
         if not (chosen := times or [*travels, *inputs]):
-            problem, allowed = "no column says at which pose a row is", f"a column of {self.poses} (in a map)"
+            problem, allowed = "no column gives the pose of a row", f"a column of {self.poses} (in a map)"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return tuple(chosen)

@@ -1,8 +1,8 @@
-"""What a column of a file can be: a time, an input, a travel, or a number of the car.
+"""The possible meanings of a column: time, an input, a travel, or a number of the car.
 
-`travel.POINT` is how much higher a point is than in the closed drawing; `travel.contact` is that of the
-lowest point of a thin disc of the rolling radius about the wheel's centre. Names are those of the files that
-`pointcoord simulate -o` writes; inputs and numbers that a car has one of may be called by their last part.
+`travel.POINT` is the height of a point above its position in the closed drawing; `travel.contact` is that of
+the lowest point of a thin disc with the rolling radius about the wheel centre. Names are those of the files
+that `pointcoord simulate -o` writes. For inputs and numbers of the car the last part of the name is enough.
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ TIME, INPUT, TRAVEL, IGNORE, CONTACT = "time", "input", "travel", "ignore", "con
 
 @dataclass(frozen=True)
 class Meaning:
-    """What a column is.
+    """The meaning of a column.
 
     Attributes:
         kind: time, an input, a travel, or a number of a quantity.
-        quantity: of a number. name: of the input, of the point that travels, or of the number.
-        axis: 0 to 2 of a component of a vector; None of what the car has one number of.
-        unit: ours.
+        name: name of the input, of the point that travels, or of the number.
+        unit: our unit.
+        quantity: the quantity of a number.
+        axis: component of a vector, 0 to 2; None for a number of the car.
     """
 
     kind: Literal["time", "input", "travel", "number"]
@@ -42,7 +43,7 @@ class Meaning:
 
     @property
     def words(self) -> str:
-        """Its name as a map says it."""
+        """Its full name, as in a map."""
         if self.kind == "number":
             end = () if self.axis is None else (AXES[self.axis],)
             return ".".join((self.quantity, self.name, *end))
@@ -50,27 +51,27 @@ class Meaning:
 
     @property
     def row(self) -> tuple[str, str]:
-        """Under which quantity and name a number is compared, with others of its vector."""
+        """The quantity and name under which a number is compared with the components of its vector."""
         return self.quantity, self.name
 
     @property
     def drives(self) -> str:
-        """The input that it gives, which is called as the travel where it gives one; time likewise."""
+        """The name of the input that it gives; for a travel its full name."""
         return self.words if self.kind == TRAVEL else self.name
 
     @property
     def of_a_pose(self) -> bool:
-        """Whether it is a number of places alone: a coordinate, or an angle of a line."""
+        """Whether it depends only on positions: a coordinate, or an angle of a line."""
         return self.quantity == PLACES or angle_of(self) is not None
 
     @property
     def per_second(self) -> int:
-        """How many times it is divided by a time."""
+        """The order of its time derivative."""
         return per_second(self.quantity) if self.quantity else 0
 
 
 def meanings_of(topology: Topology) -> dict[str, Meaning]:
-    """Everything that a column can be, by its whole name."""
+    """All possible meanings of a column, by their full names."""
     every = [Meaning("time", TIME, "s")]
     every += [Meaning("input", name, unit) for name, unit in topology.input_units.items()]
     contact = (CONTACT,) if topology.wheel_axis else ()
@@ -83,11 +84,11 @@ def meanings_of(topology: Topology) -> dict[str, Meaning]:
 
 
 def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
-    """By its whole name, or by the last part of an input's or of a number that a car has one of."""
+    """The meaning with a full name, or with the last part of the name of an input or a number of the car."""
     if name in meanings:
         return meanings[name]
     short = [one for one in meanings.values() if one.name == name and one.axis is None and one.kind != TRAVEL]
-    # A rod may be called as an angle of the wheel is, and have a force.
+    # The force of a rod may have the name of a wheel angle; the angle is taken.
     short = [one for one in short if angle_of(one) is not None] or short
     if not short and name != name.lower():
         return named(name.lower(), meanings)
@@ -95,6 +96,6 @@ def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
 
 
 def angle_of(meaning: Meaning) -> Angle | None:
-    """The angle that a number is; None if it is none of a line."""
+    """The angle of a line that a number is; None for other numbers."""
     angle = angle_called(meaning.name)
     return angle if angle and meaning.quantity == angle.quantity.name else None

@@ -1,12 +1,12 @@
-r"""A file of results as columns of numbers, and how finely each number is written.
+r"""Reads a file of results as columns of numbers, with the unit of the last digit of each number.
 
-Text: commas, semicolons, tabs or blanks between cells, found by looking; decimal commas; lines of comment;
-names of columns, and their units in a line of their own or behind the names, such as "camber [deg]".
-Parquet: columns of numbers.
+Text files may have commas, semicolons, tabs or blanks between cells, which are detected; decimal commas;
+comment lines; names of columns, and units in a separate line or after the names, such as "camber [deg]".
+Parquet files have columns of numbers.
 
-A number tells no more than its last digit: 12.40 is anything from 12.395 to 12.405. Programs that write
-doubles in full leave zeros off, and there 0.1 is 0.1: where any number of a file has fifteen digits, all of
-them are taken as written in full.
+A printed number is rounded to its last digit: 12.40 is anything from 12.395 to 12.405. But programs that
+write all digits of a double omit trailing zeros, so that 0.1 is exactly 0.1. If any number of a file has
+fifteen digits, all numbers are taken as written in full.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ from validate.tables.units import is_unit
 Array = NDArray[np.float64]
 
 NOTHING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
-# Digits that only a double in full has.
+# A number with so many digits is a double written in full.
 DOUBLE = 15
 _UNIT_BEHIND = re.compile(r"(.*\S)\s*(?:\[([^\]]*)\]|\(([^)]*)\))")
 
 
 @dataclass(frozen=True)
 class Columns:
-    """What stands in a file.
+    """The columns of a file.
 
     Attributes:
         source: the file.
-        names: of the columns. units: as the file says them; empty where it does not.
-        values: (columns, rows), NaN where there is none.
-        steps: the unit of the last digit of each number, likewise; 0 where a number is written in full.
-        rows: what to call each row, such as "line 7".
-        words: columns that hold no numbers, and what they hold.
+        names: names of the columns. units: units as in the file; empty if not given.
+        values: (columns, rows), NaN for no number.
+        steps: unit of the last digit of each number, likewise; 0 for a number written in full.
+        rows: name of each row, such as "line 7".
+        words: columns without numbers, with their content in words.
     """
 
     source: str
@@ -60,15 +60,15 @@ class Columns:
     def __post_init__(self) -> None:
         (name, count), *_ = Counter(self.names).most_common(1)
         if count > 1:
-            problem, allowed = f"{shown(name)!r} is there {count} times", "each name once; rename one of them"
+            problem, allowed = f"{shown(name)!r} occurs {count} times", "each name once; rename one of them"
             raise FileError(self.source, "names of the columns", problem, allowed)
 
 
 def read_columns(path: str) -> Columns:
-    """Read a file: Parquet by its first bytes or its ending, anything else as text.
+    """Read a file: as Parquet if its first bytes or its ending say so, otherwise as text.
 
     Raises:
-        FileError: it cannot be read, is empty, or holds what is no table of numbers.
+        FileError: the file cannot be read, is empty, or is not a table of numbers.
         MissingLibrary: Parquet needs pyarrow.
     """
     source = shown(path)
@@ -82,7 +82,7 @@ def read_columns(path: str) -> Columns:
         return _parquet(path, source)
     text = text_of(data)
     if text is None:
-        raise FileError(source, "", "holds bytes that are no text", "text, or Parquet")
+        raise FileError(source, "", "contains bytes that are not text", "text, or Parquet")
     return columns_of_text(text, source)
 
 
@@ -91,9 +91,9 @@ def _parquet(path: str, source: str) -> Columns:
     try:
         table = parquet.read_table(path)
         found = {name_and_unit(name): table.column(i).to_numpy() for i, name in enumerate(table.column_names)}
-    # pyarrow's errors have no family of their own.
+    # pyarrow's errors have no common base class.
     except Exception as error:
-        problem = f"is no Parquet that can be read ({' '.join(str(error).split())})"
+        problem = f"is not a Parquet file that can be read ({' '.join(str(error).split())})"
         raise FileError(source, "", problem, "Parquet, or text") from None
     words = {name: str(column.dtype) for (name, _), column in found.items() if column.dtype.kind not in "iuf"}
     if len(words) == len(found) or not table.num_rows:
@@ -107,7 +107,7 @@ def _parquet(path: str, source: str) -> Columns:
             continue
         values[i] = column
         if column.dtype.kind == "f" and column.dtype.itemsize < 8:
-            # Single precision rounds to half of the distance to the next number.
+            # The last digit of single precision is the distance to the next number.
             steps[i] = np.spacing(np.abs(column))
     names, units = zip(*found, strict=True)
     rows = tuple(f"row {i + 1}" for i in range(table.num_rows))
@@ -133,7 +133,7 @@ def columns_of_text(text: str, source: str) -> Columns:
     head, rows = [row for _, row in cells[:first]], cells[first:]
     count = _width(rows[0][1], head)
     if not head:
-        # As numpy and gnuplot write names: in the last comment before the numbers.
+        # numpy and gnuplot write names in the last comment before the numbers.
         before = [row for number, row in lines.comments if number < rows[0][0]]
         head = [row for row in before[-1:] if len(joined(row)) == count]
     names, units = _names(head, count, source)
@@ -157,19 +157,19 @@ def columns_of_text(text: str, source: str) -> Columns:
 
 
 def _numeric(row: Sequence[str]) -> bool:
-    """Whether a line is one of numbers: as many of its cells are as are not."""
-    told = [cell for cell in row if cell.lower() not in NOTHING]
-    return bool(told) and sum(map(is_number, told)) * 2 >= len(told)
+    """Whether a line is a line of numbers: at least half of its cells are numbers."""
+    filled = [cell for cell in row if cell.lower() not in NOTHING]
+    return bool(filled) and sum(map(is_number, filled)) * 2 >= len(filled)
 
 
 def _width(row: Sequence[str], head: Sequence[Sequence[str]]) -> int:
-    """How many columns there are, without empty ones behind a delimiter at the end of every line."""
-    told = [i for line in (row, *head) for i, cell in enumerate(line[: len(row)]) if cell]
-    return max(told, default=0) + 1
+    """The number of columns, without empty ones after a delimiter at the end of every line."""
+    filled = [i for line in (row, *head) for i, cell in enumerate(line[: len(row)]) if cell]
+    return max(filled, default=0) + 1
 
 
 def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names and units from the lines above the numbers; a title of another width is passed over."""
+    """Names and units from the lines above the numbers; lines with another number of cells are skipped."""
     short = [row if any(row[count:]) else row[:count] for row in head]
     wide = [row if len(row) == count else joined(row) for row in short]
     wide = [row for row in wide if len(row) == count]
@@ -180,17 +180,17 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
         return tuple(str(i + 1) for i in range(count)), ("",) * count
     names, units = (list(part) for part in zip(*map(name_and_unit, wide[0]), strict=True))
     for row in wide[1:]:
-        told = [cell.strip("[]() ") for cell in row]
-        wrong = [cell for cell in told if cell not in ("", "-", "1") and not is_unit(cell)]
+        bare = [cell.strip("[]() ") for cell in row]
+        wrong = [cell for cell in bare if cell not in ("", "-", "1") and not is_unit(cell)]
         if wrong:
-            problem = f"holds {shown(wrong[0])!r}, which is no unit"
+            problem = f"contains {shown(wrong[0])!r}, which is not a unit"
             raise FileError(source, "line of units", problem, "mm, deg, rad, s and so on")
-        units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, told, strict=True)]
+        units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, bare, strict=True)]
     return tuple(names), tuple(units)
 
 
 def name_and_unit(cell: str) -> tuple[str, str]:
-    """A name and the unit behind it; round brackets may hold anything else."""
+    """A name and the unit after it; text in round brackets that is not a unit stays in the name."""
     found = _UNIT_BEHIND.fullmatch(cell.strip())
     if found is not None and found.group(2) is not None:
         return found.group(1), found.group(2).strip()
@@ -200,14 +200,14 @@ def name_and_unit(cell: str) -> tuple[str, str]:
 
 
 def _number(cell: str, source: str, line: int, name: str) -> tuple[float, int, int]:
-    """A number, and how many decimals and significant digits it is written with."""
+    """A number, with the numbers of decimals and of significant digits as written."""
     if cell.lower() in NOTHING:
         return math.nan, 0, 0
     found = NUMBER.fullmatch(cell)
     value = float(re.sub("[dD]", "e", cell)) if found else math.inf
     if found is None or not math.isfinite(value):
-        problem = f"{shown(cell)!r} is no finite number"
-        allowed = "a number, or nothing, - or nan for none"
+        problem = f"{shown(cell)!r} is not a finite number"
+        allowed = "a number; an empty cell, - or nan for no number"
         raise FileError(source, f"line {line}, column {shown(name)!r}", problem, allowed)
     whole, _, part = found.group(1).partition(".")
     return value, len(part) - int(found.group(2) or 0), max(len((whole + part).lstrip("0")), 1)

@@ -1,8 +1,8 @@
-"""An independent column that is meant with another sign, unit or zero, found by one straight line.
+"""Finds a wrong sign, unit or zero of an independent column from a straight line.
 
-The numbers of a row say themselves at which input it is: Gauss and Newton's method finds the input whose pose
-has them. Over the rows of the file an input x so found is a straight line x = k v + c over its column v: k is
-a sign and a unit, c another zero. What is found at some rows is held to the whole file.
+The numbers of a row determine its input: the Gauss-Newton method finds the input whose pose has these
+numbers. If the column v has a wrong sign, unit or zero, the inputs x of the rows are on a straight line x = k
+v + c: k gives the sign and the unit, c the zero. The line found from some rows is tested on the whole file.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from validate.tables.units import ANGLES, KINDS, named
 
 Array = NDArray[np.float64]
 
-ROWS = 16  # that inputs are found at
-NEARLY_ALL = 0.8  # of them must be in reach
-# Of an input's range: of differences, the longest step, and where steps end.
+ROWS = 16  # number of rows at which inputs are found
+NEARLY_ALL = 0.8  # least share of these rows that must be within reach
+# As shares of an input's range: step of differences, longest step, and size of the last step.
 STEP, LONGEST, ENDS = 1e-6, 0.1, 1e-9
 STEPS = 25
-LEAST = 1e-9  # of a spread, in our units
-NEARLY = 1.5  # tolerances that may be left of the whole file: least squares make no largest difference least
-NOTHING = 1e-4  # of the input's own size: a zero that is none
-UNIT = 0.01  # of a unit: how far off a slope is that one still
+LEAST = 1e-9  # least relative width of a column of numbers
+NEARLY = 1.5  # allowed difference / tolerance in the whole file: least squares do not minimise the largest
+NOTHING = 1e-4  # a zero below this share of the input's size counts as none
+UNIT = 0.01  # largest relative difference of the slope from that of a known unit
 
 
 def meant_otherwise(
@@ -45,10 +45,10 @@ def meant_otherwise(
     factor: float,
     wrong: Sequence[Row],
 ) -> Explanation | None:
-    """What explains the whole file: one of its columns with another sign, unit or zero; over time nothing.
+    """The explanation that one independent column has another sign, unit or zero; None if it does not fit.
 
     Args:
-        wrong: what disagrees.
+        wrong: the rows that disagree.
     """
     for words, other in _suppositions(driven, measured):
         try:
@@ -56,19 +56,19 @@ def meant_otherwise(
         except PointcoordError:
             continue
         leftover = float(np.nanmax([h.share for h in found], initial=0.0)) / factor
-        # Fewer rows that agree are no explanation of those that are out of reach then.
+        # It is no explanation if more rows are then out of reach.
         if leftover <= NEARLY and _reached(found) >= _reached(held):
             return Explanation(words, "input", tuple(map(".".join, wrong)), leftover)
     return None
 
 
 def _reached(held: Sequence[Held]) -> int:
-    """How many rows have numbers of ours."""
+    """The number of rows at which we have numbers."""
     return int(np.isfinite([h.ours for h in held]).any(axis=0).sum())
 
 
 def _suppositions(driven: Driven, measured: Measured) -> Iterator[tuple[str, Measured]]:
-    """The file with one column as it may be meant, by some of its rows, and what that is in words."""
+    """For each independent column with a wrong meaning: the fault in words, and the corrected file."""
     numbers = tuple(s for s in measured.numbers if s.meaning.of_a_pose)
     if driven.over_time or not numbers:
         return
@@ -85,18 +85,18 @@ def _suppositions(driven: Driven, measured: Measured) -> Iterator[tuple[str, Mea
 
 
 def _implied(driven: Driven, some: Measured, name: str) -> Array | None:
-    """The input that each row's numbers come from, the others being as said; NaN where there is none."""
+    """The input that fits the numbers of each row, with the other inputs as given; NaN where none fits."""
     if name not in driven.sensible:
-        return None  # it moves the whole car
+        return None  # this input moves the whole car
     here, _ = driven.inputs([s.values for s in some.independent])
     spread = np.ptp(np.nan_to_num([s.values for s in some.numbers]), axis=1)
-    # By their digits: a column that hardly changes says little of where its rows are.
+    # Weighted by their rounding: a column that hardly changes says little about the input.
     wide = np.maximum([np.nanmax(s.off) for s in some.numbers], LEAST * np.maximum(spread, 1.0))
     low, high = driven.sensible[name]
     size, x = high - low, np.full(len(some.rows), driven.drawn[name])
 
     def gaps(x: Array) -> Array:
-        """Ours less theirs, of their last digit, (columns, rows)."""
+        """Our numbers minus the given ones, over their rounding, (columns, rows)."""
         found = driven.solved({**here, name: x}, {})
         ours = [ours_of(s, found)[0] for s in some.numbers]
         apart = [s.apart(one, s.values) for s, one in zip(some.numbers, ours, strict=True) if one is not None]
@@ -119,7 +119,7 @@ def _implied(driven: Driven, some: Measured, name: str) -> Array | None:
 
 
 def _line(s: Series, x: Array, driven: Driven) -> tuple[float, float, str] | None:
-    """x = factor v + zero of a column v, with words; None where the column is as it is said or no line is."""
+    """The line x = factor v + zero of a column v, in words; None if it is x = v, or if there is no line."""
     some = np.isfinite(x) & np.isfinite(s.values)
     v, x = s.values[some], x[some]
     if len(v) < 2 or not np.ptp(v):
@@ -131,19 +131,19 @@ def _line(s: Series, x: Array, driven: Driven) -> tuple[float, float, str] | Non
         return None
     unit = ANGLES["deg"] if s.meaning.unit == "rad" else s.factor
     zeros, near = x - factor * v, NOTHING * float(np.abs(x).max())
-    # To the digits that their scatter leaves of the mean.
+    # The mean is rounded to the digits that its scatter allows.
     scatter = float(np.std(zeros)) / math.sqrt(len(zeros))
     digits = -math.floor(math.log10(max(scatter / unit, LEAST)))
     zero = unit * round(float(np.mean(zeros)) / unit, digits)
     drawn = driven.drawn[s.meaning.name] if s.meaning.kind == INPUT else 0.0
     zero = next((one for one in (0.0, drawn) if abs(zero - one) <= near), zero)
     other, parts = named(abs(factor) * s.factor, s.meaning.unit), list[str]()
-    if (said := named(s.factor, s.meaning.unit)) != other:
-        parts.append(f"is in {other}, not in {said}")
+    if (given := named(s.factor, s.meaning.unit)) != other:
+        parts.append(f"is in {other}, not in {given}")
     if factor < 0.0:
         parts.append("has the other sign")
     if zero == drawn != 0.0:
-        parts.append("counts from the drawing on")
+        parts.append("counts from the drawing")
     elif zero:
-        parts.append(f"counts from another zero: {zero / unit:+.4g} {named(unit, s.meaning.unit)} make ours")
+        parts.append(f"counts from another zero: add {zero / unit:+.4g} {named(unit, s.meaning.unit)}")
     return (factor, zero, f"{shown(s.column)} {', and '.join(parts)}") if parts else None

@@ -1,28 +1,34 @@
-r"""What a file of results can be held to, number by number.
+r"""The tolerance of each number of a file of results.
 
 A number q of a file at an independent value x agrees with ours if they differ by at most
 
     T = h_q + S + a + b + 4 eps Q,    S = sum over the independent columns of max |q(x -+ h_x) - q(x)|,
 
-h_q and h_x half a unit of the last digit as written, S what the rounding of x may do to the quantity, taken
-at both ends of all x that are written so (to first order |q'| h_x, and monotonic over such a width), a the
-accuracy that the user says the file has, b our own bound (proven over time; over inputs what the proven bound
-of a pose makes of the number, of forces nothing); and reading, changing the unit and turning
-the sign round four times at most, a component being no more exact than the largest of its quantity, Q, from
-which it is computed. So T is 0 only where the car gives nothing but zeros and the user says that these are
-exact.
+- h_q, h_x: half a unit of the last digit as written.
+- S: the effect of the rounding of x, from both ends of the interval of x. To first order it is |q'| h_x, and
+q is
+  monotonic over such a width.
+- a: the accuracy of the file that the user states.
+- b: our error bound. Over time it is proven; over inputs it follows from the proven bound of the pose, and
+forces have
+  none.
+- 4 eps Q: at most four roundings by reading, unit and sign. Q is the largest number of the quantity, since a
+component
+  is no more accurate than the largest one from which it is computed.
 
-Digits written in full say nothing of how exact a program is: it stops where its own tolerance is met. Where a
-column is in full digits and neither the user nor a map says an accuracy, its program is taken to place every
-point to e = the scene's own tolerance, mm (1e-9 if the scene says none, what `simulate` solves to), and a is
-what that makes of the number at that pose, with the worst signs (`formulations.stated_accuracy`). A travel in
-full digits is reached to e likewise, which goes into S. Rows where such an error may reach a singular pose
-are not tested. Where S alone is as wide as half of the whole range that the quantity
-has in the file, no number of it could tell its curve from a level line: it is not tested. Independent columns
-in even steps are set values, h_x = 0. Where nobody says how another one is rounded, and T is more than ten
-times what it is without that part of S, what agrees only within that is not tested either. Nor is a number of
-the car that agrees where fewer than half of what the file gives of it can be compared: the others would be as
-little tested in a file of them alone.
+So T is 0 only if the car gives only zeros and the user states that these are exact.
+
+Digits written in full do not show how accurate a program is. If a column is in full digits and neither the
+user nor a map states an accuracy, the program is assumed to place every point within e, the scene's
+tolerance, mm (1e-9 if the scene gives none). Then a is the effect of e on the number at that pose, with the
+worst signs (`formulations.stated_accuracy`), and a travel in full digits also has the error e, which is added
+to S. Rows where such an error may reach a singular pose are not tested.
+
+A column is not tested if S is at least half of the quantity's range in the file, because a constant would
+agree too. Independent columns in even steps are set values, h_x = 0. If the rounding of another independent
+column is not stated, and its part of S makes T more than ten times wider, a number that agrees only because
+of it is not tested. A number of the car that agrees is not tested either if fewer than half of its values in
+the file can be compared.
 """
 
 from __future__ import annotations
@@ -47,25 +53,25 @@ from validate.toml_written import key_of
 Array = NDArray[np.float64]
 
 OURS = "pointcoord"
-NO_NUMBERS = "no row has a number of it that can be compared with anything"
+NO_NUMBERS = "no row has a number of it that can be compared"
 NOT_OVER_INPUTS = "rates need a column of time"
-NO_WAY = "no motion leads through the rows in their order, by which forces are bounded"
-# A verdict may not rest on a rounding that nobody states and that widens the tolerance by more than this.
+NO_WAY = "forces need a motion through the rows in their order, and there is none"
+# A verdict may not depend on a rounding that is not stated and widens the tolerance by more than this factor.
 WIDER = 10.0
-# Rows out of reach, or columns, that are named one by one.
+# Largest number of rows or columns named in a note.
 NAMED = 3
 
 
 @dataclass(frozen=True)
 class Held:
-    """A column of a file beside ours.
+    """A column of a file with our numbers and tolerances.
 
     Attributes:
         ours, tolerance: (N,), NaN where there is nothing to compare.
-        swing: the part of the tolerance that the independent columns' rounding makes, (N,).
-        supposed: the part of that which is the rounding of columns whose last digit no map says, (N,).
-        bound: the part that is our own proven bound, (N,).
-        unknown: why ours are not known, in words.
+        swing: the part S of the tolerance, from the rounding of the independent columns, (N,).
+        supposed: the part of `swing` from columns whose rounding is not stated, (N,).
+        bound: the part b, our error bound, (N,).
+        unknown: why we have no numbers, in words.
     """
 
     series: Series
@@ -78,46 +84,46 @@ class Held:
 
     @property
     def close(self) -> Array:
-        """The tolerance, at most WIDER times what it is without what is supposed, (N,)."""
+        """The tolerance, limited to WIDER times the tolerance without `supposed`, (N,)."""
         return np.asarray(np.minimum(self.tolerance, WIDER * (self.tolerance - self.supposed)))
 
     @property
     def gap(self) -> Array:
-        """Difference of every number, (N,), NaN where there is none."""
+        """The difference of every number, (N,), NaN where there is none."""
         return np.abs(self.series.apart(self.ours, self.series.values))
 
     @property
     def share(self) -> Array:
-        """Difference of every number in its tolerance, likewise."""
+        """The difference of every number over its tolerance, likewise."""
         return np.asarray(self.gap / (self.tolerance + SMALLEST))
 
     @property
     def counts(self) -> tuple[int, int]:
-        """How many of its numbers are compared, and how many there are."""
+        """The number of its values that are compared, and the number of its values."""
         return int(np.isfinite(self.share).sum()), int(np.isfinite(self.series.values).sum())
 
     @property
     def few(self) -> bool:
-        """Whether most of its numbers cannot be compared."""
+        """Whether most of its values cannot be compared."""
         compared, there = self.counts
         return 2 * compared < there
 
     @property
     def blind(self) -> bool:
-        """Whether the independent column is too coarse to tell anything of it."""
-        told, swing = (part[np.isfinite(part)] for part in (self.ours, self.swing))
-        wide = float(np.ptp(told)) if len(told) else 0.0
+        """Whether the independent column is too coarse to test it."""
+        ours, swing = (part[np.isfinite(part)] for part in (self.ours, self.swing))
+        wide = float(np.ptp(ours)) if len(ours) else 0.0
         return bool(wide > 0.0 and len(swing) and (swing >= 0.5 * wide).all())
 
 
 def held_of(
     measured: Measured, driven: Driven, accuracy: float | None
 ) -> tuple[list[Held], Solution, tuple[str, ...]]:
-    """Every column beside ours, our solution, and notes.
+    """Every column with our numbers and tolerances, our solution, and notes.
 
     Raises:
         FileError: no row can be reached.
-        MissingLibrary: what digits in full and numbers over inputs need, the extra `validate`.
+        MissingLibrary: full digits and numbers over inputs need the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
     values, least = [s.values for s in measured.independent], driven.scene.tolerance
@@ -163,7 +169,7 @@ def held_of(
         found.append(Held(s, mine, np.where(np.isfinite(mine), allowed, np.nan), swing, supposed, bound))
     reasons = gathered((h.unknown, shown(h.series.column)) for h in found if h.unknown)
     notes += [f"{', '.join(names)} is not tested: {why}" for why, names in reasons.items()]
-    # Which columns have a wider tolerance by an independent one's rounding than by their own digits.
+    # The columns whose tolerance is larger by the rounding of an independent column than by their own digits.
     wide = [h for h in found if np.nanmax(h.supposed, initial=0.0) > np.nanmax(h.series.off, initial=0.0)]
     if wide:
         names = some_of([shown(h.series.column) for h in wide], NAMED)
@@ -184,24 +190,24 @@ def _why_unknown(s: Series, driven: Driven) -> str:
 
 
 def rounded(measured: Measured) -> str:
-    """Which columns that poses are taken from are taken as rounded unasked, and what to say of them."""
+    """The independent columns taken as rounded although this is not stated, and the line for a map."""
     some = [s for s in measured.independent if s.rounded_unasked]
     given = (f"{shown(s.column)} is given to +-{np.max(s.off) / s.factor:.3g}" for s in some)
     lines = ", ".join(f"columns.{key_of(shown(s.column))}.printed = 0" for s in some)
-    return f"{' and '.join(given)}; if that is exact as written, add this line to a map: {lines}"
+    return f"{' and '.join(given)}; if it is exact as written, add this line to a map: {lines}"
 
 
 def _granted(unsaid: Sequence[Series], measured: Measured, tolerance: float) -> str:
     names = some_of([shown(s.column) for s in unsaid], NAMED)
     who = f"{names} {'are' if unsaid[1:] else 'is'}" if len(unsaid) < len(measured.numbers) else "the file is"
     return (
-        f"compared with points placed within {tolerance:g} mm, the scene's tolerance, and with what "
-        f"that makes of each number: {who} in full digits and no --accuracy is given"
+        f"tolerances are for points within {tolerance:g} mm, the scene's tolerance, because {who} in full "
+        "digits and no --accuracy is given"
     )
 
 
 def out_of_reach(measured: Measured, found: Found) -> list[str]:
-    """Why rows are left out, of some one by one."""
+    """Notes on rows that are left out, with the reasons of the first few."""
     lost = sorted(found.reasons)
     notes = [f"{measured.rows[i]} is left out: {found.reasons[i]}" for i in lost[:NAMED]]
     others = [measured.rows[i] for i in lost[NAMED:]]

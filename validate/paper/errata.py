@@ -1,7 +1,7 @@
-"""The paper's errata (see `errata.toml`): which quantities they spoil, and what they come to in numbers.
+"""The paper's errata (see `errata.toml`): the quantities that they make wrong, and their effect in numbers.
 
-What spoils a quantity of a scene, the factor of eq. (23) and the quotient for omega, is also measured scene
-by scene, where the formulas as printed are solved (see `comparison.findings`).
+Two errata make a quantity of a scene wrong: the factor in eq. (23) and the quotient for omega. Their effect
+is also measured for each scene that is solved with the formulas as printed (see `comparison.findings`).
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ class Erratum:
     """One erratum.
 
     Attributes:
-        where: in the paper. wrong: what is wrong there.
-        measures: what it comes to, in numbers; empty of a slip that changes no number.
-        spoils: the quantity whose printed formula is wrong. cause: what is said beside a wrong number of it.
+        where: place in the paper. wrong: what is wrong there.
+        measures: its effect in numbers; empty for a misprint that changes no number.
+        spoils: the quantity whose printed formula is wrong. cause: the text printed beside its wrong numbers.
     """
 
     where: str
@@ -36,7 +36,7 @@ CAUSES: Mapping[str, str] = {one.spoils: one.cause for one in ERRATA if one.spoi
 
 
 def erratum_of(quantity: str, wrong: Collection[str]) -> str:
-    """The erratum behind a wrong quantity; the knuckle's alpha inherits from what it is made of.
+    """The erratum that explains a wrong quantity; the knuckle's alpha inherits the errors of its terms.
 
     Args:
         wrong: all the quantities that are wrong in a scene.

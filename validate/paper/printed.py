@@ -27,7 +27,7 @@ from pointcoord.solve.pointwise import square_velocity_term
 
 Array = NDArray[np.float64]
 
-# A quotient that loses more than two digits is at fault itself, and not its rounding.
+# If a quotient loses more than two digits, the formula is at fault, not its rounding.
 MOST_LOST = 100.0
 
 
@@ -47,7 +47,7 @@ class PrintedParallel(Constraint):
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Told apart by the two coordinate planes."""
+        """The two rows are distinguished by their coordinate planes."""
         return tuple(f"{self.name} ({plane})" for plane in ("yz", "xz"))
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
@@ -69,7 +69,7 @@ _PAPERS = mechanism_file("macpherson").topology("collinear")
 def as_printed(topology: Topology) -> Topology | None:
     """The paper's strut with its cross-product rows (8)-(11), and no coordinates of sliding points.
 
-    None of any other linkage: one whose points slide on other lines, or that has other points.
+    No other linkage is accepted: the points and the lines on which they slide must be those of the paper.
     """
     sliding = [constraint for constraint in topology.constraints if constraint.aligned]
     own = [constraint for constraint in _PAPERS.constraints if constraint.aligned]
@@ -100,7 +100,7 @@ class PrintedQuotients(BodyRates):
 
     @property
     def no_number(self) -> str:
-        """Why a rate may be none."""
+        """Why a rate may not exist."""
         return "the printed quotient divides by zero there"
 
     def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
@@ -120,10 +120,10 @@ class PrintedQuotients(BodyRates):
             return omega, _quotient(hat_65, hat_75, r_75)
 
     def loss(self, edges: Edges, rates: Edges) -> Array:
-        """How many times what least squares loses the quotient may lose, shape (..., 1), at most MOST_LOST.
+        """Factor by which the quotient may lose more digits than least squares, shape (..., 1), <= MOST_LOST.
 
-        A product of vectors a x b or a . r is off by about |a| |b| times their relative error, so the
-        quotient loses |a| |b| / |a x b| and |a| |r| / |a . r| times as much as its factors are off.
+        The error of a product a x b or a . r is about |a| |b| times the relative error of its factors, so
+        the quotient's error is |a| |b| / |a x b| and |a| |r| / |a . r| times that of its factors.
         """
         a, b, r = *rates, edges[1]
         length = np.linalg.norm(a, axis=-1)

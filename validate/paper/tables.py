@@ -1,7 +1,8 @@
-"""The paper's printed Tables 2 and 3 (see `tables.toml`) beside what its own equations give, and its Figures.
+"""The paper's printed Tables 2 and 3 (see `tables.toml`) with the results of its own equations, and its
+Figures.
 
-Figures 5 and 6 are of the bouncing motion of Table 2, 7 and 8 of the steering motion of Table 3: kingpin and
-camber, and the height of the wheel centre, over time. The tables print no angle.
+Figures 5 and 6 show the bouncing motion of Table 2, Figures 7 and 8 the steering motion of Table 3: kingpin
+and camber, then the height of the wheel centre, over time. The tables print no angle.
 """
 
 from __future__ import annotations
@@ -50,10 +51,10 @@ TABLE_2, TABLE_3 = _printed(2), _printed(3)
 
 @dataclass(frozen=True)
 class PaperRow:
-    """A printed row and what we compute at its time.
+    """A printed row and our results at its time.
 
     Attributes:
-        input: the input that our scene has at that time, in the unit of the printed one.
+        input: our scene's input at that time, in the unit of the printed one.
         position_gap: distance between the wheel centres, mm.
         omega_gap, alpha_gap: largest component of the difference of the rates.
     """
@@ -74,7 +75,7 @@ def compare_with_paper() -> tuple[PaperRow, ...]:
 
 
 def root_mean_square(rows: Sequence[PaperRow]) -> float:
-    """Of the coordinates of printed minus computed wheel centres, mm."""
+    """Root mean square of the coordinates of printed minus computed wheel centres, mm."""
     return float(np.sqrt(np.mean([row.position_gap**2 for row in rows]) / 3.0))
 
 

@@ -1,1 +1,1 @@
-"""The same mechanisms in other people's programs. Plain data in; no mechanics of ours but for the inputs."""
+"""The same mechanisms in other programs. They get plain data, and none of our mechanics but the inputs."""

@@ -1,11 +1,11 @@
 """A mechanism in Exudyn: a kinematic tree, whose loops are closed by its spherical joints.
 
-Exudyn's constraints are algebraic equations. Its static solver gives them and their Jacobian, and its sensors
-tell how any point of the tree moves (see `program` for what is done with both). A ball joint of the tree is
-three turns in a row, about the car's axes right, forward and up as drawn; the middle one, a body's camber,
-must not come to a quarter turn. A rod's ball joint has two turns across the rod, for it may turn about
-itself, which changes nothing: the first as nearly as it can about the mechanism's first hinge that is not
-along the rod, since bodies turn farthest about hinges.
+Exudyn's constraints are algebraic equations. Its static solver gives their residuals and their Jacobian, and
+its sensors give the motion of any point of the tree (`program` uses both). A ball joint of the tree is
+three revolute joints in series, about the car's axes right, forward and up as drawn. The middle angle, a
+body's camber, must not reach 90 deg. A rod's ball joint has only two revolute joints, across the rod, because
+a spin of the rod about its own axis has no effect. The axis of the first is as nearly as possible that of the
+mechanism's first hinge that is not along the rod, since bodies turn farthest about hinges.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from validate.spanning_tree.cut import CHASSIS, Joint, Place, car_directions
 
 Array = NDArray[np.float64]
 
-# By name, since what exudyn says of its types is not what its compiled functions take.
+# Imported by name, since exudyn's type hints differ from the arguments that its compiled functions take.
 try:
     exudyn: Any = import_module("exudyn")
     items: Any = import_module("exudyn.itemInterface")
@@ -109,7 +109,7 @@ class InExudyn(Program):
         return first, second
 
     def _tree(self) -> int:
-        """Links of mass 1, on which nothing depends, each with one coordinate."""
+        """Links of mass 1 (no result depends on it), each with one coordinate."""
         kinds, parents, turns, offsets = list[object](), list[int](), list[Array](), list[Array]()
         for joint in self.linkage.tree.joints:
             axes, own = _axes_and_turns(self.linkage, joint)
@@ -145,12 +145,12 @@ class InExudyn(Program):
         return np.asarray(axes.T @ (place.at - origin))
 
     def _read(self, sensors: Sequence[int | None]) -> Array:
-        """What sensors say, (sensors, 3); of the chassis, where there is none, that it is at rest."""
+        """Values of sensors, (sensors, 3); zero for the chassis, which has no sensor and is at rest."""
         system, still = self.system, np.zeros(3)
         return np.array([still if s is None else system.GetSensorValues(s) for s in sensors])
 
     def _sensor(self, tree: int, place: Place, what: str) -> int | None:
-        """A sensor of a place of a body; of the chassis none."""
+        """A sensor at a place of a body; None for the chassis."""
         if place.body == CHASSIS:
             return None
         sensor = items.SensorKinematicTree(
@@ -177,7 +177,7 @@ class InExudyn(Program):
 
 
 def _axes_and_turns(linkage: Linkage, joint: Joint) -> tuple[Array, Sequence[object]]:
-    """Axes of a joint's body as columns, and the joints of one coordinate in a row that it is."""
+    """Axes of a joint's body as columns, and the series of one-coordinate joints that replaces the joint."""
     if joint.body in linkage.tree.rods:
         return _rod_axes(linkage, linkage.tree.rods[joint.body]), TURNS[:2]
     if joint.kind == "ball":

@@ -1,9 +1,9 @@
 """A mechanism in MuJoCo.
 
-MuJoCo's equality constraints are soft: its own solver lets them drift by what its forces need. But it gives
-what each `connect` misses, `efc_pos`, and the Jacobian of that, `efc_J`, to rounding, and that is all that
-Newton's method and the equations of the rates need (see `program`). The model is built by `mjSpec` in
-doubles: an XML file is written with fewer digits.
+MuJoCo's equality constraints are soft: its own solver lets them drift in proportion to their forces. But it
+gives the residual of each `connect`, `efc_pos`, and its Jacobian, `efc_J`, to rounding. Newton's method and
+the equations of the rates need nothing else (see `program`). The model is built by `mjSpec` in doubles,
+because an XML file has fewer digits.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class InMujoco(Program):
         driven = [model.joint(driven.body) for driven in linkage.tree.driven]
         self.driven_at = np.array([joint.qposadr[0] for joint in driven])
         self.driven = np.array([joint.dofadr[0] for joint in driven])
-        # A rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
+        # A rod may spin about its own axis, its body's z axis, without effect: that rate is fixed at 0.
         idle = [model.joint(rod).dofadr[0] + 2 for rod in linkage.tree.rods]
         self.unknown = np.array([i for i in range(model.nv) if i not in (*self.driven, *idle)], dtype=np.intp)
 
@@ -107,7 +107,7 @@ class InMujoco(Program):
 
 
 def spec_of(linkage: Linkage) -> mujoco.MjSpec:
-    """Bodies of mass 1, on which no rate depends; sites for points and for the ends of loops."""
+    """Bodies of mass 1 (no rate depends on it); sites for points and for the ends of loops."""
     spec = mujoco.MjSpec()
     spec.option.gravity = np.zeros(3)
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE

@@ -1,7 +1,7 @@
 """A mechanism in Pinocchio, by its joints' coordinates: the relative-coordinate model.
 
-Points are frames of its model: Pinocchio places them, gives their Jacobians and carries rates and
-accelerations along the tree; the loops are differences of what it says of them.
+Points are frames of its model: Pinocchio gives their positions, Jacobians, rates and accelerations along the
+tree. The loops' residuals are differences of these.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ except ModuleNotFoundError as error:
 
 Array = NDArray[np.float64]
 
-CAR = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED  # a place's own rates, in the car's axes
+CAR = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED  # rates of the place itself, in the car's axes
 
 
 class InPinocchio(Program):
@@ -44,7 +44,7 @@ class InPinocchio(Program):
         joints = [model.joints[self.number[driven.body]] for driven in linkage.tree.driven]
         self.driven_at = np.array([joint.idx_q for joint in joints])
         self.driven = np.array([joint.idx_v for joint in joints])
-        # A rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
+        # A rod may spin about its own axis, its body's z axis, without effect: that rate is fixed at 0.
         idle = [model.joints[self.number[rod]].idx_v + 2 for rod in linkage.tree.rods]
         self.unknown = np.array([i for i in range(model.nv) if i not in (*self.driven, *idle)], dtype=np.intp)
         self.points = self._frames(linkage.points.values())
@@ -111,7 +111,7 @@ class InPinocchio(Program):
         return np.asarray(pinocchio.getFrameJacobian(self.model, self.data, frame, CAR)[:3])
 
     def _rates(self, frame: int) -> tuple[Any, Any]:
-        """Velocity and acceleration of a place, with the turning of its body, in the car's axes."""
+        """Velocity and acceleration of a place, and the angular ones of its body, in the car's axes."""
         model, data = self.model, self.data
         velocity = pinocchio.getFrameVelocity(model, data, frame, CAR)
         return velocity, pinocchio.getFrameClassicalAcceleration(model, data, frame, CAR)

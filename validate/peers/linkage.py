@@ -1,4 +1,4 @@
-"""A mechanism for a program: the tree of its joints, and what is given to the program and read off it."""
+"""A mechanism for a program: the tree of its joints, the program's inputs, and the results read from it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 UNIT_ROUNDOFF = 0.5 * float(np.finfo(float).eps)
 CHAIN = 6.0  # roundings on the way from the chassis to a point
-# What an input may be: an angle is told by its cosine, and rods of no length have no direction.
+# Range of an input: an angle is found from its cosine, and a rod of zero length has no direction.
 BETWEEN = {
     "angle": (0.0, np.pi, "an angle from 0 to pi"),
     "distance": (np.nextafter(0.0, 1.0), np.inf, "a distance above 0"),
@@ -27,7 +27,7 @@ BETWEEN = {
 
 @dataclass(frozen=True)
 class Inputs:
-    """What is given to a program.
+    """The inputs of a program.
 
     Attributes:
         series: of each drive its input with two time derivatives, (N, drives, 3), rad and the linkage's unit.
@@ -53,10 +53,10 @@ class Linkage:
     """A mechanism for a program.
 
     Attributes:
-        plain: the flat mechanism. tree: of it.
+        plain: the flat mechanism. tree: its spanning tree.
         points: every moving point, as a place of a body.
-        bodies: those whose turn is reported, by the name that it is reported by.
-        wheels: what numbers of the wheels are made of.
+        bodies: the bodies whose rotation is reported, by the name under which it is reported.
+        wheels: data for the numbers of the wheels.
     """
 
     plain: Mapping[str, Any]
@@ -67,7 +67,7 @@ class Linkage:
 
     @cached_property
     def frames(self) -> Mapping[str, tuple[Array, Array]]:
-        """Where each body's frame is drawn, and its axes as columns: those of a rod have it as the third."""
+        """Origin of each body's frame as drawn, and its axes as columns; a rod's third axis is the rod's."""
         found = {CHASSIS: (np.zeros(3), np.eye(3))}
         for joint in self.tree.joints:
             rod = self.tree.rods.get(joint.body)
@@ -90,26 +90,26 @@ class Linkage:
         return np.stack(found, axis=-2)
 
     def moved(self, places: Mapping[str, Array]) -> dict[str, float]:
-        """By how much each moving point lies off its place in the drawing, mm."""
+        """Distance of each moving point from its place in the drawing, mm."""
         drawn = self.tree.drawn
         return {n: self.tree.unit * float(np.linalg.norm(place - drawn[n])) for n, place in places.items()}
 
     def accuracy(self, last_step: Array) -> Array:
-        """How exactly a program places points after such a last correction, mm.
+        """Accuracy of a program's points after such a last correction of Newton's method, mm.
 
-        A place at the end of a chain of joints is rounded as its coordinates from the linkage's origin are,
-        once for each joint; Newton's method leaves the square of its last correction.
+        Each joint of the chain from the chassis to a point adds one rounding of the point's coordinates from
+        the linkage's origin; Newton's method leaves the square of its last correction.
         """
         far = max(1.0, *(float(np.abs(place).max()) for place in self.tree.drawn.values()))
         return np.asarray((CHAIN * UNIT_ROUNDOFF * far + last_step**2) * self.tree.unit)
 
     def inputs(self, laws: Mapping[str, Array]) -> Inputs:
-        """What is given to a program.
+        """The inputs of a program.
 
         Args:
             laws: every input's value and two time derivatives, (N, 3), rad or mm per s^d.
         Raises:
-            NoAnswer: an input is missing, is no number, or is outside of what it can be.
+            NoAnswer: an input is missing, is not a number, or is outside its range.
         """
         for name, law in laws.items():
             _require(name, law, np.asarray(np.isfinite(law).all(axis=1)), "finite numbers and rates")
@@ -134,7 +134,7 @@ def _require(name: str, law: Array, right: NDArray[np.bool_], allowed: str) -> N
 
 
 def _refused(name: str, value: float | str, allowed: str, instant: int | None = None) -> NoAnswer:
-    """The refusal of an input by its value."""
+    """The error for an input whose value is refused."""
     where = "" if instant is None else f" at instant number {instant}"
     return NoAnswer(f"input {name!r}", f"is {value}{where}", allowed, name=name, value=value, instant=instant)
 
@@ -143,7 +143,7 @@ def linkage_of(plain: Mapping[str, Any]) -> Linkage:
     """The joints and loops of a flat mechanism.
 
     Raises:
-        NoAnswer: it makes no mechanism.
+        NoAnswer: it is not a mechanism.
     """
     tree = cut(plain)
     return Linkage(

@@ -1,6 +1,7 @@
 """A car as an MJCF file: the model that `in_mujoco` builds, in m, with x rearward, y right and z up.
 
-The text is that of `mjSpec`, which prints six digits; places and axes are written again in full.
+The text is written by `mjSpec`, which prints six digits; positions and axes are then replaced in full
+precision.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from validate.spanning_tree.cut import CHASSIS, Joint, Place
 Array = NDArray[np.float64]
 
 MM = 1e-3  # m
-# Of the car's size: a point's ball and the radius of a link.
+# Shares of the car's size: the radius of a point's ball and of a link.
 BALL, LINK = 0.008, 0.003
 LINK_COLOUR, POINT_COLOUR = [0.45, 0.5, 0.55, 1.0], [0.85, 0.3, 0.15, 1.0]
 # N/m and N s/m, or of angles, on bodies of 1 kg and 1 kg m^2: slow beside MuJoCo's time step of 2 ms.
@@ -41,7 +42,7 @@ def mjcf_of(plain: Mapping[str, Any], title: str) -> str:
     """The MJCF file of a flat mechanism; inputs that are joints of it have actuators.
 
     Raises:
-        NoAnswer: it is no mechanism.
+        NoAnswer: it is not a mechanism.
     """
     linkage = _in_metres(_with_joints_driven(_z_up(plain)))
     spec = spec_of(linkage)
@@ -78,7 +79,7 @@ def _z_up(plain: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _with_joints_driven(plain: Mapping[str, Any]) -> Linkage:
-    """With those inputs alone that drive a joint which the mechanism has anyway."""
+    """The same with only those inputs that drive a joint of the mechanism itself."""
     bare = linkage_of({**plain, "inputs": {}})
     own = {joint.body for joint in bare.tree.joints}
     kept = {driven.input for driven in linkage_of(plain).tree.driven if driven.body in own}
@@ -88,7 +89,7 @@ def _with_joints_driven(plain: Mapping[str, Any]) -> Linkage:
 
 
 def _in_metres(linkage: Linkage) -> Linkage:
-    """Counted from the car's own origin, in m."""
+    """Relative to the car's own origin, in m."""
     tree = linkage.tree
 
     def metres(at: Array) -> Array:
@@ -107,7 +108,7 @@ def _in_metres(linkage: Linkage) -> Linkage:
 
 
 def _drawn(spec: mujoco.MjSpec, linkage: Linkage) -> None:
-    """Balls at points, and links from each body's origin to its points and loops; they touch nothing."""
+    """Balls at points, and links from each body's origin to its points and loops; none of them collides."""
     size = float(np.ptp([place.at for place in linkage.points.values()], axis=0).max())
     looks = {"contype": 0, "conaffinity": 0, "mass": 0.0}
     ends = [end for loop in linkage.tree.loops for end in (loop.first, loop.second)]
@@ -133,7 +134,7 @@ def _drawn(spec: mujoco.MjSpec, linkage: Linkage) -> None:
 
 
 def _text(spec: mujoco.MjSpec, note: str) -> str:
-    """The file, with all digits of what places bodies, joints and sites."""
+    """The file, with all digits of the positions and axes of bodies, joints and sites."""
     root = ElementTree.fromstring(spec.to_xml())
     for kind, keys in (("body", ("pos", "quat")), ("joint", ("axis",)), ("site", ("pos",))):
         for element in root.iter(kind):

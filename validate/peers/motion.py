@@ -1,4 +1,4 @@
-"""What a program found: poses of a linkage at inputs, how they change, and how that is reported."""
+"""Results of a program: poses of a linkage at given inputs, their rates, and the numbers reported."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from validate.spanning_tree.wheels import OF_CAR, components
 
 Array = NDArray[np.float64]
 Rates = dict[str, dict[str, Array]]
-"""Velocity and acceleration of every moving point, in the linkage's unit, and of the turns of the bodies that
-are reported, by quantity and name, (N, 3).
+"""Velocity and acceleration of every moving point, in the linkage's unit, and angular velocity and
+acceleration of the reported bodies, by quantity and name, (N, 3).
 """
 
 
@@ -33,7 +33,7 @@ class Poses:
         coordinates: the program's own, (N, ...).
         places: of every moving point, (N, 3).
         last_step: the last correction of Newton's method, rad and car sizes, (N,).
-        counts: what was done.
+        counts: effort of the solver.
     """
 
     inputs: Array
@@ -60,13 +60,13 @@ def numbers(
     rates: Rates | None = None,
     effects: Iterable[str] = ANGLES,
 ) -> dict[str, dict[str, Array]]:
-    """All that is known of a motion, by quantity and name, in the car's axes, mm, s and rad.
+    """All quantities of a motion, by quantity and name, in the car's axes, mm, s and rad.
 
-    How the chassis moves and what a wheel's numbers are is the reference's: a program is a witness of where
-    points of the mechanism are relative to the chassis, and how they move there.
+    The motion of the chassis and the numbers of the wheels are computed by the reference's code. The program
+    only confirms the positions and rates of the mechanism's points relative to the chassis.
 
     Args:
-        inputs: what moves the chassis; it rests where there are none.
+        inputs: the inputs that move the chassis; without any, the chassis is at rest.
         effects: names of the numbers of the wheels that are wanted, see `spanning_tree.wheels`.
     """
     tree, unit, still = linkage.tree, linkage.tree.unit, np.zeros((len(poses.inputs), 3))
@@ -102,5 +102,5 @@ def _jets(states: Sequence[Array]) -> Vector:
 
 
 def _states(vector: Vector, count: int, still: Array) -> list[Array]:
-    """The other way round; a rate that is not there is zero."""
+    """The inverse of that; a missing rate is zero."""
     return [np.stack([jet.part(order) + still[:, 0] for jet in vector], axis=-1) for order in range(count)]

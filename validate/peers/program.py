@@ -1,21 +1,22 @@
-r"""A linkage in somebody's program: the program says what its loops miss, Newton's method closes them.
+r"""A linkage in another program: the program gives its loops' residuals, and Newton's method closes the
+loops.
 
-A program places its bodies from its joints' coordinates q, and says how far the two sides of each loop are
-apart, r, and the Jacobian J of that by the joints' rates. With u the unknown and d the driven joints,
+A program places its bodies from its joints' coordinates q. It gives the gap between the two sides of each
+loop, r, and the Jacobian J of r by the joints' rates. With u the unknown and d the driven joints,
 
     J_u dq = -r,    J_u v_u = -J_d v_d,    J_u a_u = -J_d a_d - (dJ/dt) v.
 
-The last two terms are how the sides of the loops accelerate apart while the unknown joints do not, which
-programs tell of any point. Rows of J_u that depend on others in the drawing are left out, and what they miss
-is looked at in every pose. Two assemblies meet where the determinant of a diagonal block of J_u is zero, so
-their signs stay those of the drawing.
+The last two terms are the relative acceleration of the two sides of the loops while the unknown joints do not
+accelerate; a program gives the acceleration of any point. Rows of J_u that depend on other rows in the
+drawing are left out, and their residual is checked in every pose. Two assemblies meet where the determinant
+of a diagonal block of J_u is zero, so the signs of these determinants must stay those of the drawing.
 
-From one pose to the next the inputs go straight, and a part of the way is taken where the second Newton step
-is a quarter of the first one at most, so that there is a pose all along it (Deuflhard, Newton Methods for
-Nonlinear Problems, 2011, ch. 5). Where branches cross, the determinant keeps its sign on a way that goes over
-to another branch, but that way has a corner there (Allgower and Georg, Numerical Continuation Methods, 1990,
-ch. 8). So the direction of the way, (v_u, v_d), changes little on a part of it, and a way that came so near
-to a singular pose that rounding mixes branches is not followed away from it.
+From one pose to the next the inputs change along a straight line. A step is accepted if the second Newton
+correction is at most a quarter of the first, so that there is a pose at every place of the step (Deuflhard,
+Newton Methods for Nonlinear Problems, 2011, ch. 5). Where branches cross, a path that changes to another
+branch keeps the sign of the determinant, but has a corner there (Allgower and Georg, Numerical Continuation
+Methods, 1990, ch. 8). Therefore the direction of the path, (v_u, v_d), may change only little in a step, and
+a path that came so near to a singular pose that rounding mixes the branches is not followed any further.
 """
 
 from __future__ import annotations
@@ -35,38 +36,40 @@ from validate.spanning_tree.determined import blocks, independent_rows
 
 Array = NDArray[np.float64]
 
-# Newton's method doubles its digits: six steps lead from half a digit to all, and twice that leaves room.
+# Newton's method doubles its correct digits: six steps lead from half a digit to all; this is twice that.
 LIMIT = 12
-# rad and car sizes: a step that is longer may lead to another assembly, and the way is halved.
+# rad and car sizes: a longer step may lead to another assembly, so the step of the inputs is halved.
 LONGEST_STEP = 0.25
-# The same where the second step is more than this part of the first: then a pose nearby is not sure.
+# Halved also if the second step is more than this share of the first: then a pose nearby is not certain.
 CONTRACTED = 0.25
-# Of the larger of two directions at the ends of a part of the way: how far they may be apart.
+# Greatest difference between the directions at the two ends of a step, relative to the larger one.
 CORNER = 0.5
-# Branches that cross are 1 / C apart where the condition number is C, and rounding U moves a pose by U C:
+# Crossing branches are 1 / C apart where the condition number is C, and rounding U moves a pose by U C:
 # above an eighth of the inverse root of U a corner between them is not seen.
 BLURRED = 2.0**23
 HALVINGS = 44
-# Car sizes. What depends on other rows is missed by the square of the last step, and by rounding raised by
+# Car sizes. The residual of a dependent row is the square of the last step plus the rounding multiplied by
 # the condition number, some 1e-13 of the car.
 HELD = 1e-11
 # Below the root of the rounding unit a step that does not halve is rounding.
 ROUNDING_STEP = 1e-8
-# At a fold a rounding U moves the pose by its root: beyond this condition number its sides are one.
+# At a fold a rounding U moves the pose by sqrt(U): above this condition number its two sides cannot be told
+# apart.
 FOLDED = 2.0**26
-# Of a row's length: what rounding makes of a joint that does not move a loop.
+# Share of a row's length: the rounding of an entry for a joint that does not move the loop.
 TURNED = 1e-14
-FREE = "as many inputs as there are freedoms, and no singular drawing"
+FREE = "as many inputs as degrees of freedom, and a drawing that is not singular"
 
 
 class Program(ABC):
-    """A linkage in a program, which keeps the pose that was computed last; not for two threads.
+    """A linkage in a program. It keeps the pose that was computed last, so it is not safe for several
+    threads.
 
     Attributes:
-        as_drawn: coordinates of the joints as the car is drawn.
+        as_drawn: coordinates of the joints in the drawing.
         driven_at: places among them of those that are driven.
         driven, unknown: places among the joints' rates, of those that are driven, and of all that are free.
-        rows: that are solved.
+        rows: the rows that are solved.
         blocks: rows and columns of the diagonal blocks of J_u. drawn: signs of their determinants as drawn.
         jacobian: J of the last Newton step.
         way: direction of the way at the last pose. begun: the condition number where it begins; nearest: the
@@ -101,24 +104,24 @@ class Program(ABC):
 
     @abstractmethod
     def misses(self) -> tuple[Array, Array]:
-        """Place all bodies; what the loops miss, (rows,), and its Jacobian by the joints' rates."""
+        """Place all bodies; the loops' residual, (rows,), and its Jacobian by the joints' rates."""
 
     @abstractmethod
     def places(self) -> Array:
-        """Place all bodies; where the linkage's points are, (points, 3)."""
+        """Place all bodies; the positions of the linkage's points, (points, 3)."""
 
     @abstractmethod
     def set_rates(self, rates: Array) -> None:
-        """Set the joints' rates, at the pose that `misses` was asked of."""
+        """Set the joints' rates, at the pose of the last call of `misses`."""
 
     @abstractmethod
     def apart(self, accelerations: Array) -> Array:
-        """How the sides of the loops accelerate apart with these accelerations of the joints, (rows,)."""
+        """Relative acceleration of the two sides of the loops for these joint accelerations, (rows,)."""
 
     @abstractmethod
     def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        """Rates and accelerations with these of the joints: of all points, and then of the reported bodies'
-        turns, (points + bodies, 3) each.
+        """Velocities and accelerations for these joint rates and accelerations: of all points, then the
+        angular ones of the reported bodies, (points + bodies, 3) each.
         """
 
     def closed(self, tolerance: float) -> Poses:
@@ -127,7 +130,7 @@ class Program(ABC):
         Args:
             tolerance: Newton's method ends with a correction of all joints below it, rad and car sizes.
         Raises:
-            NoAnswer: it is no mechanism that its inputs drive, or does not close as the assembly drawn.
+            NoAnswer: its inputs do not drive the mechanism, or it does not close in the drawn assembly.
         """
         counted, drawn = Counter[str](), self.linkage.drawn_inputs
         self.put(self.as_drawn)
@@ -149,7 +152,7 @@ class Program(ABC):
         self.drawn = self.signs(unknown[self.rows])
         step = self._newton(drawn, tolerance, counted, shorten=True)
         if step is None:
-            raise self._refusal("cannot be closed as the assembly that is drawn", None, drawn, drawn)
+            raise self._refusal("cannot be closed in the drawn assembly", None, drawn, drawn)
         condition, _ = self._folded()
         if not condition < FOLDED:
             raise self._refusal("lies on a fold", None, drawn, drawn)
@@ -161,7 +164,7 @@ class Program(ABC):
         Args:
             inputs: of the drives, (N, drives), rad and the linkage's unit.
             tolerance: see `closed`.
-            start: whose last pose the first one is solved from.
+            start: the motion from whose last pose the first pose is solved.
         Raises:
             NoAnswer: a pose is not reached without meeting another assembly; `partial` has those before.
         """
@@ -185,7 +188,7 @@ class Program(ABC):
             if not isinstance(self.rows, slice):
                 missed = float(np.abs(self.misses()[0]).max())
                 if not missed <= HELD + step**2:
-                    words = f"misses closures that depend on others as drawn by {missed:.3g}"
+                    words = f"violates closures that are dependent in the drawing by {missed:.3g}"
                     raise refusal(words, i, inputs[i])
         return self._named(inputs, coordinates, places, steps, counted)
 
@@ -239,7 +242,7 @@ class Program(ABC):
         """Follow the inputs to a goal, by halves where Newton's method would step too far.
 
         Returns:
-            The share of the way that is gone, and the last step.
+            The share of the way that was followed, and the last step.
         """
         done, share, last = 0.0, 1.0, 0.0
         way, condition = self._way(start, goal - start)
@@ -265,7 +268,7 @@ class Program(ABC):
         return done, last
 
     def _turns_off(self, way: Array, condition: float) -> bool:
-        """Whether the way may have gone over to another branch since the last pose."""
+        """Whether the path may have changed to another branch since the last pose."""
         largest = max(float(np.abs(each).max(initial=0.0)) for each in (way, self.way))
         corner = not np.abs(way - self.way).max(initial=0.0) <= CORNER * largest
         return corner or (self.nearest > BLURRED and condition < 0.5 * self.nearest)
@@ -274,7 +277,7 @@ class Program(ABC):
         """Rates of the joints at the last Newton step, (unknown + driven,), for these of the inputs.
 
         Returns:
-            These, no numbers at a singular pose, and the condition number of J_u.
+            The rates, NaN at a singular pose, and the condition number of J_u.
         """
         driven = self.linkage.coordinates(np.stack([inputs, rates, np.zeros(len(rates))], axis=-1))[:, 1]
         jacobian, count = self.jacobian[self.rows], len(self.unknown)
@@ -293,7 +296,7 @@ class Program(ABC):
         """Close the loops at inputs; the last step, None if it fails.
 
         Args:
-            shorten: whether a step that is too long is shortened, or fails.
+            shorten: whether a step that is too long is shortened; if not, it fails.
         """
         self._at(inputs)
         unknown, previous = self.unknown, np.inf
@@ -327,10 +330,10 @@ class Program(ABC):
         return None
 
     def _folded(self) -> tuple[float, tuple[str, ...]]:
-        """Condition number of J_u at this pose, and what holds each other where it is nearly singular.
+        """Condition number of J_u at this pose, and the parts that lock each other if it is nearly singular.
 
-        By the multipliers of the rows that nearly balance, u J_u = 0, and what they ask of the drives, u J_d:
-        names of those above half of the largest, the strongest first.
+        From the multipliers u of the rows that nearly cancel, u J_u = 0, and their loads on the drives, u
+        J_d: names of those above half of the largest, the strongest first.
         """
         jacobian = self.misses()[1][self.rows]
         if not len(self.unknown):
@@ -345,7 +348,7 @@ class Program(ABC):
             return float(sizes[0] / sizes[-1]), tuple(dict.fromkeys(strong))
 
     def _refusal(self, problem: str, instant: int | None, wanted: Array, reached: Array) -> NoAnswer:
-        """Why a pose is none, told at the one that was solved last."""
+        """Why a pose is not reached, judged at the pose that was solved last."""
         condition, links = self._folded()
         told = self.linkage.tree.told
         asked, last = told(wanted), told(reached)

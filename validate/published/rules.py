@@ -1,7 +1,7 @@
-"""How columns of printed tables are made of our numbers.
+"""Rules that compute the columns of printed tables from our numbers.
 
-Most are one of them. Each other rule was found by making the printed numbers again; a table says of which
-columns none is known.
+Most columns are one of our numbers. Each other rule was found by reproducing the printed numbers. A table
+lists the columns for which no rule is known.
 """
 
 from __future__ import annotations
@@ -34,10 +34,11 @@ class Solved:
 
 @dataclass(frozen=True)
 class Rule:
-    """How a printed column is made.
+    """The rule of a printed column.
 
     Attributes:
-        quantity: the kind of number (see `QUANTITIES`); empty where we have none. unit: of what `of` gives.
+        quantity: the kind of number (see `QUANTITIES`); empty if we have none. unit: unit of the values of
+            `of`.
         of: the column, (N,), NaN where it does not exist.
     """
 
@@ -70,7 +71,7 @@ def _length(of: Callable[[Solved], Array]) -> Rule:
 RULES: Mapping[str, Rule] = {
     # Wheel over damper, by the travel of the contact point: -dz_c / dl.
     "damper_ratio": Rule("dimension_gradient", "mm/mm", _ratio),
-    # The damper's length less its drawn one.
+    # The damper's length minus its drawn length.
     "damper_travel": _length(lambda car: car.numbers["damper_length"] - _drawn_length(car, "damper")),
     # Of a front axle.
     "wheelbase_change": _length(lambda car: -car.numbers["recession"]),
@@ -83,11 +84,11 @@ RULES: Mapping[str, Rule] = {
     # The turning radius, printed as 0 straight ahead.
     "turning_circle": _length(lambda car: np.where(car.over == 0.0, 0.0, car.numbers["turning_radius"])),
 }
-"""Columns that are none of our numbers."""
+"""Columns that are not simply one of our numbers."""
 
 
 def rule_of(name: str) -> Rule:
-    """A number of ours as it is, or a rule by its name."""
+    """The rule of a name: one of our numbers unchanged, or a rule of this file."""
     if name in RULES:
         return RULES[name]
     number = number_called(name)

@@ -1,6 +1,6 @@
-"""Printed tables of other programs, and how far each of our two models is from every column.
+"""Printed tables of other programs, and the difference of each of our two models from every column.
 
-What is shipped here are printed numbers, with their source and under which licence that is to be had.
+This folder contains the printed numbers, their source, and the licence of the source.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ NOT_HELD = "rule not known"
 
 @dataclass(frozen=True)
 class Table:
-    """A printed table; `tables.toml` says what its entries mean.
+    """A printed table; `tables.toml` explains its entries.
 
     Attributes:
-        name: of its file in the folder. title: for people.
+        name: name of its file in the folder. title: heading for the reader.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Table:
     open: Mapping[str, str] = field(default_factory=dict)
 
     def scene_over(self, printed: Columns) -> Scene:
-        """The car with its driven input at the rows of the first column, which are its instants.
+        """The car with the driven input of the first column; the instants are the table's rows.
 
         Raises:
             FileError: the rows are not in even steps.
@@ -64,7 +64,7 @@ class Table:
         inputs = scene.inputs | {self.drives: InputPart(polynomial=(0.0, per))}
         time = scene.time.model_copy(update=ends)
         there = scene.model_copy(update={"time": time, "inputs": inputs})
-        # Instants are made of their ends, in another order of sums than the table's.
+        # Instants are interpolated from the end values, so their rounding differs from the table's.
         if np.abs(there.instants - over).max() > 1e-14 * np.abs(over).max():
             raise FileError(printed.source, printed.names[0], "is not in even steps", "rows in even steps")
         return there
@@ -78,12 +78,12 @@ def tables() -> tuple[Table, ...]:
 
 @dataclass(frozen=True)
 class Column:
-    """A printed column beside ours.
+    """A printed column and our values.
 
     Attributes:
-        name, unit: as printed. per: how many of our unit that is.
-        printed: (N,), in our unit. ours: likewise, of each model.
-        rows: the comparison with each. open: why they decide nothing; empty where they do.
+        name, unit: as printed. per: size of this unit in our unit.
+        printed: (N,), in our unit. ours: the same from each model.
+        rows: the comparison with each model. open: why the column is not judged; empty if it is judged.
     """
 
     name: str
@@ -96,7 +96,7 @@ class Column:
 
     @property
     def verdict(self) -> str:
-        """What both models say together."""
+        """The common verdict of both models."""
         if self.open:
             return NOT_HELD
         return "disagrees" if any(row.verdict == "disagrees" for row in self.rows) else "agrees"
@@ -104,11 +104,11 @@ class Column:
 
 @dataclass(frozen=True)
 class Published:
-    """A printed table beside what the car gives at the same places.
+    """A printed table and the results of the car at the same rows.
 
     Attributes:
         over: the first column, with its unit. at: its rows, (N,).
-        columns: every one beside it. outcomes: the comparison with each model, of those that decide.
+        columns: the other columns. outcomes: the comparison with each model, of the columns that are judged.
     """
 
     table: Table
@@ -129,7 +129,7 @@ def compare_published() -> tuple[Published, ...]:
 
 
 def compare_table(table: Table) -> Published:
-    """A table beside both models, held to its own printed digits.
+    """Compare a table with both models, to its own printed digits.
 
     Raises:
         FormulationError: a model refuses the car; MissingLibrary: it is not installed.
@@ -140,7 +140,7 @@ def compare_table(table: Table) -> Published:
     solutions = [formulation(name).solve(scene) for name in MODELS]
     solved = [_solved(over, scene, solution) for solution in solutions]
     columns = tuple(_column(table, printed, i, solutions, solved) for i in range(1, len(printed.names)))
-    told = [f"{one.name} decides nothing: {one.open}" for one in columns if one.open]
+    told = [f"{one.name} is not judged: {one.open}" for one in columns if one.open]
     notes = tuple(note for note in (table.note, *told) if note)
     theirs = Solution(table.title, over, {}, Accuracy(np.ones(len(over))))
     outcomes = tuple(
@@ -160,11 +160,11 @@ def _solved(over: Array, scene: Scene, solution: Solution) -> Solved:
 def _column(
     table: Table, printed: Columns, i: int, solutions: Sequence[Solution], solved: Sequence[Solved]
 ) -> Column:
-    """A printed column beside both models.
+    """Compare a printed column with both models.
 
-    Half a unit of the last digit is what printing rounds off; beside it stand what the table's own program
-    leaves out, and the error bound that a model states with a number. Of a rule no bound is added: beside
-    printed digits what models round is nothing, and a table in full has an accuracy.
+    Allowed is half a unit of the last printed digit, plus the stated error of the table's own program, plus
+    the error bound that a model gives for a number. For a rule no bound is added: a model's rounding is
+    negligible beside printed digits, and a table in full precision has a stated accuracy.
     """
     name, unit, over = printed.names[i], printed.units[i], printed.values[0]
     what = table.columns[name]
@@ -176,7 +176,8 @@ def _column(
     rows = []
     for values, solution in zip(ours, solutions, strict=True):
         gap = np.abs(values - theirs)
-        # What does not exist is no distance where the rule is not known, and the worst one where it is.
+        # A value that does not exist counts as no difference if the rule is not known, else as an infinite
+        # one.
         gap[np.isnan(gap)] = 0.0 if name in table.open else np.inf
         allowed = off + solution.accuracy.claims.get(rule.quantity, {}).get(what, 0.0)
         share = gap / (allowed + SMALLEST)
@@ -203,6 +204,6 @@ def _column(
 
 
 def _factor(unit: str, ours: str) -> float:
-    """How many of our unit one of a table's is; NaN, which agrees with nothing, where it is no such unit."""
+    """Size of a table's unit in our unit; NaN, which agrees with nothing, if it is not such a unit."""
     factor = 1.0 if unit == ours else factor_of(unit, ours)
     return nan if factor is None else factor

@@ -1,30 +1,31 @@
-r"""A mechanism as any multibody program takes it: bodies on joints, a tree, and ball joints that close it.
+r"""A mechanism in the form that any multibody program takes: bodies on a tree of joints, and closing ball
+joints.
 
-Every body hangs on one joint, on another body or on the chassis. Joints with few coordinates are taken
-first, those at the chassis before others: hinges, sliding joints, then ball joints. A body that only rods or
-lines hold hangs on the chassis by six coordinates, and a point of no body is a body of its own, which slides
-along its line or moves freely.
+Every body is connected by one joint to its parent, another body or the chassis. Joints with few coordinates
+are chosen first, and those at the chassis before others: hinges, sliding joints, then ball joints. A body
+that is held by rods or lines only is connected to the chassis by six coordinates. A point of no body is a
+body of its own, which slides along its line or moves freely.
 
-What is not taken closes the tree, and so does every rod. Programs have few closures and drives in common, so
-that all are made of joints and of ball joints that close loops:
+Each joint that is not chosen becomes a closure of the tree, and so does every rod. Programs have few closures
+and drives in common, so all closures and drives are built from joints and from ball joints that close loops:
 
     a point on a line      a body that slides along it, and a ball joint with the point
-    a rod                  a body on a ball joint at one end, whose spin is held, and one at the other end
-    a driven distance      likewise, and the rod is a driven slide
+    a rod                  a body on a ball joint at one end, whose spin is fixed, and one at the other end
+    a driven distance      the same, and the rod is a driven slide
     a driven height,       a body on three slides at right angles, of which the first is driven, and a ball
     angle or travel        joint with the point; if it counts from a point that moves, on three slides more
     a driven hinge         itself
-    directions at right    two points along the first one, as far along the second one: bodies on two slides
-    angles                 each, which stand on one slide
-    the ground             a body on a driven joint for each input that moves the chassis, which goes back
-    a wheel's contact      a body on a hinge about the wheel's axis, one radius down of which is driven; a
-    point                  line across it stays level, likewise
+    directions at right    two points along the first direction that stay equally far along the second one:
+    angles                 bodies on two slides each, which are carried by one slide
+    the ground             a body on a driven joint for each input that moves the chassis, in the reverse
+    sense a wheel's contact      a body on a hinge about the wheel's axis; the point one radius below is
+    driven, and point                  a line across it stays level, by closures as above
 
-An angle is driven by the height that it stands for, size x cos(angle).
+An angle is driven by the corresponding height, size x cos(angle).
 
-In the reference pose all joint coordinates are zero, and every body is where it is drawn with the axes of
-the car's frame. Only a point of no body that is drawn off its line starts on the line. Lengths are counted
-from `origin` in `unit`, in which the car has a size between one and two.
+In the reference pose all joint coordinates are zero; every body is at its drawn place and has the axes of
+the car's frame. Exception: a point of no body that is drawn off its line starts on the line. Lengths are
+measured from `origin` in `unit`; in this unit the car's size is between one and two.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ Array = NDArray[np.float64]
 
 CHASSIS = "chassis"
 NO_AXIS = np.zeros(3)
-TINIEST = 1e-250  # mm: the square of a smaller car is no normal number
-# Of the car: points that miss a line by this many roundings are drawn on it.
+TINIEST = 1e-250  # mm: the square of a smaller car is not a normal floating-point number
+# Share of the car's size: points that are nearer to a line count as drawn on it.
 ON_LINE = 16.0 * float(np.finfo(float).eps)
 Kind = Literal["hinge", "ball", "slide"]
 COORDINATES: Mapping[Kind, int] = {"hinge": 1, "slide": 1, "ball": 3}
@@ -84,7 +85,7 @@ class Loop:
     """A ball joint that closes the tree: a place of one body that a place of another one must meet.
 
     Attributes:
-        name: of the point, rod, slide or input that it stands for.
+        name: name of the point, rod, slide or input that it represents.
     """
 
     name: str
@@ -97,10 +98,9 @@ class Driven:
     """A joint that is driven: its coordinate is scale x f(input) + start, with f the cosine of an `angle`.
 
     Attributes:
-        body: that the joint carries.
+        body: the body that the joint carries.
         drawn: value of the input in the drawing, rad or in the tree's unit.
-        per_input: the mm that a unit of the user's input stands for, of a length; a steering wheel's turn has
-            another than 1.
+        per_input: for a length, mm per unit of the user's input; not 1 for the turn of a steering wheel.
     """
 
     input: str
@@ -132,10 +132,10 @@ class SpanningTree:
     """A mechanism as a tree with closures.
 
     Attributes:
-        joints: of the tree and of what closes and drives it, parents first; also of bodies between two
-            joints, which no point is of.
-        rods: bodies on a ball joint whose spin about the axis changes nothing.
-        points: every point, as a place of the body that is nearest to the chassis.
+        joints: joints of the tree, of its closures and of its drives, parents first; also those of auxiliary
+            bodies without points, between two joints.
+        rods: bodies on a ball joint whose spin about the axis has no effect.
+        points: every point, as a place of that of its bodies that is nearest to the chassis.
         drawn: every point as drawn, (3,).
         origin, unit: mm.
     """
@@ -162,7 +162,7 @@ class _Edge:
     """A possible joint of the tree, or two in a row.
 
     Attributes:
-        slide: whose it is, if it is one's.
+        slide: the name of its slide, if it is a sliding joint.
     """
 
     bodies: tuple[str, str]
@@ -177,7 +177,7 @@ class _Edge:
 
 
 class _Groups:
-    """Sets that grow together (union-find)."""
+    """Sets that are merged (union-find)."""
 
     def __init__(self) -> None:
         self._above: dict[Any, Any] = {}
@@ -199,7 +199,7 @@ def unit_vector(vector: Array, start: str, end: str) -> Array:
     """Unit vector from one point to another.
 
     Raises:
-        NoAnswer: they are at one place.
+        NoAnswer: they coincide.
     """
     size = float(np.linalg.norm(vector))
     if size == 0.0:
@@ -216,7 +216,7 @@ def across(axis: Array) -> tuple[Array, Array]:
 
 
 def turned_least(vector: Array, line: Array, other: Array) -> Array:
-    """A vector turned by the smallest rotation of one unit vector into another, of either sense."""
+    """A vector after the smallest rotation of one unit vector to the line of another, in either sense."""
     cosine, axis = float(line @ other), np.cross(line, other)
     if cosine < 0.0:
         cosine, axis = -cosine, -axis
@@ -228,13 +228,13 @@ def cut(plain: Mapping[str, Any]) -> SpanningTree:
     """The tree of a flat mechanism.
 
     Raises:
-        NoAnswer: points that must be apart are at one place or on one line, or the car has no size.
+        NoAnswer: points that must differ coincide or lie on one line, or the car has no size.
     """
     return _Cutter(plain).tree()
 
 
 class _Cutter:
-    """A flat mechanism while it is cut."""
+    """State of a flat mechanism while it is cut into a tree."""
 
     def __init__(self, plain: Mapping[str, Any]) -> None:
         located = {name: np.array(place, dtype=float) for name, place in plain["points"].items()}
@@ -267,10 +267,11 @@ class _Cutter:
         self.driven: list[Driven] = []
 
     def _sliding_rods(self) -> dict[str, tuple[str, str, str, Array]]:
-        """Rods along a line with one end on a point of a body: the other end rides on the rod, which slides.
+        """Rods along a slide's line with one end at a point of a body: the rod itself slides and carries its
+        other end.
 
         Returns:
-            By rod its slide, the held end, the other one, and the foot of the held end on the line.
+            For each rod its slide, the end at the body, the other end, and the first end's foot on the line.
         """
         found: dict[str, tuple[str, str, str, Array]] = {}
         for rod, ends in self.rods.items():
@@ -336,7 +337,7 @@ class _Cutter:
         return np.asarray(through + float((self.drawn[point] - through) @ axis) * axis)
 
     def _sliding(self, slide: Mapping[str, Any]) -> dict[str, list[str]]:
-        """Points of a slide by the body that they are of; of several bodies the one with the most of them."""
+        """Points of a slide by their body; of a point's bodies, the one with the most points of the slide."""
         found: dict[str, list[str]] = {}
         for point in slide["points"]:
             bodies = [b for b in self.holders[point] if b != slide["body"]]
@@ -371,7 +372,7 @@ class _Cutter:
         return found
 
     def _require_width(self, body: str, start: str, axis: Array) -> None:
-        """A moving body on a hinge has a point beside it."""
+        """Raise `NoAnswer` unless a moving body on a hinge has a point beside the hinge."""
         if body == CHASSIS:
             return
         for p in self.bodies[body]:
@@ -409,7 +410,7 @@ class _Cutter:
             left = [body for body in self.bodies if body not in reached]
             if not left:
                 return joints
-            # The body with the most points: what else is there hangs on it.
+            # The body with the most points: the remaining bodies are then connected to it.
             root = max(left, key=lambda body: len(self.bodies[body]))
             joints += self._floating(root)
             reached.append(root)
@@ -425,7 +426,7 @@ class _Cutter:
         return Place(body, self.at[point])
 
     def _close(self, edges: list[_Edge]) -> None:
-        """Close what the tree's joints leave open."""
+        """Add the closures for all that the tree's joints do not hold."""
         met, numbers = _Groups(), count()
         for edge in self.taken:
             if not edge.slide:
@@ -438,7 +439,7 @@ class _Cutter:
             apart = [p for p in edge.points if met.join((p, one), (p, other))]
             for p in apart:
                 number, first, second = next(numbers), self._place(other, p), self._place(one, p)
-                # The first point that meets leaves the second one only to stay on the hinge's line.
+                # Once the first point meets, the second one need only stay on the hinge's line.
                 if p != apart[0] or len(apart) < len(edge.points):
                     self._on_line(f"closure {number} {p}", p, first, second, edge.axis)
                 else:
@@ -454,8 +455,8 @@ class _Cutter:
                     if (name, p) not in on_rods:
                         self._on_line(f"closure {next(numbers)} {p}", p, self._place(body, p), through, axis)
                 if len(points) > 1 and not slide["turns"]:
-                    # Of any two points of the body: its frame's origin, and one along the direction, which
-                    # goes with the body's own line as that is turned the least onto the slide's.
+                    # Of two places of the body: its frame's origin, and one along v, which is turned with the
+                    # body's own line by the smallest rotation of that line onto the slide's.
                     u, v = across(axis)
                     own = unit_vector(self.drawn[points[1]] - self.drawn[points[0]], *points[:2])
                     start = next(joint.at for joint in self.joints if joint.body == body)
@@ -511,7 +512,7 @@ class _Cutter:
         self.loops.append(Loop(of, end, second))
 
     def _drives(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """Inputs that drive something; one of several slides for each of them."""
+        """The inputs that drive the mechanism; an input of several slides comes once for each slide."""
         for name, given in self.inputs.items():
             slides = given.get("travel", given.get("steers"))
             if slides is not None:
@@ -556,7 +557,7 @@ class _Cutter:
         body, on = given["angle"], given.get("on", CHASSIS)
         joint = self._between("hinge", body, on)
         if joint is None:
-            words = f"turns {body} on {on}, which is no hinge of the tree"
+            words = f"turns {body} on {on}, which is not a hinge of the tree"
             raise NoAnswer(name, words, "a hinge in no closed loop")
         p, q = (p for p in self.bodies[body] if p in self.bodies[on])
         along = float(np.sign(joint.axis @ (self.drawn[q] - self.drawn[p])))
@@ -581,7 +582,7 @@ class _Cutter:
             ends = self._place(holder, p), Place(body, through)
             self._height(label, name, "length", ends, axis, body, size, drawn, per_input)
             return
-        # Its coordinate counts from the reference pose.
+        # Its coordinate is measured from the reference pose.
         scale = (1.0 if joint.parent == body else -1.0) / float(np.linalg.norm(axis))
         start = float((self.at[p] - through) @ axis)
         self.driven.append(Driven(name, "length", drawn, joint.body, scale * size, -scale * start, per_input))
@@ -604,7 +605,7 @@ class _Cutter:
         axis, start = along / long, float((first.at - second.at) @ along)
         base = Place(of, first.at)
         if second.body != of:
-            # A body that goes along with the second point, and turns as the body `of` does.
+            # A body that moves with the second point, and turns with the body `of`.
             carried = self._slides(f"{label} from", Place(of, second.at), (axis, *across(axis)))
             self.loops.append(Loop(name, carried, second))
             base = Place(carried.body, first.at)
@@ -614,10 +615,11 @@ class _Cutter:
 
     @cached_property
     def _ground(self) -> str:
-        """The body that the ground is.
+        """The body that represents the ground.
 
-        The chassis stands on the ground as its inputs move it one after the other, turns before displacements
-        and each in the ground's axes. From the chassis the same joints lead back, the first one first.
+        The inputs move the chassis relative to the ground one after the other, turns before displacements,
+        each in the ground's axes. Here the chassis is the base, so the same joints follow in reverse sense,
+        the first input's joint first.
         """
         moves = [(name, given) for name, given in self.inputs.items() if "moves" in given]
         turns = [(name, given) for name, given in self.inputs.items() if "turns" in given]
@@ -633,7 +635,7 @@ class _Cutter:
         return body
 
     def _contact(self, label: str, name: str, base: str, inner: str, centre: str) -> Place:
-        """The lowest point of a wheel over a body, as a place of a body that turns about the wheel's axis."""
+        """A wheel's lowest point above a body, as a place of a body that turns about the wheel's axis."""
         up = self.directions["up"]
         holder = next((b for b in self.holders[inner] if b in self.holders[centre]), None)
         if holder is None or not self.radius > 0.0:
@@ -654,7 +656,7 @@ class _Cutter:
 
 
 def _in_a_row(parent: str, at: Array, links: Iterable[tuple[str, Kind, Array]]) -> list[Joint]:
-    """Joints at one place, each on the one before it."""
+    """Joints in series at one place, each on the body of the one before."""
     joints: list[Joint] = []
     for name, kind, axis in links:
         joints.append(Joint(name, parent, kind, at, axis))
@@ -677,10 +679,11 @@ def car_directions(plain: Mapping[str, Any]) -> dict[str, Array]:
 
 
 def _measure(points: Mapping[str, Array]) -> tuple[Array, float]:
-    """A place near the car from which differences are exact, (3,), mm, and a power of two, its size, mm.
+    """An origin near the car, (3,), mm, so that differences from it are exact; and the car's size, mm, a
+    power of 2.
 
     Raises:
-        NoAnswer: the car has no size, or one that no number has the square of.
+        NoAnswer: the car has no size, or one whose square is no normal number.
     """
     stack = np.array(list(points.values()))
     if not np.isfinite(stack).all():

@@ -1,4 +1,4 @@
-"""Which rows of a Jacobian determine its columns, and which of them together."""
+"""Independent rows of a Jacobian, and its diagonal blocks."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from scipy.sparse.csgraph import connected_components, maximum_bipartite_matchin
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
-# Rows that depend on each other but for how points are rounded, to some 1e-15 of the car, have a remainder of
-# that size. A mechanism that is moved by 1e-9 of the car at a rounding is singular for every use.
+# Rows that are dependent apart from the rounding of points, some 1e-15 of the car, have a remainder of that
+# size. A mechanism that a rounding moves by 1e-9 of the car is singular for every use.
 DEPENDENT = 1e-9
 
 
 def independent_rows(jacobian: Array) -> Numbers:
-    """As many rows as are independent, increasing, at a pose, (rows, columns).
+    """A largest set of independent rows of a Jacobian (rows, columns), in increasing order.
 
-    Rows are taken by pivoting (Golub and Van Loan, Matrix Computations, 5.4.2), so that those that are left
-    out are those that depend most on the others.
+    Rows are chosen by pivoting (Golub and Van Loan, Matrix Computations, 5.4.2), so the rows left out are
+    those that depend most on the others.
     """
     if not jacobian.size:
         return np.zeros(0, dtype=np.int64)
@@ -32,8 +32,8 @@ def independent_rows(jacobian: Array) -> Numbers:
 def blocks(pattern: NDArray[np.bool_]) -> list[tuple[Numbers, Numbers]]:
     """Rows and columns of the diagonal blocks of a square pattern in block triangular form.
 
-    The determinant is the product of theirs (Duff and Reid, ACM Transactions on Mathematical Software 4,
-    1978).
+    The determinant of the matrix is the product of those of the blocks (Duff and Reid, ACM Transactions on
+    Mathematical Software 4, 1978).
     """
     row_of = maximum_bipartite_matching(csr_matrix(pattern), perm_type="row")
     count, label = connected_components(csr_matrix(pattern[row_of]), directed=True, connection="strong")

@@ -1,7 +1,7 @@
-"""Wheels of a mechanism for witnesses: numbers that are made of where points are.
+"""Wheels of a mechanism for witnesses: numbers that are computed from positions of points.
 
-They are the reference's own definitions, over arrays: a witness that takes them shares these with the
-reference. It is a witness of where the points are, not of what is made of them.
+The definitions are the reference's own, applied to arrays, so a witness that uses them is independent of the
+reference in the positions of the points, but not in the definitions of these numbers.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from validate.spanning_tree.cut import SpanningTree
 Array = NDArray[np.float64]
 
 OF_CAR = "car"
-"""What witnesses call these numbers among all that they found, by quantity."""
+"""The names of these numbers in the results of witnesses, by quantity."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,8 @@ class Wheels:
 
     Attributes:
         unit: mm.
-        cars: as drawn, of each part by its prefix, which the names of its roles and numbers have.
-        pair: the prefixes of the left and the right part, where there are these two.
+        cars: the drawn car of each part, by the prefix of the names of its roles and numbers.
+        pair: the prefixes of the left and the right part, if there are these two.
     """
 
     unit: float
@@ -43,7 +43,7 @@ class Wheels:
 
     @classmethod
     def of(cls, plain: Mapping[str, Any], tree: SpanningTree) -> Wheels:
-        """The wheels that roles name."""
+        """The wheels that are named by roles."""
         points, sides = {name: components(place) for name, place in tree.drawn.items()}, corners(plain)
         origin = components(tree.origin)
         cars = {part: DrawnCar.of(plain, part, points, origin, tree.unit, float) for part in sides}
@@ -55,12 +55,12 @@ class Wheels:
     def numbers(
         self, places: Mapping[str, Array], chassis: ChassisMotion, names: Iterable[str] = ANGLES
     ) -> dict[str, Array]:
-        """Numbers of the wheels, (N,), rad or mm; those that are not made of positions alone are left out.
+        """Numbers of the wheels, (N,), rad or mm; those that need more than positions are left out.
 
         Args:
-            places: of the points relative to the chassis, (N, 3), in the tree's lengths.
-            chassis: how it stands.
-            names: of the numbers, as the reference has them.
+            places: positions of the points relative to the chassis, (N, 3), in the tree's unit of length.
+            chassis: position and rotation of the chassis.
+            names: the reference's names of the numbers.
         """
         cars = {
             part: car_at(drawn, chassis, {name: components(places[name]) for name in drawn.points})

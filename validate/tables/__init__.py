@@ -1,1 +1,1 @@
-"""Tables of other programs as lines of cells, and the units that their titles say."""
+"""Reads tables of other programs as lines of cells, and the units in their titles."""

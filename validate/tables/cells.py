@@ -1,4 +1,4 @@
-"""The cells of a table in text: commas, semicolons, tabs or blanks between them, decimal points or commas."""
+"""Splits a text table into cells: separators , ; tab or blank; decimal points or decimal commas."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ Row = tuple[int, list[str]]
 
 @dataclass(frozen=True)
 class Lines:
-    """What stands on the lines of a text.
+    """The cells of a text.
 
     Attributes:
-        rows: of lines that are neither blank nor a comment; decimal commas are points.
-        comments: likewise the cells of comments.
-        mark: what stands between cells; blanks are the empty text.
-        mixed: the first line with a decimal comma in a text that has decimal points too; 0 if there is none.
+        rows: cells of the lines that are neither blank nor a comment; decimal commas are replaced by points.
+        comments: cells of the comments.
+        mark: the separator of cells; the empty text for blanks.
+        mixed: the first line with a decimal comma if the text also has decimal points; 0 otherwise.
     """
 
     rows: Sequence[Row]
@@ -34,18 +34,18 @@ class Lines:
 
 
 def text_of(data: bytes) -> str | None:
-    """Text as programs write it: UTF-8, UTF-16 with its mark, or Western Windows; None if it is none."""
+    """Decode text in UTF-8, UTF-16 with a byte-order mark, or Windows-1252; None if the data are not text."""
     wide = data[:2] in (b"\xff\xfe", b"\xfe\xff")
     try:
         text = data.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError:
-        # What spreadsheets of Western Europe write; only names and units have such letters.
+        # Spreadsheets in Western Europe write this code; only names and units have letters beyond ASCII.
         text = data.decode("cp1252", "replace")
     return None if "\0" in text else text
 
 
 def lines_of(text: str) -> Lines:
-    """A text taken apart."""
+    """Split a text into lines of cells."""
     every = enumerate(text.replace("\N{MINUS SIGN}", "-").splitlines(), 1)
     body, aside = [], []
     for number, line in every:
@@ -63,12 +63,12 @@ def lines_of(text: str) -> Lines:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell holds a number and nothing else."""
+    """Whether a cell is a number."""
     return NUMBER.fullmatch(cell) is not None
 
 
 def joined(row: Sequence[str]) -> list[str]:
-    """Names between blanks with the units that stand behind them."""
+    """Join units in brackets to the names before them, if cells are separated by blanks."""
     found: list[str] = []
     for word in row:
         if found and word[:1] in ("[", "("):
@@ -95,7 +95,7 @@ def _cells(line: str, mark: str) -> list[str]:
     try:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=mark, skipinitialspace=True))]
     except csv.Error:
-        # A line that is longer than any of a table.
+        # The csv module refuses very long cells.
         return [line]
 
 

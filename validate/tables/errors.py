@@ -1,4 +1,4 @@
-"""What can be wrong with a file of another program, or with the map or the names that explain it."""
+"""The error of a file of another program, or of the map or the names that describe it."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from pointcoord import PointcoordError
 
 
 class FileError(PointcoordError, ValueError):
-    """A file of results or hardpoints, or what says how to read it, cannot be used as it is.
+    """A file of results or hardpoints, or the map or file of names that describes it, cannot be used.
 
     Args:
         source: the file.
-        place: the line, by its number or in words, column or key at fault; empty or 0 for the whole file.
+        place: the line (its number, or in words), column or key at fault; empty or 0 for the whole file.
         problem: what is wrong, with the value.
         allowed: what would be right, or what to try.
     """

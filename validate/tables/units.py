@@ -1,4 +1,4 @@
-"""Units of files, and what they are in ours: mm, s, rad, N and %, and these by times, lengths and angles."""
+"""Converts units of files to ours: mm, s, rad, N and %, also divided by times, lengths and angles."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 import re
 from decimal import Decimal
 
-# As decimal numbers, in which a metre is 1000 mm and not 1000.0000000000001.
+# Decimal numbers, so that a metre is exactly 1000 mm and not 1000.0000000000001.
 LENGTHS = {
     "mm": Decimal(1),
     "cm": Decimal(10),
@@ -22,7 +22,7 @@ SPELT = {
     **dict.fromkeys(("centimetre", "centimeter", "centimetres", "centimeters"), "cm"),
     **dict.fromkeys(("foot", "feet"), "ft"),
 }
-"""Units of length in words."""
+"""Other spellings of units of length."""
 ANGLES = {
     "rad": 1.0,
     "mrad": 1e-3,
@@ -45,7 +45,7 @@ _PARTS = re.compile(r"([^/]+)(?:/([^/^*]+?)(?:\^|\*\*)?([1-9][0-9]?)?)?")
 
 
 def length_called(word: str) -> str:
-    """The unit of length that a word is; empty if it is none.
+    """The unit of length that a word names; empty if it names none.
 
     >>> length_called("Metres"), length_called("deg")
     ('m', '')
@@ -55,7 +55,7 @@ def length_called(word: str) -> str:
 
 
 def factor_of(unit: str, ours: str) -> float | None:
-    """How many of our unit one of a file's unit is; None where it is no unit of that kind.
+    """A file's unit in multiples of our unit; None if it is not a unit of the same kind.
 
     >>> factor_of("m/s^2", "mm/s^2"), factor_of("deg", "mm")
     (1000.0, None)
@@ -67,7 +67,7 @@ def factor_of(unit: str, ours: str) -> float | None:
 
 
 def named(factor: float, ours: str) -> str:
-    """The unit of which one is so many of ours; empty if none is known.
+    """The name of the unit that is `factor` times ours; empty if there is none.
 
     >>> named(1000.0, "mm/s"), named(0.3, "mm")
     ('m/s', '')
@@ -79,7 +79,7 @@ def named(factor: float, ours: str) -> str:
 
 
 def degrees_of(unit: str) -> tuple[float, str]:
-    """By what a number is multiplied to be read in degrees, and the unit that it has then.
+    """The factor that converts a number to degrees, and the converted unit; 1 if the unit has no rad.
 
     >>> degrees_of("rad/s")[1], degrees_of("mm/rad")[1]
     ('deg/s', 'mm/deg')
@@ -96,13 +96,13 @@ def is_unit(text: str) -> bool:
 
 
 def allowed_units(ours: str) -> str:
-    """Units that can stand for one of ours, in words."""
+    """The units that can be converted to one of ours, in words."""
     base, slash, below = ours.partition("/")
     return ", ".join(f"{unit}{slash}{below}" for unit in KINDS[base])
 
 
 def _taken_apart(unit: str) -> tuple[float, str, str, int] | None:
-    """Its size in ours, the kinds of what is above and below the fraction, and how often the one below is."""
+    """The size of a unit in ours, the kinds of its numerator and denominator, and the power of the latter."""
     text = unit.strip().replace(" ", "")
     text = text.replace("\N{SUPERSCRIPT TWO}", "^2").replace("\N{SUPERSCRIPT THREE}", "^3")
     found = _PARTS.fullmatch(text)
@@ -113,7 +113,7 @@ def _taken_apart(unit: str) -> tuple[float, str, str, int] | None:
     kind = next((kind for kind, units in KINDS.items() if above in units), None)
     under = next((kind for kind, units in KINDS.items() if below in units), "")
     times = 0 if below is None else int(power or 1)
-    # Powers are in use of a time only.
+    # Only times may have a power.
     if kind is None or (below is not None and not under) or (times > 1 and under != "s"):
         return None
     size = KINDS[kind][above] / (KINDS[under][below] ** times if below is not None else 1.0)

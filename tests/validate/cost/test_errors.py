@@ -54,6 +54,6 @@ def test_what_is_no_number_is_no_answer(quantity: str, bad: float) -> None:
     numbers = reference_numbers(SCENE, INSTANTS)
     name = next(iter(numbers[quantity]))
     numbers[quantity][name].reshape(len(INSTANTS), -1)[2, 0] = bad
-    words = f"of {name} is no finite number at 1 of 5 instants, first at number 2"
+    words = f"of {name} is not finite at 1 of 5 instants, first at number 2"
     with pytest.raises(NoAnswer, match=words):
         found(numbers)

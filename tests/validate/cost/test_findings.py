@@ -73,7 +73,7 @@ REPORT = Report("rows.parquet", "pointcoord cost --from-rows", ROWS)
 
 def test_the_table_has_the_quickest_way_first_and_what_is_not_reached() -> None:
     table, without = REPORT.tables
-    assert table.head == ("way", "bounce", "double-wishbone")
+    assert table.head == ("method", "bounce", "double-wishbone")
     assert table.rows[0] == ("series*", "8.95 us", "14.3 us")
     reached = {way: of for way, *of in table.rows}
     assert reached["printed"] == ["not reached", "-"]

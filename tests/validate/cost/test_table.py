@@ -26,7 +26,7 @@ WHOLE = frame([ROW]).to_parquet()
     [
         (b"hello", "Parquet"),
         (WHOLE[:-1], "Parquet"),
-        (frame([]).to_parquet(), "it holds no rows"),
+        (frame([]).to_parquet(), "it has no rows"),
         (frame([ROW]).drop(columns="time").to_parquet(), "the columns time are missing or unknown"),
         (frame([ROW]).assign(scene=None).to_parquet(), "scene of row 0: Input should be a valid string"),
         (frame([ROW]).assign(verdict="fine").to_parquet(), "verdict of row 0: Input should be 'measured'"),
@@ -37,7 +37,7 @@ def test_a_file_that_is_no_such_table_is_refused_with_the_reason(
 ) -> None:
     path = tmp_path / "rows"
     path.write_bytes(content)
-    with pytest.raises(UsageError, match="is no Parquet file of what accuracy costs ") as caught:
+    with pytest.raises(UsageError, match="is not a Parquet file of pointcoord cost --rows ") as caught:
         read_rows(str(path))
     assert words in str(caught.value)
     assert str(caught.value).endswith("; give another file")

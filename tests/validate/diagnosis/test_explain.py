@@ -252,7 +252,7 @@ def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong() -
     numbers = misread(solved(name)[0], 2.0, "tie_rod_outer.z")
     found = diagnosis(name, {**numbers, "wheel": {n: np.degrees(a) for n, a in numbers["wheel"].items()}})
     assert [one.kind for one in found[:2]] == ["hardpoint", "unit"]
-    assert "tie_rod_outer.z drawn 2 mm too high" in found[0].words
+    assert "tie_rod_outer.z seems 2 mm too high" in found[0].words
     assert "degrees for radians" in found[1].words
 
 
@@ -268,7 +268,7 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
     given = {quantity: numbers[quantity] for quantity in quantities}
     found = check(lambda _: given, scene, accuracy=1e-6).explanations
     assert [one.kind for one in found] == ["hardpoint"]
-    assert "tie_rod_inner.z drawn 5 mm too high" in found[0].words
+    assert "tie_rod_inner.z seems 5 mm too high" in found[0].words
     assert found[0].words.endswith("and rack_centre with it")
 
 
@@ -277,7 +277,7 @@ def test_a_misread_end_of_the_tie_rod_is_named_where_the_rack_is_given_back_as_i
     wrong = misread(scene, 5.0, "tie_rod_inner.z", "rack_centre.z")
     rack = {"rack_centre": held.numbers["position"]["rack_centre"]}
     (only,) = check(lambda _: {"position": {**wrong["position"], **rack}}, scene, accuracy=1e-6).explanations
-    assert only.words.endswith(": tie_rod_inner.z drawn 5 mm too high, at 159 for 154")
+    assert only.words.endswith(": tie_rod_inner.z seems 5 mm too high: 159, not 154")
     assert {"position.tie_rod_inner", "position.tie_rod_outer"} <= {*only.quantities}
 
 
@@ -285,7 +285,7 @@ def test_a_misread_point_of_a_body_is_a_misread_hardpoint_and_no_other_assembly(
     # No link holds this point, and so its lengths in other assemblies are those of its body.
     first = diagnosis(SCENES[0], misread(solved(SCENES[0])[0], 5.0, "wheel_centre.x"))[0]
     assert (first.kind, first.leftover <= 1.0) == ("hardpoint", True)
-    assert "wheel_centre.x drawn 5 mm too far back" in first.words
+    assert "wheel_centre.x seems 5 mm too far back" in first.words
 
 
 def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() -> None:
@@ -297,7 +297,7 @@ def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() 
     # What a number may be off by goes with the accuracy.
     least = min(shares, key=lambda name: shares[name])
     (only,) = check(lambda _: given, scene, 1e-4 * shares[least] / 2.5).explanations
-    assert "upper_ball_joint.y drawn 1 mm too far" in only.words
+    assert "upper_ball_joint.y seems 1 mm too far" in only.words
     assert {*only.quantities} == {f"wheel.{name}" for name in shares}
 
 

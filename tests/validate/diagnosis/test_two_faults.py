@@ -31,34 +31,34 @@ def told(scene: Scene, given: Mapping[str, Mapping[str, Array]], accuracy: float
 @pytest.mark.parametrize(
     ("name", "coordinate", "amount", "change", "words"),
     [
-        ("hmmwv-front", "lower_arm_rear.z", 1.9, late, "1.9 mm too high, at 1.9 for 0, and one sample late"),
+        ("hmmwv-front", "lower_arm_rear.z", 1.9, late, "1.9 mm too high: 1.9, not 0, and one sample late"),
         (
             "wheel-travel",
             "pushrod_inner.y",
             1.2,
             lambda v: v * [1.0, -1.0, 1.0],
-            "1.2 mm too far out, at 344.2 for 343, and left for right: the car is mirrored",
+            "1.2 mm too far out: 344.2, not 343, and left for right: the car is mirrored",
         ),
         (
             "double-wishbone",
             "upper_arm_front.z",
             -3.0,
             lambda v: v / 1000.0,
-            "3 mm too low, at 252 for 255, and m for mm",
+            "3 mm too low: 252, not 255, and m for mm",
         ),
         (
             "hmmwv-front",
             "upper_ball_joint.x",
             2.4,
             lambda v: v + np.array([0.0, 0.0, 25.0]),
-            "2.4 mm too far back, at 55.4 for 53, and a constant offset of (0, 0, 25) mm",
+            "2.4 mm too far back: 55.4, not 53, and a constant offset of (0, 0, 25) mm",
         ),
         (
             "bmw-e90-strut",
             "strut_top.x",
             2.5,
             lambda v: v[:, [1, 0, 2]],
-            "2.5 mm too far back, at 86.32 for 83.82, and other axes: its x, y, z are our y, x, z",
+            "2.5 mm too far back: 86.32, not 83.82, and other axes: its x, y, z are our y, x, z",
         ),
     ],
 )
@@ -68,7 +68,7 @@ def test_a_misread_hardpoint_is_named_with_what_is_wrong_with_every_number(
     scene = over_travel(name)
     wrong = misread(scene, amount, coordinate)["position"]
     (only,) = told(scene, {"position": {point: change(places) for point, places in wrong.items()}})
-    assert only == f"position: {coordinate} drawn {words}"
+    assert only == f"position: {coordinate} seems {words}"
 
 
 @pytest.mark.parametrize(("amount", "accuracy"), [(3.1, 1e-5), (-40.0, 1e-5), (1.0, 0.1)])
@@ -78,7 +78,7 @@ def test_a_point_that_moves_nothing_is_misread_all_the_same(amount: float, accur
     right = simulate(scene).numbers["position"]
     there = right["upper_arm_rear"] + [amount, 0.0, 0.0]
     (only,) = told(scene, {"position": {**right, "upper_arm_rear": there}}, accuracy)
-    assert only.startswith(f"position of upper_arm_rear: upper_arm_rear.x drawn {abs(amount):g} mm too far")
+    assert only.startswith(f"position of upper_arm_rear: upper_arm_rear.x seems {abs(amount):g} mm too far")
 
 
 def test_angles_of_an_axle_by_another_definition_are_said_to_be() -> None:
@@ -107,21 +107,21 @@ def in_bump() -> Scene:
             "lower_ball_joint.z",
             2.5,
             np.tan,
-            "2.5 mm too high, at 97.5 for 95, and the slope, no angle",
+            "2.5 mm too high: 97.5, not 95, and the slope, no angle",
         ),
         (
             in_bump,
             "upper_front_inner.x",
             3.1,
             np.degrees,
-            "3.1 mm too far back, at 1103.1 for 1100, and degrees for radians",
+            "3.1 mm too far back: 1103.1, not 1100, and degrees for radians",
         ),
         (
             in_bump,
             "upper_front_inner.x",
             3.1,
             np.negative,
-            "3.1 mm too far back, at 1103.1 for 1100, and the other sign",
+            "3.1 mm too far back: 1103.1, not 1100, and the other sign",
         ),
     ],
 )
@@ -132,7 +132,7 @@ def test_what_all_angles_have_hides_no_misread_hardpoint(
     scene = car()
     wheel = misread(scene, amount, coordinate)["wheel"]
     (only,) = told(scene, {"wheel": {name: change(angles) for name, angles in wheel.items()}})
-    assert only == f"{', '.join(wheel)}: {coordinate} drawn {words}"
+    assert only == f"{', '.join(wheel)}: {coordinate} seems {words}"
 
 
 def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> None:
@@ -140,7 +140,7 @@ def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> Non
     scene = scene_with("axle-opposed", effects=("camber", "toe"), samples=5)
     wheel = misread(scene, -1.0, "right.lower_arm_front.z")["wheel"]
     said = told(scene, {"wheel": {**wheel, "left.camber": wheel["left.camber"] - 0.01}})
-    assert any("right.lower_arm_front.z drawn 1 mm too low" in one for one in said)
+    assert any("right.lower_arm_front.z seems 1 mm too low" in one for one in said)
     assert "left.camber: a constant offset of -0.01 rad" in said
     assert not any(" and left." in one for one in said)
 
@@ -149,5 +149,5 @@ def test_a_wheel_that_stands_as_drawn_shows_a_misread_centre() -> None:
     scene = Scene.load("axle-single-wheel")
     wrong = misread(scene, 6.8, "left.wheel_centre.z")["position"]
     assert told(scene, {"position": wrong}) == [
-        "position of left.wheel_centre: left.wheel_centre.z drawn 6.8 mm too high, at 216.8 for 210"
+        "position of left.wheel_centre: left.wheel_centre.z seems 6.8 mm too high: 216.8, not 210"
     ]

@@ -144,7 +144,7 @@ def test_an_unexpected_refusal_and_a_failing_trial_are_reported() -> None:
     )
     assert not as_expected([refused])
     assert "NOT AS EXPECTED: absolute is refused at 0.1: why" in text_of(case_parts(refused))
-    assert "gives up at 0.1: why" in text_of(case_parts(refused))
+    assert "first refusal at 0.1: why" in text_of(case_parts(refused))
     assert "NOT as expected: 1 answer, 0 wrong without a warning, in made." in text_of(
         summary_parts([refused])
     )

@@ -281,11 +281,11 @@ def broken(old: str, new: str) -> str:
         (broken('body2="rocker"', 'body2="roker"'), ("unknown element 'roker'", "line 19")),
         (
             broken('"crank" childclass="pin" euler="0 -60 0"', '"crank" mocap="true"'),
-            ("is no model that MuJoCo takes", "mocap"),
+            ("is refused by MuJoCo", "mocap"),
         ),
         (
             broken("<worldbody>", '<worldbody><body name="hand" mocap="true"/>'),
-            ("body 'hand': is moved from outside (mocap)",),
+            ("body 'hand': is a mocap body",),
         ),
         (broken("<equality>", '<equality><joint name="gear" joint1="knee"/>'), ("equality 'gear'",)),
         (WELDED.replace('"tip"/>', '"tip" name="w" relpose="0 0 0.1 1 0 0 0"/>'), ("weld 'w': does not",)),
@@ -294,7 +294,7 @@ def broken(old: str, new: str) -> str:
             broken('<joint class="pin"/>', '<joint class="pin"/><site name="tip" pos="0 0 0.2"/>').replace(
                 'body1="coupler" body2="rocker" anchor="0.3 0 0"', 'site1="end" site2="tip"'
             ),
-            ("connect end: joins places that are 21.07 mm apart",),
+            ("connect end: joins positions that are 21.07 mm apart",),
         ),
         (
             "<mujoco><worldbody>" + 100 * "<body><geom size='1'/></body>" + "</worldbody></mujoco>",
@@ -327,7 +327,7 @@ def test_tendons_soft_equalities_and_bodies_that_hold_nothing_are_ignored_and_na
 
 
 def test_what_means_nothing_for_a_model_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="is a whole mechanism, for which --side means nothing"):
+    with pytest.raises(FileError, match="is a whole mechanism, for which --side has no meaning"):
         imported(tmp_path, FOUR_BAR, "model.xml", side="left")
     names = str(tmp_path / "names.toml")
     assert main(["import", str(tmp_path / "model.xml"), "--names", names]) == 2

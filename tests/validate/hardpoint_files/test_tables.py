@@ -43,7 +43,7 @@ def test_a_sheet_of_optimumk_gives_the_wheel_whose_columns_are_named(tmp_path: P
             (x, y, z), (u, v, w) = CAR[ours], WHEELS["front", "left"][ours]
             lines.append(f",{theirs},{-u!r},{-v!r},{w!r},,{-x!r},{-y!r},{z!r}")
     text = "\n".join([*lines, ",Static Camber,-0.96,,,,-0.96,,", ",Static Toe,0.5,,,,0.25,,"])
-    with pytest.raises(FileError, match=r"line 1: has titles that are not known: .*\[table\]"):
+    with pytest.raises(FileError, match=r"line 1: has unknown titles: .*\[table\]"):
         imported(tmp_path, text, side="right")
     names = tmp_path / "names.toml"
     columns = "[table]\nname = 2\nx = 7\ny = 8\nz = 9\n"
@@ -211,7 +211,7 @@ def test_axes_that_nobody_says_are_asked_for_with_where_points_lie(
     lines: Sequence[str], tmp_path: Path
 ) -> None:
     lie = "lower_arm_front lies along -x from lower_arm_rear and upper_ball_joint lies along [+]z"
-    with pytest.raises(FileError, match=f"does not say where x, y and z point.*{lie}"):
+    with pytest.raises(FileError, match=f"does not give the directions of x, y and z.*{lie}"):
         imported(tmp_path, "\n".join([POINT, *lines]))
 
 

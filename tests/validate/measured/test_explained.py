@@ -48,9 +48,9 @@ def explanations(over: str, values: Array, columns: Columns, car: Scene = CAR) -
     [
         (RACK, lambda s: -s, "has the other sign"),
         (RACK, lambda s: -s / 25.4, "is in in, not in mm, and has the other sign"),
-        (RACK, lambda s: 4.0 - s, "has the other sign, and counts from another zero: +4 mm make ours"),
-        (ANGLE, lambda a: np.pi - a, "has the other sign, and counts from another zero: +180 deg make ours"),
-        (ANGLE, lambda a: a - HOME + 1.2, "counts from another zero: +17.77 deg make ours"),
+        (RACK, lambda s: 4.0 - s, "has the other sign, and counts from another zero: add +4 mm"),
+        (ANGLE, lambda a: np.pi - a, "has the other sign, and counts from another zero: add +180 deg"),
+        (ANGLE, lambda a: a - HOME + 1.2, "counts from another zero: add +17.77 deg"),
     ],
 )
 def test_a_column_that_is_meant_otherwise_is_told_first(
@@ -89,7 +89,7 @@ def test_a_misread_hardpoint_is_named_though_one_number_has_a_fault_of_its_own()
     order = np.random.default_rng(2).permutation(ROWS)
     shuffled = {name: column[order] for name, column in columns.items()}
     hardpoint, sign = explanations(RISE, AT[RISE][order], shuffled, car)
-    assert "strut_top.x drawn 6 mm too far back" in hardpoint.words
+    assert "strut_top.x seems 6 mm too far back" in hardpoint.words
     assert sign.words == "toe: the other sign"
 
 

@@ -121,7 +121,7 @@ def test_a_file_of_which_most_rows_cannot_be_compared_has_no_verdict_and_says_wh
     count = len(WISHBONE.instants)
     assert [row.verdict for row in found.outcome.rows] == ["not tested"]
     (fault,) = found.outcome.faults
-    assert fault.startswith(f"only 1 of {count} rows that hold numbers can be compared")
+    assert fault.startswith(f"only 1 of {count} rows with numbers can be compared")
     assert any("s is outside the scene's time" in note for note in found.outcome.notes)
     record = Record(["car"])
     record.add(Examined("car", outcomes=(found.outcome,), solved=("pointcoord",)), None)
@@ -208,8 +208,8 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
     [
         (TEXT + "0.3,1e308", {}, ("mine.csv: line 4, column 'camber': is 1e+308",)),
         (TEXT, {"colums": {}}, ("colums: there is no such key (did you mean 'columns'?)", "held")),
-        (TEXT.replace("deg", "deg/mm"), {}, ("'deg/mm' is no unit of wheel.camber",)),
-        (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not said", "deg")),
+        (TEXT.replace("deg", "deg/mm"), {}, ("'deg/mm' is not a unit of wheel.camber",)),
+        (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not given", "deg")),
         (TEXT, {"columns": {"camber": {"sign": 2}, "time": {}}}, ("columns.camber.sign", "1 or -1")),
         (TEXT, {"held": {"rack": -1e308}}, ("held.rack: Input should be", "greater than")),
         (
@@ -219,10 +219,10 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
                     n: {"is": f"travel.{p}"} for n, p in (("a", "wheel_centre"), ("b", "lower_ball_joint"))
                 }
             },
-            ("a, b could each be", "ignore"),
+            ("each of a, b could give the pose", "ignore"),
         ),
-        (TEXT.replace("time [s]", "tyme [s]"), {}, ("no column says at which pose",)),
-        (TEXT.replace("camber", "cmaber"), {}, ("nothing to compare",)),
+        (TEXT.replace("time [s]", "tyme [s]"), {}, ("no column gives the pose",)),
+        (TEXT.replace("camber", "cmaber"), {}, ("no numbers to compare",)),
         (BUMP + "0,1\n", CONTACT, ("rolling_radius",)),
         (BUMP + "900,1\n", CENTRE, ("line 2", "none of its 1 rows can be reached", "out of reach")),
     ],

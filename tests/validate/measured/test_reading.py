@@ -55,7 +55,7 @@ def test_a_table_is_read_however_it_is_written(how: str, tmp_path: Path) -> None
 def test_a_column_of_words_that_a_map_wants_is_refused_with_what_it_holds(tmp_path: Path) -> None:
     data = b"rack [mm],toe,camber [deg]\n0,rig,0\n5,rig,1\n"
     map = 'columns.rack = {}\ncolumns.camber = {}\ncolumns.toe = { unit = "deg" }\n'
-    with pytest.raises(FileError, match=r"'toe': holds 'rig' and the like; allowed: columns of numbers"):
+    with pytest.raises(FileError, match=r"'toe': contains 'rig' and the like; allowed: columns of numbers"):
         read(tmp_path, data, map)
     assert len(read(tmp_path, data, map.replace('unit = "deg"', 'is = "ignore"')).numbers) == 1
 
@@ -82,7 +82,7 @@ def test_parquet_gives_the_numbers_themselves(tmp_path: Path) -> None:
     [
         ("", ("is empty",)),
         ("time,camber\n", ("no line of numbers",)),
-        ("time,camber\n0,1\n1,1.O\n", ("line 3, column 'camber'", "'1.O' is no finite number")),
+        ("time,camber\n0,1\n1,1.O\n", ("line 3, column 'camber'", "'1.O' is not a finite number")),
         ("time,camber\n0,1\n1,2,3\n", ("line 3", "3 cells", "2, one for each of time, camber")),
         ("time,time\n0,1\n", ("'time' is there 2 times",)),
         ("a,b,c\n0,1\n", ("2 columns of numbers under 3 names",)),
@@ -100,6 +100,6 @@ def test_a_missing_file_is_said_to_be_missing(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="cannot be read"):
         read_columns(str(tmp_path / "none.csv"))
     (tmp_path / "bad.parquet").write_bytes(b"PAR1 and no more")
-    with pytest.raises(FileError, match="no Parquet that can be read"):
+    with pytest.raises(FileError, match="not a Parquet file that can be read"):
         read_columns(str(tmp_path / "bad.parquet"))
     assert isinstance(columns_of_text("1 2\n", "x"), Columns)

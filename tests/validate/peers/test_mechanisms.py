@@ -48,7 +48,7 @@ def test_rows_that_depend_on_others_are_left_out_and_looked_at_in_every_pose() -
     rng = np.random.default_rng(3)
     for point, place in mechanism["points"].items():
         mechanism["points"][point] = (np.array(place) + 1e-7 * rng.standard_normal(3)).tolist()
-    with pytest.raises(NoAnswer, match="misses closures that depend on others as drawn"):
+    with pytest.raises(NoAnswer, match="violates closures that are dependent in the drawing"):
         solved(mechanism, laws)
 
 

@@ -96,7 +96,7 @@ def ran(study: Any, folder: Path, other: Any, told: Any = lambda done: None) -> 
 @pytest.mark.parametrize(
     ("workers", "threads", "words"),
     [
-        (1, 2, r"takes 2 tasks at once.* --nthreads 1"),
+        (1, 2, r"runs 2 tasks at once.* --nthreads 1"),
         (0, 1, r"has no worker after .* dask worker .* --nthreads 1"),
     ],
 )
@@ -154,10 +154,10 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["random", "--workers", "2", "--scheduler", "tcp://h:1"], "leave one of them out"),
-        (["random", "--count", "0"], "no scene is asked for"),
+        (["random", "--workers", "2", "--scheduler", "tcp://h:1"], "leave one of the two options out"),
+        (["random", "--count", "0"], "the study has no scene"),
         (["random", "--records", " "], "names no folder"),
-        (["bounds", "--seed", "-1"], "--seed: -1 is no whole number; allowed: 0 or more"),
+        (["bounds", "--seed", "-1"], "--seed: '-1'; allowed: a whole number, 0 or more"),
         (["hard", "at-rests"], "similar names: at-rest"),
     ],
 )

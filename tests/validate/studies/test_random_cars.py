@@ -32,8 +32,8 @@ def test_every_scene_has_one_outcome_and_it_is_counted() -> None:
     seconds = [100.0, 20.0, *[0.0] * (len(rows) - 2)]
     timed = [row | {"seconds": spent} for row, spent in zip(rows, seconds, strict=True)]
     told = str(study.summary(timed).parts[-1])
-    assert told.startswith(f"6 scenes recorded, {len(kept)} of them as a whole scene")
-    assert told.endswith("; 120 s of work, of all runs and processes.")
+    assert told.startswith(f"6 scenes recorded, {len(kept)} of them with the whole scene")
+    assert told.endswith("; 120 s of work in all runs and processes.")
     for row in rows:
         assert set(row) <= {*study.columns, "part", "number", "seconds", "worker"}
         assert bool(row.get("shares")) == row["outcome"].startswith("agreed")

@@ -1,4 +1,4 @@
-"""The kinds of faults that are looked for, as data; a new kind is a function and a line here."""
+"""The kinds of faults that are tried; to add one, write a function and add a line here."""
 
 from __future__ import annotations
 
@@ -40,4 +40,4 @@ KINDS = (
     Kind("hardpoint", misread_hardpoints, "drawing"),
     Kind("factor", factors, "last"),
 )
-"""Of two faults in the same numbers the first one stands before the second one here."""
+"""All kinds. In a pair of faults in the same numbers, the first fault is earlier in this list."""

@@ -1,8 +1,8 @@
-"""A hardpoint misread: the coordinate of the drawing that makes our numbers theirs, and by how much.
+"""A misread hardpoint: the change of one coordinate of the drawing that gives the given numbers.
 
-The exact slopes of all numbers by each coordinate of the drawing, once for the car, say which coordinates are
-worth a search. A point that another one stands in for, as the tie rod's inner end does for the rack's centre,
-is misread with it or alone.
+The exact derivatives of all numbers by each coordinate of the drawing, computed once, show which coordinates
+are worth a search. If one point takes the place of another, as tie_rod_inner does for rack_centre, the two
+are misread together or one alone.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from validate.diagnosis.other_car import Change, any_of
 
 Array = NDArray[np.float64]
 
-# Of the car's size: what is read wrongly by more is another car, and whether it closes takes long to find.
+# Largest misreading, as a share of the car's size: a larger one is a different car, and slow to solve.
 FARTHEST = 0.1
-MOST_POINTS = 2  # that are misread each by itself
+MOST_POINTS = 2  # largest number of points at rest that are misread independently
 TOO: Mapping[Direction, str] = {
     "up": "high",
     "down": "low",
@@ -37,9 +37,9 @@ TOO: Mapping[Direction, str] = {
 
 
 def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
-    """A point that rests where it is drawn, and is given at rest elsewhere, was misread.
+    """Points at rest that are given at another position: each was misread.
 
-    More than a few that are have something else in common.
+    If there are more than a few, they have another fault in common.
     """
     drawn = evidence.scene.mechanism.points
     rest = [
@@ -52,13 +52,13 @@ def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
         gap = constant_gap(evidence, row)
         if gap is not None:
             off = np.flatnonzero(gap)
-            said = (_said(evidence.scene, row.name, int(i), float(gap[i])) for i in off)
+            texts = (_in_words(evidence.scene, row.name, int(i), float(gap[i])) for i in off)
             there = so_much_more(evidence, row, gap)
-            yield Hypothesis(" and ".join(said), there, len(off), 1.5 + len(off), rests=True)
+            yield Hypothesis(" and ".join(texts), there, len(off), 1.5 + len(off), rests=True)
 
 
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each coordinate by itself, and those of points with others that are read with them."""
+    """Each coordinate alone, and each coordinate of points that are read together."""
     motion, points = evidence.solved.motion, evidence.scene.mechanism.points
     if motion is None:
         return iter(())
@@ -74,7 +74,7 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
     def slope(k: int, looked: Sequence[Row]) -> Array:
         return np.concatenate([slopes[quantity][of][k].ravel() for quantity, of in looked])
 
-    # Points that are given back at their own places say nothing of those that they are read with.
+    # Points that are given at their own positions do not show whether a point read with them is misread.
     wrong = {of for _, of in evidence.wrong}
     right = frozenset(row.name for row in evidence.given if row.is_place and row.name not in wrong)
 
@@ -84,7 +84,7 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
                 content["mechanism"]["points"][name][i] += more
 
         moved = [name for name in others if name not in right]
-        words = partial(_said, evidence.scene, point, i, others=moved)
+        words = partial(_in_words, evidence.scene, point, i, others=moved)
         silent = right.intersection(others)
         key = (point, i, *others)
         return Change(key, put, words, partial(slope, k), farthest=farthest, silent=silent)
@@ -93,7 +93,7 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def _read_together(scene: Scene) -> list[tuple[str, ...]]:
-    """Every point by itself, and each with those that it stands in for and that are drawn where it is."""
+    """Every point alone, and each point together with the coincident points whose place it takes."""
     points, groups = scene.mechanism.points, dict[str, list[str]]()
     for missing, point in scene.mechanism.topology.stand_ins.items():
         if missing in points and points[missing] == points[point]:
@@ -101,11 +101,11 @@ def _read_together(scene: Scene) -> list[tuple[str, ...]]:
     return [*((point, *others) for point, others in groups.items()), *((point,) for point in points)]
 
 
-def _said(scene: Scene, point: str, i: int, amount: float, others: Sequence[str] = ()) -> str:
+def _in_words(scene: Scene, point: str, i: int, amount: float, others: Sequence[str] = ()) -> str:
     place, component = scene.mechanism.points[point][i], scene.mechanism.axes.component
     direction = np.eye(3)[i] * np.sign(amount)
     word = next((word for way, word in TOO.items() if component(direction, way) > 0.999), "")
     word = word or ("large" if amount > 0.0 else "small")
     with_it = "".join(f", and {other} with it" for other in others)
-    drawn = f"{abs(amount):.4g} mm too {word}, at {place + amount:.6g} for {place:.6g}"
-    return f"{point}.{'xyz'[i]} drawn {drawn}{with_it}"
+    drawn = f"{abs(amount):.4g} mm too {word}: {place + amount:.6g}, not {place:.6g}"
+    return f"{point}.{'xyz'[i]} seems {drawn}{with_it}"

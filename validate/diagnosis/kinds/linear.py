@@ -1,4 +1,4 @@
-"""Numbers times a factor, or vectors times a matrix: other signs, axes, units, or a factor of no unit."""
+"""Faults that multiply numbers by a factor or vectors by a matrix: signs, axes, units, other factors."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from validate.diagnosis.hypothesis import Hypothesis
 
 Array = NDArray[np.float64]
 Times = Callable[[Row], float | Array]
-"""The factor or the matrix, (3, 3), that a row's numbers are times."""
+"""The factor or the matrix, (3, 3), by which the numbers of a row are multiplied."""
 
-# A factor near 1 is what least squares makes of any small difference, such as that of two cars.
+# Closer to 1 a factor is not reported: least squares gives such a factor for any small difference.
 NEAR_ONE = 0.01
 
 
 class Unit(NamedTuple):
-    """Another unit.
+    """A wrong unit.
 
     Attributes:
-        words: for what it was taken.
-        of: mm, rad, or s, which it stands for.
-        factor: a number in our unit times this is the number in that one; per second of a rate for s.
+        words: the fault in words.
+        of: the unit that it replaces: mm, rad or s.
+        factor: the number in the wrong unit over the number in the right one; for s, per order of a rate.
     """
 
     words: str
@@ -36,11 +36,11 @@ class Unit(NamedTuple):
     factor: float
 
     def has(self, row: Row) -> bool:
-        """Whether a row's numbers may be in it."""
+        """Whether the numbers of a row may have this fault."""
         return row.order > 0 if self.of == "s" else self.of == row.unit
 
     def times(self, row: Row) -> float:
-        """What a row's numbers are times."""
+        """The factor of the numbers of a row."""
         return self.factor**row.order if self.of == "s" else self.factor
 
 
@@ -59,7 +59,7 @@ def _rows(evidence: Evidence, rows: Iterable[Row], times: Times) -> dict[Row, Wo
     found: dict[Row, WouldBe] = {}
     for row in rows:
         by = times(row)
-        # A sign and a place in another order round nothing.
+        # A sign or a permutation causes no rounding.
         exact = np.isin(np.abs(by), (0.0, 1.0)).all()
         allowed = evidence.allowed[row] if exact else evidence.rounded(row)
         found[row] = _product(by, evidence.held[row]), _product(np.abs(by), allowed)
@@ -76,12 +76,12 @@ def _undone(times: Times, row: Row, numbers: Array) -> Array:
 
 
 def _turned(matrix: Array, axial: bool, row: Row) -> float | Array:
-    """Vectors in other axes; a number of the car is no vector.
+    """The matrix for the vectors of a row in other axes; 1 for a number of the car.
 
     Args:
         matrix: orthogonal.
-        axial: whether axes are changed, and not only the signs that someone writes: what a body turns by
-            keeps its sense only where the axes stay right-handed.
+        axial: whether the axes are changed, and not only signs written: then an angular velocity also changes
+            its sign if the new axes are left-handed.
     """
     if row.of == "car":
         return 1.0
@@ -96,7 +96,7 @@ def _linear(
 
 
 def other_signs(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Of one, two or all components of vectors, or of a number of the car as a whole, as of toe in or out."""
+    """Opposite signs of one, two or all components of vectors, or of a number of the car, such as toe."""
     for signs in [*product((1.0, -1.0), repeat=3)][1:]:
         flipped = [axis for axis, sign in zip("xyz", signs, strict=True) if sign < 0.0]
         times = partial(_turned, np.diag(signs), False)
@@ -107,9 +107,9 @@ def other_signs(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Axes in another order, with or without other signs.
+    """Axes in another order, with or without opposite signs.
 
-    Those that do not even halve a difference at a few instants are left out.
+    Permutations that do not at least halve a difference at a few instants are skipped.
     """
     few = evidence.few
     before = {row: few.left(row, few.held[row], few.allowed[row]) for row in few.vectors if row in few.wrong}
@@ -125,24 +125,25 @@ def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def mirrored(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Left for right: vectors are mirrored in the car's middle plane, angles that count outboard stay."""
+    """Left and right exchanged: vectors are mirrored in the car's middle plane; numbers of the car stay."""
     right = evidence.scene.mechanism.axes.right
     times = partial(_turned, np.eye(3) - 2.0 * np.outer(right, right), True)
     yield _linear(evidence, "left for right: the car is mirrored", evidence.held, times, whole=True)
 
 
 def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each unit, of all rows that may have it."""
+    """Each wrong unit, for all rows that may have it."""
     for unit in UNITS:
         yield _linear(evidence, unit.words, filter(unit.has, evidence.wrong), unit.times)
 
 
 def factors(evidence: Evidence) -> Iterator[Hypothesis]:
-    """One factor that is no known unit's, by least squares, and far enough from 1 to be meant."""
+    """A factor by least squares that is not that of a known unit, and not close to 1."""
     for some in together(evidence.wrong):
         factor = _factor(evidence, some)
         if factor is not None:
-            yield Hypothesis(f"{factor:.7g} times ours", _times(evidence, some, factor), 1, 2.0)
+            words = f"{factor:.7g} times ours"
+            yield Hypothesis(words, _times(evidence, some, factor), 1, 2.0)
 
 
 def _factor(evidence: Evidence, rows: Sequence[Row]) -> float | None:
@@ -151,7 +152,7 @@ def _factor(evidence: Evidence, rows: Sequence[Row]) -> float | None:
     found = float(ours @ theirs) / square if square > 0.0 else np.nan
     if not np.isfinite(found) or found == 0.0 or abs(found - 1.0) <= NEAR_ONE:
         return None
-    # So many decimals of its own power of ten.
+    # Rounded in units of its own power of ten.
     unit = 10.0 ** np.floor(np.log10(abs(found)))
     return float(roundest(found, lambda near: evidence.explained(_times(evidence, rows, near)), unit))
 

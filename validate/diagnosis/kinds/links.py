@@ -1,10 +1,10 @@
-"""The same points with other links: a rod of another length, a line through another point, another closure,
-another assembly.
+"""Faults in links: a rod of another length, a slide through another point, another closure, another assembly
+mode.
 
-For the first two the car is written anew, with its mechanism's tables in the scene. A rod in question is an
-input there, the distance of its ends, which is as drawn and so much more. A line in question leads through
-another joint of its body, as that of a strut does through the ball joint in textbooks, and what slides on it
-is drawn on that line. Only cars of one part are, so no axles.
+For the first two, the scene is rewritten with its mechanism's tables. The rod becomes an input, the distance
+of its ends, with the drawn value plus an amount. The line of the slide leads through another joint of its
+body, as the strut axis leads through the ball joint in textbooks, and the sliding points are moved onto this
+line. This is done only for mechanisms that are not composed of others, so not for axles.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from validate.diagnosis.evidence import Content, Evidence
 from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.other_car import Change, any_of, otherwise
 
-STEP = 0.05  # mm, of differences by a length
-# Of the car's size: how far a length may be off and still be meant, and how far another assembly is away.
+STEP = 0.05  # step of a difference by a length, mm
+# As shares of the car's size: largest error of a length that counts as kept; least distance to another mode.
 KEPT, ELSEWHERE = 1e-5, 1e-4
 
 
 def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each rod by itself."""
+    """Each rod alone is too long or too short."""
     scene, tables = evidence.scene, _tables(evidence.scene)
     return any_of(evidence, [_length(scene, tables, rod) for rod in tables.get("rods", {})])
 
 
 def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:
-    """By how much a rod is too long."""
+    """The change of the length of a rod."""
     name, ends = f"length of {rod}", tables["rods"][rod]
     start, end = (np.array(scene.mechanism.points[point]) for point in ends)
     drawn = float(np.linalg.norm(end - start))
@@ -53,14 +53,14 @@ def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:
         content["inputs"][name] = {"sum": [{"constant": "drawn"}, {"constant": more}]}
 
     def words(more: float) -> str:
-        said = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
-        return f"{rod} is {said}, {drawn + more:.6g} mm for {drawn:.6g}"
+        amount = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
+        return f"{rod} is {amount}: {drawn + more:.6g} mm, not {drawn:.6g}"
 
     return Change(rod, put, words, STEP)
 
 
 def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each line of a moving body, through each other joint of it."""
+    """The line of each slide in a moving body leads through another joint of the body."""
     tables = _tables(evidence.scene)
     points = evidence.scene.mechanism.points
     ends = {end for rod in tables.get("rods", {}).values() for end in rod}
@@ -84,7 +84,7 @@ def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def _tables(scene: Scene) -> Mapping[str, Any]:
-    """The mechanism's, flat; empty of one that has parts or puts points in place."""
+    """The flat tables of the mechanism; empty if it has parts, or a closure that places points."""
     topology = scene.mechanism.topology
     if topology.puts_in_place or topology.sides:
         return {}
@@ -93,7 +93,7 @@ def _tables(scene: Scene) -> Mapping[str, Any]:
 
 
 def _put_tables(content: Content, tables: Mapping[str, Any]) -> None:
-    """Tables of its own in the place of its mechanism's file."""
+    """Replace the mechanism's type in a scene's content by tables."""
     part = content["mechanism"]
     for key in ("type", "closure"):
         part.pop(key, None)
@@ -103,14 +103,13 @@ def _put_tables(content: Content, tables: Mapping[str, Any]) -> None:
 def _as_it_stands(scene: Scene) -> Motion:
     """The motion without a check of the drawing.
 
-    One that is asked to close otherwise may not close so by itself, and another assembly may have its wheel
-    inboard.
+    The check could refuse a drawing with another closure, or another assembly mode with the wheel inboard.
     """
     return solve_task(prepare_task(scene, AUTO))
 
 
 def other_closures(evidence: Evidence) -> Iterator[Hypothesis]:
-    """The whole car, by each other closure of its type of suspension."""
+    """The whole car with another closure of its suspension type."""
     part = evidence.scene.mechanism
     for closure in part.file.closures:
 
@@ -123,10 +122,11 @@ def other_closures(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Places that keep every length of the drawing at the same inputs, elsewhere, from some instant on.
+    """Another assembly mode from some instant on: given positions that keep every length, but differ from
+    ours.
 
-    Whoever draws the car as it stands there draws the same links. So that drawing is solved for the same
-    inputs: if the given places are that car's at every instant, they are another assembly of ours.
+    A car drawn at these positions has the same links. So this drawing is solved with the same inputs: if the
+    given positions are those of this car at every instant, they are another assembly mode.
     """
     scene, topology = evidence.scene, evidence.scene.mechanism.topology
     placed = {row.name: row for row in evidence.given if row.is_place}
@@ -157,21 +157,19 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     since = "" if first == 0 else f" from t = {evidence.times[first]:.6g} s on"
     words = f"another assembly of the same links{since}: all {len(links)} lengths are kept"
     for one in otherwise(evidence, words, put, 1.2, _as_it_stands):
-        # The drawing is made of given numbers: they are off twice, as it and at each instant.
+        # The drawing is made of given numbers, so their error counts twice: in the drawing and at each
+        # instant.
         rows = {row: (value, 2.0 * allowed) for row, (value, allowed) in one.rows.items()}
         for row, (value, _) in rows.items():
             value[:first] = evidence.held[row][:first]
-        # Other inputs keep all lengths too, and from the first pose on they are no motion of ours.
+        # Other inputs keep all lengths too, but would not follow the motion from the first pose on.
         left = [np.abs(evidence.given[row] - rows[row][0]).max() for row in placed.values() if row in rows]
         if max(left) <= KEPT * size:
             yield replace(one, rows=rows)
 
 
 def _links(scene: Scene) -> set[tuple[str, str]]:
-    """The ends of every length: of rods, and of every two points of a moving body.
-
-    A point that only rides on a body has its place there too, and misdrawn it is another car.
-    """
+    """The pairs of points at fixed distances: ends of rods, and every two points of a moving body."""
     plain = scene.mechanism.plain(())
     moving = [points for body, points in plain["bodies"].items() if body != CHASSIS]
     return {

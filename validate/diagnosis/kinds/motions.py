@@ -1,4 +1,4 @@
-"""The same car moved otherwise: by an input that is taken otherwise, or earlier or later."""
+"""Faults in the motion: an input multiplied or shifted, or the whole motion earlier or later."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.other_car import Change, any_of
 from validate.formulations.input_rates import rates
 
-SCALED = {"amplitude", "offset", "values"}  # of a law, what is so many times itself if the law is
-STEP = 1e-3  # of differences by a factor, and by an amount
-COST = 1.5  # of another input, which is likelier than that all is late
-FARTHEST = 3  # samples that a motion may be late or early
+SCALED = {"amplitude", "offset", "values"}  # the entries of a law that are multiplied if the law is
+STEP = 1e-3  # step of a difference by a factor or an amount
+COST = 1.5  # cost of a wrong input, which is likelier than a shift of all numbers in time
+FARTHEST = 3  # largest shift in time, samples
 
 
 def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each input by itself, taken so many times, or so much more."""
-    # Of numbers over an input it is that input which is taken otherwise.
+    """Each input alone, multiplied by a factor or shifted by an amount."""
+    # If numbers are given over an input, the input has no law in time.
     laws = evidence.scene.inputs if evidence.over_time else {}
-    # Of an input at 0 there is no factor.
+    # An input at 0 has no factor.
     moving = [name for name, law in laws.items() if rates(law, evidence.times)[:, 0].any()]
     return any_of(evidence, [*map(_times, moving), *(_more(evidence, name) for name in laws)])
 
@@ -31,8 +31,8 @@ def _times(name: str) -> Change:
         content["inputs"][name] = _law_times(content["inputs"][name], factor)
 
     def words(factor: float) -> str:
-        said = {-1.0: "has the other sign", 0.0: "is taken as 0"}
-        return f"the input {name} {said.get(round(factor, 8), f'is taken {factor:.6g} times')}"
+        words = {-1.0: "has the other sign", 0.0: "is taken as 0"}
+        return f"the input {name} {words.get(round(factor, 8), f'is taken {factor:.6g} times')}"
 
     return Change((name, "times"), put, words, STEP, ours=1.0, cost=COST)
 
@@ -60,7 +60,7 @@ def _law_times(law: Content, factor: float) -> Content:
 
 
 def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Their numbers at t are ours at t + s, of the whole car, with s a few samples at most."""
+    """The given numbers at t are ours at t + s, for the whole car, with s a few samples at most."""
     most = FARTHEST * float(np.diff(evidence.times).max(initial=0.0))
 
     def put(content: Content, shift: float) -> None:

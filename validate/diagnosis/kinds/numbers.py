@@ -1,5 +1,5 @@
-"""What arithmetic makes of numbers beside a product: an angle by another definition, another row or instant,
-another zero, and the last printed digit.
+"""Other arithmetic faults: another definition of an angle, a wrong row or instant, an offset, and rounding to
+printed digits.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
     "the slope, no angle": lambda p, q, n: p / q,
     "the sine, no angle": lambda p, q, n: p / np.hypot(p, q),
 }
-"""Of an angle, which is projected here: atan2(p, q), with p and q the components of a line along two
-directions of the car, and n its length. Adams' turning tables print the arcsine of camber, OptimumK that of
-toe."""
+"""Other definitions of an angle, which pointcoord defines as projected: atan2(p, q), with p and q the
+components of a line along two directions of the car, and n its length. Adams' turning tables print the
+arcsine of camber, OptimumK the arcsine of toe."""
 BACK: Mapping[str, Callable[[Array], Array]] = {
     "the slope, no angle": np.arctan,
     "the sine, no angle": lambda sine: np.arcsin(np.clip(sine, -1.0, 1.0)),
 }
-"""Of those that need no line the projected angle."""
+"""The projected angle from numbers by another definition, for definitions that need only p and q."""
 
 SAMPLES: Mapping[str, Callable[[Array], Array]] = {
     "one sample late, the first one twice": lambda x: np.concatenate([x[:1], x[:-1]]),
@@ -43,15 +43,15 @@ SAMPLES: Mapping[str, Callable[[Array], Array]] = {
     "one sample late, the last one first": lambda x: np.concatenate([x[-1:], x[:-1]]),
     "one sample early, the first one last": lambda x: np.concatenate([x[1:], x[:1]]),
 }
-"""In words, and what is then given of numbers."""
+"""Shifts by one sample, in words, and the numbers that they give."""
 
-MEANT = 8.0  # times what is allowed of numbers that were computed again: a constant that is meant
+MEANT = 8.0  # an offset must be more than so many times the tolerance of recomputed numbers
 MOST_DIGITS = 10
 SINGLE = float(np.finfo(np.float32).eps)
 
 
 def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each definition, of all angles that disagree."""
+    """Each other definition, for all angles that disagree."""
     for row in evidence.wrong:
         angle, wheel = angle_called(row.name), Wheel.of(evidence.scene.mechanism.topology, row.name)
         if row.of != "car" or angle is None:
@@ -62,7 +62,7 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
         length = np.linalg.norm(end - start, axis=-1)
         axes = evidence.scene.mechanism.axes.on(wheel.side)
         p, q = (axes.component(end - start, direction) for direction in (angle.sine, angle.cosine))
-        # The line is a difference of coordinates that are each rounded; a few such roundings.
+        # The line is a difference of rounded coordinates: a few roundings of these.
         size = max(float(np.abs(start).max()), float(np.abs(end).max()))
         for words, rule in DEFINITIONS.items():
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -74,12 +74,12 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def _projected(back: Callable[[Array], Array], row: Row, numbers: Array) -> Array:
-    """The angles that numbers of a row stand for; those of other rows are no such numbers."""
+    """The projected angles from the numbers of a row, if it is a number of the car."""
     return back(numbers) if row.of == "car" else numbers
 
 
 def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Two quantities in each other's place, such as velocities and accelerations."""
+    """Two quantities are swapped, such as velocities and accelerations."""
     for one, two in combinations(sorted(evidence.wrong_quantities), 2):
         other = {one: two, two: one}
         rows = {row: Row(other[row.quantity], row.name) for row in evidence.wrong if row.quantity in other}
@@ -88,7 +88,7 @@ def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
-    """What two parts of a car have, each under the other's names."""
+    """The numbers of two parts of a car are given under each other's names."""
     for one, two in combinations(evidence.scene.mechanism.topology.sides, 2):
         other = {one: two, two: one}
         rows = {row: row for row in evidence.held}
@@ -96,12 +96,12 @@ def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
             part, dot, name = row.name.partition(".")
             if dot and part in other:
                 rows[row] = Row(row.quantity, f"{other[part]}.{name}")
-        words = f"what is of {one} stands under {two}, and the other way"
+        words = f"{one} and {two} are exchanged"
         yield Hypothesis(words, _of_others(evidence, rows), whole=True)
 
 
 def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, WouldBe]:
-    """Rows with the numbers of others, where these are there and have as many components."""
+    """Rows with the numbers of other rows, if these exist and have the same shape."""
     held = evidence.held
     return {
         row: (held[other], evidence.allowed[other])
@@ -111,14 +111,14 @@ def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, Would
 
 
 def of_another_instant(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Every number is in the row after or before its own."""
+    """All numbers are shifted by one row."""
     for words, moved in SAMPLES.items():
         rows = {row: (moved(evidence.held[row]), moved(evidence.allowed[row])) for row in evidence.looked}
         yield Hypothesis(words, rows, cost=1.2)
 
 
 def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
-    """What is subtracted of places and angles: the first value, the drawing's, or a constant."""
+    """Offsets of positions and angles: the first or the drawn value subtracted, or a constant added."""
     as_drawn = _as_drawn(evidence)
     for row in evidence.wrong:
         if row.order > 0:
@@ -129,21 +129,21 @@ def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
             yield Hypothesis("the value of the drawing is subtracted", more(-as_drawn[row]), cost=1.2)
         gap = constant_gap(evidence, row, MEANT) if len(evidence.times) > 2 else None
         if gap is not None:
-            # Every point has that of another origin.
+            # If the origin is another one, all points have this offset.
             undo = partial(_shifted, -gap) if row.of == "point" else None
             words, count = f"a constant offset of {evidence.in_words(row, gap)}", int(np.count_nonzero(gap))
             yield Hypothesis(words, more(gap), count, 1.0 + count, undo=undo)
 
 
 def constant_gap(evidence: Evidence, row: Row, least: float = 1.0) -> Array | None:
-    """The constant that a row's numbers are nearest to being off by, as round as they tell.
+    """The constant difference that fits the numbers of a row best, rounded as far as they allow.
 
-    None where it is at most so many times what is allowed of numbers that were computed again.
+    None if it is at most `least` times the tolerance of recomputed numbers.
     """
     apart, off = evidence.given[row] - evidence.held[row], evidence.rounded(row)
     noise = float(off.max())
     off = off + evidence.own.get(row, 0.0)
-    # Amid what its digits leave open.
+    # The middle of the interval that the digits allow.
     gap = np.asarray(0.5 * ((apart - off).max(axis=0) + (apart + off).min(axis=0)))
     if not (np.isfinite(gap).all() and np.abs(gap).max() > least * noise):
         return None
@@ -152,7 +152,7 @@ def constant_gap(evidence: Evidence, row: Row, least: float = 1.0) -> Array | No
 
 
 def so_much_more(evidence: Evidence, row: Row, amount: Array) -> dict[Row, WouldBe]:
-    """A row that is ours and so much more."""
+    """The numbers of a row with an amount added."""
     return {row: (evidence.held[row] + amount, evidence.rounded(row, amount))}
 
 
@@ -161,7 +161,7 @@ def _shifted(shift: Array, row: Row, places: Array) -> Array:
 
 
 def _as_drawn(evidence: Evidence) -> dict[Row, Array]:
-    """The numbers of the car, of those that disagree, as it is drawn."""
+    """The drawn values of the numbers of the car that disagree."""
     rows = [row for row in evidence.wrong if row.of == "car" and row.order == 0]
     try:
         scene = evidence.solved.fine
@@ -174,9 +174,9 @@ def _as_drawn(evidence: Evidence) -> dict[Row, Array]:
 
 
 def printed_digits(evidence: Evidence) -> Iterator[Hypothesis]:
-    """The fewest decimals that the given numbers have, and single precision.
+    """Rounding to the fewest decimals that the given numbers have, or to single precision.
 
-    Half of the last place is what they may be off.
+    The tolerance is widened by half of the last place.
     """
     for rows in together(evidence.wrong):
         _, theirs, _ = evidence.joined(rows)
@@ -194,6 +194,6 @@ def printed_digits(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def _looser(evidence: Evidence, row: Row, last_place: Array) -> WouldBe:
-    """The numbers as they are held, and half of a last place more that they may be off."""
+    """The held numbers, with a tolerance widened by half of a last place."""
     held = evidence.held[row]
     return held, evidence.allowed[row] + 0.5 * last_place + EPS * np.abs(held)

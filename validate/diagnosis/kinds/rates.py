@@ -1,10 +1,10 @@
-"""Rates by finite differences, or by an input instead of by time.
+"""Faults of rates: finite differences, or rates with respect to an input instead of time.
 
-A velocity is then what positions change by from instant to instant. With h the time between two instants:
-forward (x_{k+1} - x_k) / h, backward (x_k - x_{k-1}) / h, central the mean of both, and for
-accelerations also (x_{k+1} - 2 x_k + x_{k-1}) / h^2. At the ends, where the rule has no neighbour, it is
-one-sided, or the neighbour's number is repeated, or a zero stands for it. Differences of numbers that
-disagree themselves explain nothing: any car's rates are nearly differences of its positions.
+With h the time between two instants, differences are forward (x_{k+1} - x_k) / h, backward (x_k - x_{k-1}) /
+h, central (the mean of both), and for accelerations also (x_{k+1} - 2 x_k + x_{k-1}) / h^2. At the ends,
+where a neighbour is missing, the rule is one-sided, or the neighbour's number is repeated, or zero is used.
+Differences of numbers that disagree explain nothing: the rates of any car are nearly differences of its
+positions.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def _second(x: Array, t: Array) -> Array:
 
 
 def _padded(rule: Rule, ends: tuple[int, int], mode: Literal["edge", "constant"]) -> Rule:
-    """The rule with so many rows more before and after: the neighbour's numbers, or zeros."""
+    """The rule with further rows before and after: the neighbour's numbers, or zeros."""
     return lambda x, t: np.pad(rule(x, t), [ends, *[(0, 0)] * (x.ndim - 1)], mode=mode)
 
 
@@ -67,11 +67,11 @@ RULES: list[tuple[str, Rule, int]] = [
     ("second differences of positions", _padded(_second, (1, 1), "edge"), 2),
     ("second differences of positions, zero at the ends", _padded(_second, (1, 1), "constant"), 2),
 ]
-"""In words, and which derivative each makes."""
+"""The rules: in words, the function, and the order of the derivative."""
 
 
 def _integral(row: Row, below: int, evidence: Evidence) -> Row | None:
-    """The row that a row is so many time derivatives of."""
+    """The row of which a row is the time derivative of order `below`; None if it is not given."""
     for quantity in QUANTITIES:
         other = Row(quantity, row.name)
         alike = other.of == row.of and other.unit == row.unit
@@ -81,7 +81,7 @@ def _integral(row: Row, below: int, evidence: Evidence) -> Row | None:
 
 
 def differences(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each rule, of all rates that disagree, by the given numbers of one or two orders below that agree."""
+    """Each rule, for all rates that disagree, applied to given numbers of lower order that agree."""
     times = evidence.times
     if len(times) < 4 or not (np.diff(times) > 0.0).all():
         return
@@ -94,7 +94,7 @@ def differences(evidence: Evidence) -> Iterator[Hypothesis]:
                 continue
             numbers = evidence.given[source]
             value = rule(numbers, times)
-            # What is subtracted is rounded once in the numbers, and so are the instants.
+            # The numbers and the instants are each rounded before they are subtracted.
             late = latest / step * float(np.abs(value).max(initial=0.0))
             rounding = 16.0 * EPS * (float(np.abs(numbers).max()) / step**below + late)
             rows[row] = value, evidence.rounded(row) + rounding
@@ -102,7 +102,7 @@ def differences(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def per_input(evidence: Evidence) -> Iterator[Hypothesis]:
-    """With s the rate of an input that never rests: v / s for v, and (a - v s' / s) / s^2 for a."""
+    """Derivatives by an input with rate s, never zero: v / s for v, and (a - v s' / s) / s^2 for a."""
     units = evidence.scene.mechanism.topology.input_units
     rated = [row for row in evidence.wrong if row.order > 0]
     for name, law in evidence.scene.inputs.items() if rated else ():

@@ -69,7 +69,7 @@ class End:
         return self.subject.absolute(inputs, stop=1.0 if self.moving else None)
 
     def beyond(self, _: Subject, overshoot: float) -> Content:
-        """The scene that drives the input beyond its end by a share of its range; an arm at most to 0 or pi."""
+        """The scene that drives the input beyond its end by a share of its range, an arm to 0 or pi."""
         last, start = self.last, self.start[self.driven]
         goal = last.beyond(overshoot)
         if self.subject.is_a("arm", self.driven):
