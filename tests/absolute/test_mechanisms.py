@@ -1,15 +1,12 @@
-"""Rows that follow from each other, and the digits of points that are drawn near each other."""
+"""Rows that follow from each other, and derivatives of an arm on an arm."""
 
 from math import comb
 from typing import Any
 
 import numpy as np
 import pytest
-from many_digits import DIGITS, unit, vector
-from mechanism_files import plain_scene
-from mpmath import acos, mp
 from scipy.linalg import expm
-from shipped import EPS, Array, Motion, error, exact, off
+from shipped import Array, Motion
 
 import absolute
 
@@ -84,41 +81,3 @@ def test_every_derivative_of_an_arm_that_turns_on_a_turning_arm_is_that_of_two_r
         for n in orders:
             meant = sum(comb(n, j) * first[j] @ second[n - j] for j in range(n + 1))
             np.testing.assert_allclose(found[n]["end"][i], meant, rtol=0.0, atol=1e-12 * 100.0 * 4.0**n)
-
-
-# Pairs of one body of the paper's strut.
-PAIRS = [
-    ("lower_arm_front", "lower_arm_rear"),
-    ("lower_ball_joint", "strut_lower"),
-    ("strut_top", "strut_rod_end"),
-    ("tie_rod_outer", "wheel_centre"),
-]
-
-
-@pytest.mark.parametrize(("fixed", "moved"), PAIRS)
-def test_points_drawn_near_each_other_keep_the_digits_of_the_coordinates_given(
-    fixed: str, moved: str
-) -> None:
-    """However short a line between two points of a body is, it is drawn as accurately as they are."""
-    share, scene, random = 1e-3, plain_scene("steer", ["arm_angle", "rack"]), np.random.default_rng(3)
-    car = {name: np.array(point) + random.uniform(-30, 30, 3) for name, point in scene["points"].items()}
-    ball, top = car["lower_ball_joint"], car["strut_top"]
-    for name, along in (("strut_lower", 0.12), ("strut_rod_end", 0.5)):
-        car[name] = ball + along * (top - ball) + random.uniform(-2, 2, 3)
-    car[moved] = car[fixed] + share * (car[moved] - car[fixed])
-    model = absolute.compile(scene | {"points": car})
-    drawing, drawn = model.drawing, absolute.close_drawing(model).inputs
-    for body in model.reported:
-        if {fixed, moved} <= set(model.bodies[body]):
-            number = drawing.bodies[body]
-            line = np.linalg.norm(drawing.arm(number, moved) - drawing.arm(number, fixed)) * drawing.size
-            assert abs(line / np.linalg.norm(car[moved] - car[fixed]) - 1) <= 4 * EPS
-    with mp.workdps(DIGITS):
-        angle = acos(unit(vector(car["lower_ball_joint"]) - vector(car["lower_arm_front"]))[2])
-    # The arc cosine of a ratio with three roundings, at an angle whose sine is above a half.
-    assert abs(drawn["arm_angle"] - float(angle)) <= 4 * EPS
-    goal = {"arm_angle": at([drawn["arm_angle"] + 0.05]), "rack": at([drawn["rack"] + 5.0])}
-    motion = Motion(scene | {"points": car}, goal)
-    solution, (wanted, *_) = motion.solve(rates=False), exact(motion)[0]
-    for name, place in solution.position.items():
-        assert error(place[0], wanted[name]) <= off(solution)[0], name

@@ -214,24 +214,6 @@ def test_a_wheel_on_a_trailing_arm_goes_along_a_circle(who: str, out: int) -> No
 
 
 @by_each
-@both_sides
-@pytest.mark.parametrize("end", [(100.0, 200.0, 400.0), (110.0, 203.0, 398.0)])
-def test_the_roll_centre_of_a_swing_axle_lies_on_the_line_through_its_hinge(
-    who: str, out: int, end: Place
-) -> None:
-    start, contact = (1100.0, 200.0, 400.0), (1060.0, 780.0, 60.0)
-    with workdps(DIGITS):
-        # As a point of the arm the contact point moves at right angles to the hinge and to its arm.
-        (x, y, z), (a, b, c) = (
-            tuple(mpf(p) - mpf(q) for p, q in zip(one, start, strict=True)) for one in (end, contact)
-        )
-        height = 780 * (z * a - x * c) / (x * b - y * a)
-    assert_exact(
-        on_an_arm(who, (start, end), ("roll_centre",), out=out), {"roll_centre_height": [height] * 3}
-    )
-
-
-@by_each
 @pytest.mark.parametrize(("x", "lost"), [(1000.0, "toe_by_travel"), (1060.0, "roll_centre_height")])
 def test_a_wheel_that_does_not_travel_has_no_numbers_by_it(who: str, x: float, lost: str) -> None:
     """The centre is right below the pivot, and goes along the car; or the contact point is."""

@@ -57,11 +57,11 @@ def complaints(err: str) -> list[str]:
 def run(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
     """Run the program to its end."""
     options = {"capture_output": True, "text": True, "env": ENVIRONMENT, "cwd": ROOT} | more
-    return subprocess.run([*PROGRAM, *words], check=False, timeout=120, **options)
+    return subprocess.run([*PROGRAM, *words], check=False, timeout=600, **options)
 
 
 def in_shell(script: str, *words: str, **more: object) -> subprocess.CompletedProcess[str]:
     """Run a shell script in which "$@" is the program with its words."""
     options = {"capture_output": True, "text": True, "env": ENVIRONMENT, "cwd": ROOT} | more
     command = ["bash", "-c", script, "bash", *PROGRAM, *words]
-    return subprocess.run(command, check=False, timeout=120, **options)
+    return subprocess.run(command, check=False, timeout=600, **options)

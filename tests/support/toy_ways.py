@@ -1,4 +1,4 @@
-"""Runs whose errors and times are known, the clock that they move, and numbers of the reference."""
+"""Runs whose errors and times are known, and the clock that they move."""
 
 from __future__ import annotations
 
@@ -7,15 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from pointcoord import Scene
-from validate.cost.errors import truth_of
 from validate.cost.race import Found, Runner, absent
 from validate.cost.table import Row
-
-Array = NDArray[np.float64]
 
 
 @dataclass
@@ -71,14 +64,3 @@ class Toy:
         self.clock.advance(10**12)  # looking at an answer is no part of it
         position = {"error": self.error, "rms": self.error, "radius": 0.0, "numbers": 3, "work": "steps 4"}
         return {"position": position, "wheel": absent("left out", "gives no angles")}
-
-
-_KNOWN: dict[tuple[str, bytes], dict[str, dict[str, Array]]] = {}
-
-
-def reference_numbers(scene: Scene, instants: Array) -> dict[str, dict[str, Array]]:
-    """The reference rounded to doubles; solved once."""
-    key = (scene.model_dump_json(), instants.tobytes())
-    if key not in _KNOWN:
-        _KNOWN[key] = truth_of(scene, instants).numbers
-    return {q: {name: array.copy() for name, array in names.items()} for q, names in _KNOWN[key].items()}

@@ -2,13 +2,15 @@
 
 import csv
 import io
+import json
 import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from changed_scenes import scene_with
+from changed_scenes import content_of, scene_with
+from every_number import with_everything
 
 from pointcoord import Scene, sensitivity, simulate
 from validate.cli import main
@@ -104,28 +106,13 @@ def test_a_number_of_both_wheels_is_asked_for_by_its_own_name(tmp_path: Path) ->
     assert [*rows_of(path)[0]] == ["rack [mm]", "left.toe [deg]", "right.toe [deg]"]
 
 
-LOAD = {"force": [100.0, -3000.0, 4000.0], "moment": [0.0, 0.0, 5000.0]}
-WHOLE_CAR = {
-    "axle": "front",
-    "wheelbase": 2600.0,
-    "centre_of_gravity_height": 500.0,
-    "brake_share": 0.6,
-    "drive_share": 0.3,
-    "spring_rate": 30.0,
-    "spring_free_length": 500.0,
-}
-
-
 def loaded(folder: Path, name: str, samples: int, effects: list[str] | None = None, **more: Any) -> Path:
     """A scene's car with loads, springs and a car about it, that asks for every number if none is said."""
-    content = Scene.load(name).model_dump(exclude_none=True, exclude={"points"}) | more
-    sides = Scene.load(name).mechanism.topology.sides
-    content["mechanism"] |= {"loads": dict.fromkeys(sides or [""], LOAD), "car": WHOLE_CAR}
-    content["mechanism"].setdefault("wheel_radius", 300.0)
-    content["time"]["samples"] = samples
-    every = Scene.from_mapping(content | {"effects": []}, name).mechanism.effects
+    content = with_everything(content_of(name, samples=samples, **more), name)
+    content |= {"effects": effects or content["effects"]}
+    content.pop("points", None)
     path = folder / "car.toml"
-    path.write_text("\n".join(written(content | {"effects": effects or list(every)})), encoding="utf-8")
+    path.write_text("\n".join(written(json.loads(json.dumps(content)))), encoding="utf-8")
     return path
 
 

@@ -1,8 +1,9 @@
 """Errors against the reference, number by number; what is missing or no number is no answer."""
 
+from typing import Any
+
 import numpy as np
 import pytest
-from toy_ways import reference_numbers
 
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.race import Found
@@ -17,19 +18,24 @@ TRUTH = truth_of(SCENE, INSTANTS)
 MOVING = [n for n in SCENE.mechanism.topology.points if n not in SCENE.mechanism.topology.chassis]
 
 
+def right() -> dict[str, dict[str, Any]]:
+    """The reference rounded to doubles."""
+    return {q: {name: array.copy() for name, array in names.items()} for q, names in TRUTH.numbers.items()}
+
+
 def found(numbers: Numbers) -> Found:
     return errors_of(Answer(numbers), TRUTH)
 
 
 def test_the_reference_itself_is_off_by_nothing_and_its_radius_is_its_rounding() -> None:
-    error = found(reference_numbers(SCENE, INSTANTS))["position"]
+    error = found(right())["position"]
     assert (error["error"], error["rms"], error["numbers"]) == (0.0, 0.0, 3 * 5 * len(MOVING))
     assert 0.0 < error["radius"] <= 0.5 * np.spacing(1024.0)
 
 
 @pytest.mark.parametrize("quantity", TRUTH.numbers)
 def test_a_number_that_is_wrong_by_a_known_amount_has_that_error_in_its_quantity_alone(quantity: str) -> None:
-    numbers = reference_numbers(SCENE, INSTANTS)
+    numbers = right()
     name = list(numbers[quantity])[-1]
     numbers[quantity][name].reshape(len(INSTANTS), -1)[3, -1] += 2.0**-6
     errors = found(numbers)
@@ -39,11 +45,11 @@ def test_a_number_that_is_wrong_by_a_known_amount_has_that_error_in_its_quantity
 
 
 def test_a_point_that_is_missing_or_has_other_instants_is_no_answer() -> None:
-    numbers = reference_numbers(SCENE, INSTANTS)
+    numbers = right()
     del numbers["velocity"]["wheel_centre"]
     with pytest.raises(NoAnswer, match="velocity of wheel_centre is not given"):
         found(numbers)
-    numbers = reference_numbers(SCENE, INSTANTS)
+    numbers = right()
     numbers["position"]["wheel_centre"] = numbers["position"]["wheel_centre"][:-1]
     with pytest.raises(NoAnswer, match=r"shape \(4, 3\); allowed: \(5, 3\)"):
         found(numbers)
@@ -51,7 +57,7 @@ def test_a_point_that_is_missing_or_has_other_instants_is_no_answer() -> None:
 
 @pytest.mark.parametrize(("quantity", "bad"), [("position", np.nan), ("acceleration", np.inf)])
 def test_what_is_no_number_is_no_answer(quantity: str, bad: float) -> None:
-    numbers = reference_numbers(SCENE, INSTANTS)
+    numbers = right()
     name = next(iter(numbers[quantity]))
     numbers[quantity][name].reshape(len(INSTANTS), -1)[2, 0] = bad
     words = f"of {name} is not finite at 1 of 5 instants, first at number 2"

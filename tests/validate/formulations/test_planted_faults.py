@@ -7,8 +7,8 @@ from itertools import cycle
 
 import numpy as np
 import pytest
-from built_in_cars import STEERED_CARS
 from changed_scenes import scene_with
+from sample_cars import CARS
 
 import absolute
 import absolute.rows
@@ -143,7 +143,7 @@ FAULTS = {
 OWN_SCENES = {name: Scene.load(name) for name in PAPER_SCENES}
 # On a chassis that moves up and down, so that they show every fault.
 HEAVE = {"heave": {"sine": {"amplitude": 20.0, "angular_frequency": 5.0}}}
-OTHER_CARS = {name: scene_with(name, laws=HEAVE) for name in STEERED_CARS if name not in PAPER_SCENES}
+OTHER_CARS = {name: scene_with(name, laws=HEAVE) for name in CARS if name not in PAPER_SCENES}
 
 
 def shown(name: str, car: str) -> Scene:

@@ -115,7 +115,7 @@ def test_of_a_number_that_does_not_exist_at_an_instant_nothing_is_said_there() -
         assert claim[[0, 2]].max() < 1e-5
 
 
-MODELS = ("absolute", "relative", "mujoco", "exudyn")
+MODELS = ("pointcoord", "absolute", "relative", "mujoco", "exudyn")
 # Numbers of random cars, among them such that are driven up to a fold.
 CARS_AT_RANDOM = (0, 18, 39, 51)
 

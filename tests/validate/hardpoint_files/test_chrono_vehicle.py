@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from foreign_files import STRUT, WISHBONE, chrono
+from foreign_files import STRUT, WISHBONE, chrono, drawn
 
 from validate.cli import main
-from validate.hardpoint_files.importing import Imported, import_hardpoints
+from validate.hardpoint_files.importing import import_hardpoints
 from validate.tables.errors import FileError
 
 AHEAD = {"front": [1.5, 0, 0.25], "rear": [-1.25, 0, 0.125]}
@@ -48,10 +48,6 @@ def vehicle(
     return path
 
 
-def places(found: Imported) -> dict[str, np.ndarray]:
-    return {point.name: np.array([float(n) for n in point.place]) for point in found.points}
-
-
 def test_an_imported_axle_agrees_in_all_models_and_says_where_its_points_are_from(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -72,8 +68,8 @@ def test_axles_are_front_and_rear_by_where_they_are_and_numbers_if_there_are_mor
     more = vehicle(tmp_path / "b", axles=AHEAD | {"rear2": [-2.5, 0, 0.125]})
     with pytest.raises(FileError, match="--part 1 or --part 2 or --part 3"):
         import_hardpoints(more)
-    second, third = (places(import_hardpoints(more, part=part)) for part in "23")
-    np.testing.assert_allclose(third["wheel_centre"] - second["wheel_centre"], [1250, 0, 0], atol=1e-12)
+    second, third = (drawn(import_hardpoints(more, part=part))["wheel_centre"] for part in "23")
+    np.testing.assert_allclose(np.subtract(third, second), [1250, 0, 0], atol=1e-12)
 
 
 def test_a_template_that_only_contains_a_known_name_is_not_it(tmp_path: Path) -> None:

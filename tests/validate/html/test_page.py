@@ -88,12 +88,13 @@ FEW = (*PAPER_SCENES, "five-link", "slider-crank")
 
 @pytest.fixture(scope="module")
 def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The report of built-in scenes, and of times that were measured before."""
-    folder = tmp_path_factory.mktemp("report")
-    cost = made_rows.kept(tmp_path_factory.mktemp("cost") / "rows.parquet", made_rows.study())
+    """The report of built-in scenes, and of hard cases and times of earlier runs."""
+    folder, earlier = tmp_path_factory.mktemp("report"), tmp_path_factory.mktemp("earlier")
+    cost, hard = made_rows.kept(earlier / "rows.parquet", made_rows.study()), earlier / "hard.json"
+    hard.write_text(json.dumps(hard_document()))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("validate.commands.comparison.DEFAULT_SCENES", FEW)
-        assert main(["report", "-q", str(folder), "--cost", cost]) == 0
+        assert main(["report", "-q", str(folder), "--cost", cost, "--hard", str(hard)]) == 0
     return folder
 
 

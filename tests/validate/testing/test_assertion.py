@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from plain_solvers import closed_form
 
-from pointcoord import Scene
 from validate import NotTested, assert_agrees
 from validate.formulations.reference_solution import reference_solution
 from validate.solvers.plain import given_to_solver
 
-SCENE = Scene.load("double-wishbone").model_copy(update={"title": "mine"})
+SCENE = scene_with("double-wishbone", title="mine", samples=21)
 
 
 @pytest.fixture(scope="module")

@@ -1,38 +1,11 @@
-"""The ends of the inputs: where they are, and that each is a fold."""
+"""Where the ends of the inputs are; that each parts poses from none the hard cases next to it say."""
 
 import mpmath
 import pytest
 
-from pointcoord import Scene
-from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.hard.cars import CARS
-from validate.hard.cases.reach import End
-from validate.hard.last_values import ends_of, last_value
-from validate.hard.subjects import NAMED, OTHERS
-from validate.reference import InfeasibleError, Instant
-
-CarEnd = tuple[str, str, bool]
-ENDS: list[CarEnd] = [
-    ("paper", "arm_angle", True),
-    ("wishbone", "rack", True),
-    ("wide", "arm_angle", False),
-    *((subject.name, driven, up) for subject in OTHERS for driven, up in ends_of(subject)[:1]),
-]
-
-
-def pose(end: CarEnd, value: float) -> Instant:
-    """The reference near an end; beyond it for a value below 0."""
-    name, driven, ahead = end
-    held = End(NAMED[name], driven, ahead, moving=False)
-    scene = Scene.from_mapping(held.near(held.subject, value))
-    return reference_instant(scene, inputs_at(scene, 0.0))
-
-
-@pytest.mark.parametrize("end", ENDS, ids=str)
-def test_an_end_separates_poses_from_none_to_a_trillionth_of_the_range(end: CarEnd) -> None:
-    assert pose(end, 1e-12).position
-    with pytest.raises(InfeasibleError):
-        pose(end, -1e-12)
+from validate.hard.last_values import last_value
+from validate.hard.subjects import NAMED
 
 
 @pytest.mark.parametrize("car", ["paper", "turned"])
