@@ -72,7 +72,7 @@ def standing(scene: Scene) -> Standing:
     0.0
     """
     mechanism, closed = _closed(scene)
-    drawn = _drawn(mechanism, closed)
+    drawn = _drawn(mechanism)
     return Standing(
         inputs=drawn,
         reach={name: _ends(mechanism, closed, name) for name in drawn},
@@ -92,7 +92,8 @@ def drawn_inputs(scene: Scene) -> dict[str, float]:
     Raises:
         SceneError, AssemblyError: as `standing`.
     """
-    return _drawn(*_closed(scene))
+    mechanism, _ = _closed(scene)
+    return _drawn(mechanism)
 
 
 def reach_of(scene: Scene, name: str) -> tuple[End, End]:
@@ -110,9 +111,8 @@ def _closed(scene: Scene) -> tuple[Mechanism, Path]:
     return mechanism, close_drawing(mechanism)
 
 
-def _drawn(mechanism: Mechanism, closed: Path) -> dict[str, float]:
-    known = closed.y[mechanism.map.unknowns :]
-    return {name: float(value) + 0.0 for name, value in mechanism.input_values(known).items()}
+def _drawn(mechanism: Mechanism) -> dict[str, float]:
+    return {name: float(value) + 0.0 for name, value in mechanism.drawn_inputs.items()}
 
 
 def drawn_angles(mechanism: Mechanism, axes: CarAxes, effects: Iterable[str], y: Array) -> dict[str, Array]:
@@ -152,7 +152,7 @@ def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
 
 
 def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> End:
-    drawn = _drawn(mechanism, closed)
+    drawn = _drawn(mechanism)
     wanted = {one: np.array(value) for one, value in drawn.items()}
     wanted[name] += side * WHOLE
     _, path = driven_to(mechanism, wanted, closed, 0.0)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,7 +32,7 @@ from pointcoord.results.readout import Laws, Readout
 from pointcoord.results.samples import Channel, Named
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
-from pointcoord.solve.assembly import assembled, close_drawing
+from pointcoord.solve.assembly import assemble, assembled, close_drawing
 from pointcoord.solve.place import Path
 
 Array = NDArray[np.float64]
@@ -97,54 +98,100 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     (7, 5, 3)
     """
     require_scene(scene)
-    mechanism = scene_mechanism(scene)
-    topology = mechanism.topology
+    solver = PoseSolver(scene, scene_mechanism(scene))
+    topology = solver.mechanism.topology
     for name in inputs:
         if name not in topology.inputs:
             raise UnknownName("input", name, topology.inputs)
     for name in topology.required_inputs:
         if name not in inputs:
             raise UnknownName("given input", name, inputs)
-    values = {name: np.asarray(value, dtype=float) for name, value in inputs.items()}
-    for name, value in values.items():
-        if not np.isfinite(value).all():
-            raise InputOutOfRange(name, float(value[~np.isfinite(value)].flat[0]), "finite values")
-    shape = np.broadcast_shapes(*(value.shape for value in values.values()))
-    flat = {name: np.broadcast_to(value, shape).ravel() for name, value in values.items()}
-    wanted = scene.tolerance if tolerance is None else tolerance
-    if not (np.isfinite(wanted) and wanted > 0.0):
-        raise InputOutOfRange("tolerance", wanted, "a finite number of mm above 0")
-    closed = close_drawing(mechanism)
-    require_the_drawn_car(scene, closing(mechanism, closed.y))
+    return solver.solve(inputs, tolerance)
 
-    plan = plan_effects(name for name in scene.effects if EFFECTS[name].derivative == 0)
-    chassis = ChassisMotion.of(mechanism, {})
-    readout = Readout(mechanism, plan, chassis, scene.mechanism.axes)
-    count = int(np.prod(shape))
-    rows, bounds = readout.room(count), np.full((2, count), np.inf)
-    states = readout.states(rows)
-    # The first rows of the table belong to the points that move.
-    moving = rows[: 3 * len(moving_points(topology))]
-    moving[...] = np.nan
-    driving = {name: flat[name] for name in topology.required_inputs}
-    # A map gives positions but not the coordinates that effects need for derivatives along a path.
-    y = np.tile(closed.y, (count, 1)) if plan.along_ways else None
-    rest = np.arange(count)
-    # Redundant rows that are left out of the equations must be checked pose by pose.
-    if count >= FEW and y is None and not topology.left_out:
-        rest = rest[~_by_patches(mechanism, closed, driving, wanted, moving, bounds)]
-    failures: dict[int, PointcoordError] = {}
-    for low in range(0, len(rest), PATHS):
-        failures |= _by_paths(mechanism, closed, driving, rest[low : low + PATHS], moving, bounds, y)
 
-    farthest = np.max([np.sqrt((place**2).sum(axis=-1)) for place in states[0].values()], axis=0)
-    laws = {name: [value] for name, value in flat.items() if name in chassis.directions}
-    readout.complete(laws, states, rows, y)
-    rows[:, ~np.isfinite(bounds[0])] = np.nan
-    rounded, spread = _rounded(chassis, laws, farthest, float(np.abs(mechanism.origin).max()))
-    solved, carried = ((spread * bound + rounded).reshape(shape) for bound in bounds)
-    numbers = readout.table.named(np.zeros(count), rows).shaped(shape).numbers
-    return SolvedPoses(numbers, solved, carried, dict(sorted(failures.items())))
+@dataclass(frozen=True, eq=False)
+class PoseSolver:
+    """Solves poses of one car at any inputs, more than once; its drawing is closed only once."""
+
+    scene: Scene
+    mechanism: Mechanism
+
+    @cached_property
+    def closed(self) -> Path:
+        """The closed drawing, from which every pose is reached.
+
+        Raises:
+            AssemblyError: it cannot be closed.
+        """
+        return close_drawing(self.mechanism)
+
+    @cached_property
+    def readout(self) -> Readout:
+        """Evaluates the effects that need positions only."""
+        plan = plan_effects(name for name in self.scene.effects if EFFECTS[name].derivative == 0)
+        chassis = ChassisMotion.of(self.mechanism, {})
+        return Readout(self.mechanism, plan, chassis, self.scene.mechanism.axes)
+
+    def laws(self, inputs: Mapping[str, Array]) -> Laws:
+        """The values of those inputs that move the chassis."""
+        directions = self.readout.chassis.directions
+        return {name: [value] for name, value in inputs.items() if name in directions}
+
+    def solve(self, inputs: Mapping[str, ArrayLike], tolerance: float | None = None) -> SolvedPoses:
+        """As `solve_poses`, without checking the names of the inputs."""
+        scene, mechanism = self.scene, self.mechanism
+        topology = mechanism.topology
+        values = {name: np.asarray(value, dtype=float) for name, value in inputs.items()}
+        for name, value in values.items():
+            if not np.isfinite(value).all():
+                raise InputOutOfRange(name, float(value[~np.isfinite(value)].flat[0]), "finite values")
+        shape = np.broadcast_shapes(*(value.shape for value in values.values()))
+        flat = {name: np.broadcast_to(value, shape).ravel() for name, value in values.items()}
+        wanted = scene.tolerance if tolerance is None else tolerance
+        if not (np.isfinite(wanted) and wanted > 0.0):
+            raise InputOutOfRange("tolerance", wanted, "a finite number of mm above 0")
+        closed, readout = self.closed, self.readout
+        require_the_drawn_car(scene, closing(mechanism, closed.y))
+
+        count = int(np.prod(shape))
+        rows, bounds = readout.room(count), np.full((2, count), np.inf)
+        states = readout.states(rows)
+        # The first rows of the table belong to the points that move.
+        moving = rows[: 3 * len(moving_points(topology))]
+        moving[...] = np.nan
+        driving = {name: flat[name] for name in topology.required_inputs}
+        # A map gives positions but not the coordinates that effects need for derivatives along a path.
+        y = np.tile(closed.y, (count, 1)) if readout.plan.along_ways else None
+        rest = np.arange(count)
+        # Redundant rows that are left out of the equations must be checked pose by pose.
+        if count >= FEW and y is None and not topology.left_out:
+            rest = rest[~_by_patches(mechanism, closed, driving, wanted, moving, bounds)]
+        failures: dict[int, PointcoordError] = {}
+        for low in range(0, len(rest), PATHS):
+            failures |= _by_paths(mechanism, closed, driving, rest[low : low + PATHS], moving, bounds, y)
+
+        farthest = np.max([np.sqrt((place**2).sum(axis=-1)) for place in states[0].values()], axis=0)
+        laws = self.laws(flat)
+        readout.complete(laws, states, rows, y)
+        rows[:, ~np.isfinite(bounds[0])] = np.nan
+        rounded, spread = _rounded(readout.chassis, laws, farthest, float(np.abs(mechanism.origin).max()))
+        solved, carried = ((spread * bound + rounded).reshape(shape) for bound in bounds)
+        numbers = readout.table.named(np.zeros(count), rows).shaped(shape).numbers
+        return SolvedPoses(numbers, solved, carried, dict(sorted(failures.items())))
+
+    def coordinates(self, inputs: Mapping[str, Array]) -> Array:
+        """Coordinates y of poses, each reached on its own path from the drawing, (N, size).
+
+        Args:
+            inputs: those that drive the linkage, each (N,), rad or mm.
+        Raises:
+            AssemblyError: a pose on a path is singular.
+        """
+        parts = []
+        for low in range(0, len(next(iter(inputs.values()))), PATHS):
+            some = {name: value[low : low + PATHS] for name, value in inputs.items()}
+            parts.append(assemble(self.mechanism, some, closed=self.closed).y)
+        return np.concatenate(parts)
 
 
 def _by_patches(

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.enclosure import TURN, Enclosed, within_a_turn
+from pointcoord.numerics.infinitesimal import slope_of, with_slope
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 if TYPE_CHECKING:
@@ -435,8 +436,19 @@ def cosine_and_sine(angle: Array) -> tuple[Array, Array]:
 
     Both are parts of e = exp(i a), and e' = i a' e gives, term by term,
     e_k = (i/k) sum_{j=1..k} j a_j e_{k-j}.
+
+    An angle with a slope (see `infinitesimal`) gives both with theirs, -sin(a) a' and cos(a) a'.
     """
     count = angle.shape[-1]
+    if np.iscomplexobj(angle):
+        cosine, sine = cosine_and_sine(angle.real)
+        own = slope_of(angle)[..., ::-1]
+
+        def moved(series: Array) -> Array:
+            terms = [np.vecdot(series[..., : k + 1], own[..., count - 1 - k :]) for k in range(count)]
+            return np.stack(terms, axis=-1)
+
+        return with_slope(cosine, -moved(sine)), with_slope(sine, moved(cosine))
     # Stored from last to first, so that the terms in each sum are one slice.
     terms = np.zeros(angle.shape, dtype=complex)
     terms.real[..., -1], terms.imag[..., -1] = np.cos(angle[..., 0]), np.sin(angle[..., 0])

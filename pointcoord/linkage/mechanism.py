@@ -196,6 +196,11 @@ class Mechanism:
             found[drive.input] = np.copysign(found[drive.input], value) if turned else value
         return found
 
+    @property
+    def drawn_inputs(self) -> dict[str, Array]:
+        """The inputs at which the drawing stands, which closing it keeps, each (...), rad or mm."""
+        return self.input_values(self.drawn[..., self.layout.unknowns :])
+
     def known_data(self, y: Array, laws: Mapping[str, Array] | None = None) -> tuple[Array, Array]:
         """Rounding errors of the known coordinates, to be added to them, and the uncertainties that remain.
 

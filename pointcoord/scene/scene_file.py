@@ -410,8 +410,7 @@ class MechanismPart(Part):
             mechanism = build_mechanism(topology, dict(self.points), self.directions)
         except MechanismError:
             return {}
-        coordinates = mechanism.drawn[mechanism.map.unknowns :]
-        return {name: float(value) + 0.0 for name, value in mechanism.input_values(coordinates).items()}
+        return {name: float(value) + 0.0 for name, value in mechanism.drawn_inputs.items()}
 
     @cached_property
     def freedoms(self) -> int:

@@ -7,7 +7,7 @@ designs it has.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -175,6 +175,20 @@ def _coordinates(
                 point, _, axis = coordinate.rpartition(".")
                 found[coordinate] = values + drawn[point][AXES.index(axis)] if relative else values
     return found
+
+
+def coordinates_of(scene: Scene, named: Sequence[str] = ()) -> tuple[str, ...]:
+    """Coordinates by their names, and all three of a point that is named whole; of every point unless named.
+
+    A rack that goes along with the end of the tie rod has no coordinates of its own unless it is named.
+
+    Raises:
+        UnknownName: no point or axis is called so.
+    """
+    points = scene.mechanism.points
+    going = () if named else Designs(scene, 1, {}).following
+    some = (name for name in named or points if name not in going)
+    return tuple(one for name in some for one in coordinates_named(name, points))
 
 
 def coordinates_named(name: str, points: Collection[str]) -> tuple[str, ...]:

@@ -1,8 +1,9 @@
 r"""What the numbers of a solved scene change by with its hardpoints, to first order: exact derivatives.
 
 A hardpoint's coordinate x changes the known coordinates w: the places of points of the chassis, and what is
-read off the drawing, such as lengths and the places of points in their bodies. The inputs keep their values.
-So the poses y(t, x) change by what C(y) = 0 says in the orders d of t and 1 of x,
+read off the drawing, such as lengths and the places of points in their bodies. The inputs keep their values,
+unless it is said what they change by. So the poses y(t, x) change by what C(y) = 0 says in the orders d of t
+and 1 of x,
 
     C_u u_x^(d) = -( C_w w_x^(d) + sum_{0 < i <= d} binomial(d, i) 2 B(y^(i), y_x^(d-i)) ),
 
@@ -12,7 +13,7 @@ formulas of the effects are evaluated with duals of these.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import factorial
@@ -39,11 +40,24 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.infinitesimal import slope_of, with_slope
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import implicit_rate, implicit_slopes, newton_refine
-from pointcoord.results.readout import alone
+from pointcoord.poses import PoseSolver
+from pointcoord.results.readout import Laws, Readout, alone
 from pointcoord.results.solved_scene import SolvedScene
+from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.pointwise import square_velocity_term, with_rates
+from pointcoord.sweeping.designs import AXES, designs_of
 
 Array = NDArray[np.float64]
+
+# Numbers that the coordinates of poses, their derivatives and all slopes of these have at a time: 30 MB.
+ROOM = 4e6
+# Of what an equation between coordinates below 1 changes by where a hardpoint moves by the mechanism's size:
+# one that goes on to follow from others by rounding, 5e-16 in bricard, and another by 0.1 and more.
+HELD = 1e-9
+LOCKS = (
+    "as drawn, the equation {} follows from the others, and where this coordinate moves it does not: the "
+    "mechanism locks"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,17 +77,17 @@ class DualPoses(Poses):
 
 @dataclass(frozen=True, eq=False)
 class MovedPoses:
-    """Poses at instants as coordinates with slopes by K parameters (see `infinitesimal`).
+    """Poses as coordinates with slopes by K parameters (see `infinitesimal`).
 
     Attributes:
-        times: (N,), s.
+        laws: of the inputs that move the chassis.
         states: y and its time derivatives, (K, N, size).
         ways: its derivative along each way, per rad, mm or unit, (K, N, size).
         violated: what the rows that are left out, as they follow from the others, change by where a hardpoint
             moves by the mechanism's unit, (K, N, rows).
     """
 
-    times: Array
+    laws: Laws
     states: Sequence[Array]
     ways: Mapping[Way, Array]
     violated: Array
@@ -81,54 +95,87 @@ class MovedPoses:
 
 @dataclass(frozen=True, eq=False)
 class ByHardpoints:
-    """A solved scene and K parameters of its hardpoints.
+    """K parameters of a car's hardpoints.
 
     Attributes:
+        readout: what is asked for of the car.
         moves: by hardpoint, what its drawn place changes by with each parameter, (K, 3), mm; of all of them.
     """
 
-    solved: SolvedScene
+    readout: Readout
     moves: Mapping[str, Array]
-
-    @property
-    def mechanism(self) -> Mechanism:
-        return self.solved.readout.mechanism
 
     @cached_property
     def moved(self) -> Mechanism:
         """With slopes of all that is read off the drawing."""
-        return hardpoints_moved(self.mechanism, self.moves)
+        return hardpoints_moved(self.readout.mechanism, self.moves)
 
-    def poses(self, times: Array) -> MovedPoses:
-        """Poses at instants of the scene, (N,), s."""
-        plan, mechanism, system = self.solved.readout.plan, self.mechanism, self.mechanism.map
-        highest = plan.derivative
-        laws = {name: law.series(times, highest) for name, law in self.solved.functions.items()}
-        known, by_x = mechanism.known_series(laws), slope_of(self.moved.known_series(laws))
-        y = self.solved.coordinates(times, 0)[0].copy()
+    @cached_property
+    def drawn_inputs(self) -> dict[str, Array]:
+        """The inputs at which the drawing stands, with their slopes, (K, 1), rad or mm.
+
+        An input q drives coordinates w(q, x) = w_drawn(x), so that q_x = (w_drawn - w)_x / w_q; of a turn,
+        which drives two of them, by least squares.
+        """
+        mechanism, moved = self.readout.mechanism, self.moved
+        values = mechanism.drawn_inputs
+        along, square = (dict.fromkeys(values, np.zeros((1, 1))) for _ in range(2))
+        for drive, place in zip(mechanism.topology.drives, mechanism.topology.driven, strict=True):
+            series = np.array([values[drive.input], 1.0])
+            rate = drive.series(series, mechanism.drawing)[1]
+            gap = moved.drawn[..., place] - drive.series(series, moved.drawing)[..., 0]
+            along[drive.input] = along[drive.input] + rate * slope_of(gap)
+            square[drive.input] = square[drive.input] + rate**2
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return {name: with_slope(value, along[name] / square[name]) for name, value in values.items()}
+
+    def along(self, solved: SolvedScene, times: Array) -> MovedPoses:
+        """Poses of a motion at instants, (N,), s."""
+        mechanism, highest = self.readout.mechanism, self.readout.plan.derivative
+        system = mechanism.map
+        laws = {name: law.series(times, highest) for name, law in solved.functions.items()}
+        known = mechanism.known_series(laws)
+        y = solved.coordinates(times, 0)[0].copy()
         y[:, system.unknowns :] = known[:, 0]
         # The motion is within its tolerance, and a derivative is to be within rounding.
         y = newton_refine(system, y).y
         states = with_rates(system, y, known, times, highest, square_velocity_term, Work()).states
-        driven = [factorial(d) * by_x[..., d, :] for d in range(highest + 1)]
+        return self._moved(states, laws, self.readout.laws(times))
+
+    def at(self, y: Array, inputs: Mapping[str, Array], laws: Laws) -> MovedPoses:
+        """Poses y at inputs, (N, size).
+
+        Args:
+            inputs: values of those that drive the linkage, (N,), or with slopes (K, N), rad or mm.
+            laws: values of those that move the chassis.
+        """
+        return self._moved([y], {name: value[..., None] for name, value in inputs.items()}, laws)
+
+    def _moved(self, states: Sequence[Array], driven: Mapping[str, Array], laws: Laws) -> MovedPoses:
+        """Poses and their time derivatives, from the series of the inputs that drive the linkage."""
+        mechanism, y = self.readout.mechanism, states[0]
+        system, topology = mechanism.map, mechanism.topology
+        by_x = slope_of(self.moved.known_series(driven))
         factors = factorise(system.jacobian(y))
-        slopes = implicit_slopes(system, factors, states, driven)
-        inputs, found = {name: law[:, 0] for name, law in laws.items()}, {}
-        ways = plan.ways(mechanism.topology)
+        slopes = implicit_slopes(
+            system, factors, states, [factorial(d) * by_x[..., d, :] for d in range(len(states))]
+        )
+        inputs, found = {name: series[..., 0] for name, series in driven.items()}, {}
+        ways = self.readout.plan.ways(topology)
         for way, rate in zip(ways, way_slopes(mechanism, y, ways), strict=True):
-            gap, rows = shifted(mechanism.topology, way)
+            gap, rows = shifted(topology, way)
             more = 2.0 * (system.polar(rate, slopes[0]) + rows * system.polar(slopes[0], gap))
             own = slope_of(known_slopes(self.moved, inputs, way))
             found[way] = with_slope(rate, implicit_rate(system, factors, y, own, more))
         violated = np.zeros((*slopes[0].shape[:-1], 0))
-        if mechanism.topology.left_out:
-            violated = 2.0 * float(mechanism.unit) * mechanism.topology.left_map.polar(y, slopes[0])
-        return MovedPoses(times, list(map(with_slope, states, slopes)), found, violated)
+        if topology.left_out:
+            violated = 2.0 * float(mechanism.unit) * topology.left_map.polar(y, slopes[0])
+        return MovedPoses(laws, list(map(with_slope, states, slopes)), found, violated)
 
     def numbers(self, at: MovedPoses) -> dict[str, dict[str, Array]]:
         """What every number changes by, by quantity and name, (K, N) of the car and (K, N, 3) of others."""
-        readout, moved = self.solved.readout, self.moved
-        laws, orders = readout.laws(at.times), [factorial(d) for d in range(len(at.states))]
+        readout, moved, laws = self.readout, self.moved, at.laws
+        orders = [factorial(d) for d in range(len(at.states))]
         series = np.stack([state / n for state, n in zip(at.states, orders, strict=True)], axis=-2)
         of_points = point_series(moved, series).items()
         in_chassis = [{name: n * each[..., d, :] for name, each in of_points} for d, n in enumerate(orders)]
@@ -156,6 +203,98 @@ class ByHardpoints:
                     slope = np.broadcast_to(number.slope, (len(series), *number.value.shape))
                     found.setdefault(quantity, {})[name] = slope
         return found
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """What every number changes by with hardpoint coordinates.
+
+    Attributes:
+        numbers: by quantity and name, (coordinates, N) of the car and (coordinates, N, 3) of others, their
+            unit per mm; NaN where there is no derivative.
+        failures: by coordinate, why there is none.
+    """
+
+    numbers: Mapping[str, Mapping[str, Array]]
+    failures: Mapping[str, str]
+
+
+def slopes_of_motion(scene: Scene, solved: SolvedScene, times: Array, coordinates: Sequence[str]) -> Slopes:
+    """Those of a scene's motion at instants, (N,), s; the inputs keep their values."""
+    by_hardpoints = ByHardpoints(solved.readout, moves_of(scene, coordinates))
+
+    def poses(some: slice) -> MovedPoses:
+        return by_hardpoints.along(solved, times[some])
+
+    return _slopes(by_hardpoints, coordinates, len(times), poses)
+
+
+def slopes_of_poses(
+    solver: PoseSolver,
+    inputs: Mapping[str, Array],
+    coordinates: Sequence[str],
+    drawn: Collection[str] = (),
+    changes: Mapping[str, Array] | None = None,
+) -> Slopes:
+    """Those of poses at inputs.
+
+    Args:
+        inputs: values of every input, each (N,), rad or mm.
+        drawn: the inputs that stay as they are drawn, and so change with the drawing.
+        changes: what others that drive the linkage change by with each coordinate, (coordinates,), rad or mm
+            per mm; the rest keep their values.
+    Raises:
+        AssemblyError: a pose cannot be reached from the drawing on a straight path.
+    """
+    by_hardpoints = ByHardpoints(solver.readout, moves_of(solver.scene, coordinates))
+    driving = {name: inputs[name] for name in solver.mechanism.topology.required_inputs}
+    y, laws = solver.coordinates(driving), solver.laws(inputs)
+    moving = {name: slope_of(by_hardpoints.drawn_inputs[name]) for name in drawn}
+    moving |= {name: change[:, None] for name, change in (changes or {}).items()}
+
+    def poses(some: slice) -> MovedPoses:
+        here = {name: value[some] for name, value in driving.items()}
+        here |= {name: with_slope(here[name], change) for name, change in moving.items()}
+        return by_hardpoints.at(y[some], here, {name: [law[0][some]] for name, law in laws.items()})
+
+    return _slopes(by_hardpoints, coordinates, len(y), poses)
+
+
+def moves_of(scene: Scene, coordinates: Sequence[str]) -> dict[str, Array]:
+    """By hardpoint, what its place changes by with each coordinate, (K, 3); points that go along do so."""
+    points = scene.mechanism.points
+    found = {name: np.zeros((len(coordinates), 3)) for name in points}
+    for i, coordinate in enumerate(coordinates):
+        point, _, axis = coordinate.rpartition(".")
+        found[point][i, AXES.index(axis)] = 1.0
+    following = designs_of(scene, offsets=dict.fromkeys(coordinates, 0.0)).following
+    return found | {name: found[other] for name, other in following.items()}
+
+
+def _slopes(
+    by_hardpoints: ByHardpoints,
+    coordinates: Sequence[str],
+    count: int,
+    poses: Callable[[slice], MovedPoses],
+) -> Slopes:
+    """Those of some of `count` poses at a time."""
+    plan, topology = by_hardpoints.readout.plan, by_hardpoints.readout.mechanism.topology
+    each = len(coordinates) * topology.layout.size * (plan.derivative + 1 + 2 * len(plan.ways(topology)))
+    together = max(int(ROOM // each), 1)
+    parts, violated = [], np.zeros((len(coordinates), len(topology.left_out)))
+    for low in range(0, count, together):
+        here = poses(slice(low, low + together))
+        parts.append(by_hardpoints.numbers(here))
+        violated = np.maximum(violated, np.abs(here.violated).max(axis=1))
+    found = {
+        quantity: {name: np.concatenate([part[quantity][name] for part in parts], axis=1) for name in of}
+        for quantity, of in parts[0].items()
+    }
+    worst = {i: int(np.argmax(rows)) for i, rows in enumerate(violated) if (rows > HELD).any()}
+    for array in (array for numbers in found.values() for array in numbers.values()):
+        array[[*worst]] = np.nan
+    failures = {coordinates[i]: LOCKS.format(topology.left_labels[row]) for i, row in worst.items()}
+    return Slopes(found, failures)
 
 
 def _duals(points: Mapping[str, Array]) -> dict[str, Dual[Array]]:

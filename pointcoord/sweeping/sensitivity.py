@@ -17,21 +17,11 @@ from pointcoord.results.read_only import ReadOnly
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
-from pointcoord.sweeping.designs import AXES, Designs, coordinates_named, designs_of
-from pointcoord.sweeping.hardpoint_slopes import ByHardpoints
+from pointcoord.sweeping.designs import coordinates_of
+from pointcoord.sweeping.hardpoint_slopes import slopes_of_motion
 from pointcoord.sweeping.sweep import sweep
 
 Array = NDArray[np.float64]
-
-# Numbers that the coordinates of poses, their derivatives and all slopes of these have at a time: 30 MB.
-ROOM = 4e6
-# Of what an equation between coordinates below 1 changes by where a hardpoint moves by the mechanism's size:
-# one that goes on to follow from others by rounding, 5e-16 in bricard, and another by 0.1 and more.
-HELD = 1e-9
-LOCKS = (
-    "as drawn, the equation {} follows from the others, and where this coordinate moves it does not: the "
-    "mechanism locks"
-)
 
 
 @dataclass(frozen=True)
@@ -83,11 +73,7 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
     (1, 101)
     """
     require_scene(scene)
-    named = _coordinates(scene, coordinates)
-    if not coordinates:
-        # A rack that goes along with the tie rod's end has no coordinates of its own.
-        following = Designs(scene, 1, {}).following
-        named = tuple(name for name in named if name.rpartition(".")[0] not in following)
+    named = tuple(dict.fromkeys(coordinates_of(scene, coordinates)))
     drawn = sweep(scene)
     every = numbers_named(drawn.numbers, numbers)
     if not every:
@@ -98,53 +84,13 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
         failures = dict.fromkeys(named, str(drawn.failures[0].error))
         return Sensitivity(named, drawn.times, nothing, failures)
     motion = drawn.motion(0)
-    slopes, failures = _slopes(ByHardpoints(motion.solved, _moves(scene, named)), motion.times, named)
-    lost = np.array([name in failures for name in named])
-    channels = {}
+    slopes, channels = slopes_of_motion(scene, motion.solved, motion.times, named), {}
     for quantity, channel in drawn.numbers.items():
         # Where a number is none its formula may still have a slope.
-        arrays = {
-            n: np.where(np.isfinite(values), slopes[quantity][n], np.nan) for n, values in channel.items()
-        }
-        for array in arrays.values():
-            array[lost] = np.nan
+        own = slopes.numbers.get(quantity, {})
+        arrays = {n: np.where(np.isfinite(values), own[n], np.nan) for n, values in channel.items()}
         channels[quantity] = channel.with_arrays(arrays)
-    return Sensitivity(named, drawn.times, numbers_named(channels, numbers), failures)
-
-
-def _slopes(
-    by_hardpoints: ByHardpoints, times: Array, coordinates: Sequence[str]
-) -> tuple[dict[str, dict[str, Array]], dict[str, str]]:
-    """What every number changes by, (K, N) or (K, N, 3), and why some coordinates have no derivative."""
-    plan, topology = by_hardpoints.solved.readout.plan, by_hardpoints.mechanism.topology
-    each = len(coordinates) * topology.layout.size * (plan.derivative + 1 + 2 * len(plan.ways(topology)))
-    together = max(int(ROOM // each), 1)
-    parts, violated = [], np.zeros((len(coordinates), len(topology.left_out)))
-    for low in range(0, len(times), together):
-        poses = by_hardpoints.poses(times[low : low + together])
-        parts.append(by_hardpoints.numbers(poses))
-        violated = np.maximum(violated, np.abs(poses.violated).max(axis=1))
-    found = {
-        quantity: {name: np.concatenate([part[quantity][name] for part in parts], axis=1) for name in of}
-        for quantity, of in parts[0].items()
-    }
-    worst = {
-        name: int(np.argmax(rows))
-        for name, rows in zip(coordinates, violated, strict=True)
-        if (rows > HELD).any()
-    }
-    return found, {name: LOCKS.format(topology.left_labels[row]) for name, row in worst.items()}
-
-
-def _moves(scene: Scene, coordinates: Sequence[str]) -> dict[str, Array]:
-    """By hardpoint, what its place changes by with each coordinate, (K, 3)."""
-    points = scene.mechanism.points
-    found = {name: np.zeros((len(coordinates), 3)) for name in points}
-    for i, coordinate in enumerate(coordinates):
-        point, _, axis = coordinate.rpartition(".")
-        found[point][i, AXES.index(axis)] = 1.0
-    following = designs_of(scene, offsets=dict.fromkeys(coordinates, 0.0)).following
-    return found | {name: found[other] for name, other in following.items()}
+    return Sensitivity(named, drawn.times, numbers_named(channels, numbers), slopes.failures)
 
 
 def numbers_named(channels: Mapping[str, Channel], names: Sequence[str]) -> dict[str, Array]:
@@ -176,9 +122,3 @@ def _scalars(numbers: Mapping[str, Channel]) -> dict[str, Array]:
         for name, values in channel.items() if channel.quantity.of == "car" else ():
             found[f"{quantity}.{name}" if name in found else name] = values
     return found
-
-
-def _coordinates(scene: Scene, asked: Sequence[str]) -> tuple[str, ...]:
-    """Coordinates by name, those of a point that is named whole in their order."""
-    points = scene.mechanism.points
-    return tuple(dict.fromkeys(one for name in asked or points for one in coordinates_named(name, points)))

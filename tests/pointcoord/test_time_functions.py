@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import make_interp_spline
 
-from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction
+from pointcoord.numerics.infinitesimal import slope_of, with_slope
+from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction, cosine_and_sine
 
 EPS = np.finfo(float).eps
 ORDER = 12
@@ -146,3 +147,17 @@ def test_over_more_than_a_turn_a_sine_reaches_both_its_crests_as_they_are_rounde
         # What is added is a few roundings of numbers below 1.
         assert values.min() - low <= 100 * EPS
         assert high - values.max() <= 100 * EPS
+
+
+def test_the_series_of_a_cosine_and_a_sine_change_with_their_angle_in_closed_form() -> None:
+    """Of a + b t, with slopes a' and b', the terms are b^k / k! cos(a + k pi / 2)."""
+    a, b, by_a, by_b = 0.7, 1.3, np.array([[1.0], [0.0], [-2.0]]), np.array([[0.0], [1.0], [0.5]])
+    k = np.arange(5)
+    angle, slope = np.pad([a, b], (0, 3)), np.concatenate([by_a, by_b, np.zeros((3, 3))], axis=1)
+    found = cosine_and_sine(with_slope(angle, slope))
+    orders = np.array([factorial(i) for i in k])
+    for series, start in zip(found, (a, a - np.pi / 2), strict=True):
+        value, turned = np.cos(start + k * np.pi / 2), -np.sin(start + k * np.pi / 2)
+        exact = (by_a * b**k * turned + by_b * k * b ** np.maximum(k - 1.0, 0.0) * value) / orders
+        np.testing.assert_allclose(series.real[0], b**k * value / orders, rtol=0, atol=4 * EPS)
+        np.testing.assert_allclose(slope_of(series), exact, rtol=0, atol=32 * EPS)

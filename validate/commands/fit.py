@@ -56,7 +56,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         measured = read_results(options.data, options.map, scene)
         limits = options.bounds, options.prior, options.accuracy
         problem = Problem.of(scene, measured, options.free, *limits)
-        numbers, source = len(problem.first), measured.source
+        numbers, source = len(problem.used), measured.source
         task = "tested as suspects with" if options.suspects else "fitted to"
         many = f"{len(problem.free)} coordinates are {task} {numbers} numbers"
         console.note(f"{name}: {many}; this may take a while")

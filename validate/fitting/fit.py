@@ -33,7 +33,7 @@ from scipy.optimize import least_squares, lsq_linear
 from scipy.special import ndtri, stdtrit
 
 from pointcoord import PointcoordError, Scene
-from validate.fitting.problem import Problem
+from validate.fitting.problem import Design, Problem
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -162,27 +162,33 @@ def fit_hardpoints(
     Raises:
         FileError: where the search comes by, a number has no slope.
     """
-    bounds, prior, first = problem.bounds, problem.prior, problem.first
+    bounds, prior = problem.bounds, problem.prior
     rows, zero = problem.measured.rows, np.zeros(len(problem.free))
-    tried, failures = count(1), dict[str, None]()
+    designs, tried, failures = {zero.tobytes(): problem.start}, count(1), dict[str, None]()
+
+    def design(amounts: Array) -> Design:
+        # Slopes are asked for where the search has just been, or on a bound that is a rounding away.
+        at = amounts.tobytes()
+        if at not in designs:
+            told(f"{(number := next(tried))} tried", number)
+            designs[at] = problem.solved(amounts)
+        return designs[at]
 
     def left(amounts: Array) -> Array:
         """What is left by corrections, NaN where the design cannot be solved or a row has no pose."""
-        numbers = first if not amounts.any() else np.full(len(first), np.nan)
-        if amounts.any():
-            told(f"{(at := next(tried))} tried", at)
-            try:
-                found = problem.solved(amounts)
-                numbers = problem.numbers(found)
-                if len(lost := np.flatnonzero(problem.used & ~np.isfinite(numbers)) % len(rows)):
-                    reason = found.reasons.get(int(lost[0]), "no number")
-                    failures[f"{rows[lost[0]]}: {reason}"] = None
-            except PointcoordError as error:
-                failures[str(error)] = None
-        return np.concatenate([problem.misfit(numbers), amounts / prior])
+        misfit = np.full(len(problem.spread), np.nan)
+        try:
+            there = design(amounts)
+            misfit = problem.misfit(there)
+            if len(lost := np.flatnonzero(problem.used & ~np.isfinite(there.numbers)) % len(rows)):
+                reason = there.found.reasons.get(int(lost[0]), "no number")
+                failures[f"{rows[lost[0]]}: {reason}"] = None
+        except PointcoordError as error:
+            failures[str(error)] = None
+        return np.concatenate([misfit, amounts / prior])
 
     def slopes(amounts: Array) -> Array:
-        return np.concatenate([problem.slopes(amounts), np.eye(len(zero)) / prior])
+        return np.concatenate([problem.slopes(design(amounts)), np.eye(len(zero)) / prior])
 
     solved = least_squares(
         left,
@@ -221,9 +227,9 @@ def fit_hardpoints(
     ]
     better = lsq_linear(solved.jac, -rest, bounds=(-bounds - amounts, bounds - amounts))
     return Fit(
-        scene=problem.design(amounts),
+        scene=problem.corrected(amounts),
         coordinates=dict(zip(problem.free, coordinates, strict=True)),
-        columns=_columns(problem, problem.misfit(first), after),
+        columns=_columns(problem, problem.misfit(problem.start), after),
         combinations=tuple(combinations),
         factor=factor,
         freedom=freedom,

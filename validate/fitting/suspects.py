@@ -104,13 +104,13 @@ def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspe
     Raises:
         FileError: a number of the car as drawn has no slope.
     """
-    free, first = problem.free, problem.misfit(problem.first)
+    free, first = problem.free, problem.misfit(problem.start)
     left, count = float(first @ first), len(first)
     drawn = explains(left, float(np.abs(first).max()), count)
     found = Suspects(left, count, drawn, problem.notes)
     if drawn:
         return found
-    slopes = problem.slopes(np.zeros(len(free)))
+    slopes = problem.slopes(problem.start)
     seen = [i for i, size in enumerate(np.linalg.norm(slopes, axis=0)) if size * problem.bounds >= 1.0]
     fits, refused, tried, best = list[Fit](), list[str](), list[tuple[int, int]](), list[Fit]()
     for size in range(1, min(LARGEST, len(seen), count - 1) + 1):
@@ -158,7 +158,8 @@ def _beside(problem: Problem, start: Fit, seen: Sequence[int]) -> list[tuple[int
     amounts = np.zeros(len(free))
     amounts[chosen] = [one.correction for one in start.coordinates.values()]
     try:
-        misfit, slopes = problem.misfit(problem.numbers(problem.solved(amounts))), problem.slopes(amounts)
+        design = problem.solved(amounts)
+        misfit, slopes = problem.misfit(design), problem.slopes(design)
     except PointcoordError:
         return []
     if not np.isfinite(misfit).all():

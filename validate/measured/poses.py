@@ -15,15 +15,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, Scene, simulate, solve_poses
-from pointcoord.drawing_stands import drawn_inputs
+from pointcoord import Motion, Scene, designs_of, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.file import MECHANISMS, read_tables
+from pointcoord.numerics.infinitesimal import slope_of
 from pointcoord.numerics.rounding import EPS
+from pointcoord.poses import PoseSolver
 from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import scene_mechanism
-from pointcoord.solve.assembly import close_drawing
+from pointcoord.sweeping.hardpoint_slopes import ByHardpoints, moves_of, slopes_of_motion, slopes_of_poses
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import CONTACT, PLACES, TIME, TRAVEL
 from validate.tables.errors import FileError
@@ -62,16 +63,16 @@ class Driven:
 
     Attributes:
         scene: it asks for all points and for the effects that the file's columns need.
+        own: where it is driven by a travel, the same by the scene's own inputs, by which its drawing closes.
         columns: the input of each independent column; time itself over time.
         held: inputs that the map holds, or the scene at another value than drawn.
-        drawn: the inputs of the closed drawing, which all others have, and from which a travel counts.
         notes: inputs that the file does not give, in words.
     """
 
     scene: Scene
     columns: tuple[str, ...]
+    own: Scene | None = None
     held: Mapping[str, float] = field(default_factory=dict)
-    drawn: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     @classmethod
@@ -80,7 +81,7 @@ class Driven:
 
         Raises:
             FileError: a travel without what it needs, or of which no input can be solved for.
-            PointcoordError: the drawing cannot be closed.
+            PointcoordError: the hardpoints make no mechanism, or a travel's drawing cannot be closed.
         """
         scene = _asked(scene, measured)
         columns = tuple(s.meaning.drives for s in measured.independent)
@@ -92,7 +93,7 @@ class Driven:
             problem = f"{' and '.join(travels)} are travels of the same rows"
             raise FileError(measured.source, "", problem, "one travel, given or held")
         driven = _driven_by(scene, travels[0], given, measured) if travels else scene
-        car = cls(driven, columns).redrawn(scene, driven)
+        car = cls(driven, columns, scene if travels else None, measured.held)
         held, notes, topology = dict(measured.held), list[str](), driven.mechanism.topology
         for name in topology.required_inputs:
             if name in given:
@@ -111,32 +112,52 @@ class Driven:
         """Whether rows are instants of the scene's own motion."""
         return self.columns == (TIME,)
 
-    def redrawn(self, drawn: Scene, driven: Scene) -> Driven:
-        """A design of the same car, driven by the same.
+    def redrawn(self, offsets: Mapping[str, float]) -> Driven:
+        """The same of a car with hardpoints moved.
 
         Args:
-            drawn: the design by the scene's own inputs, which say where its drawing closes.
+            offsets: of coordinates, mm.
+        Raises:
+            SceneError: the hardpoints make no mechanism.
         """
-        if self.over_time:
-            return replace(self, scene=driven)
-        mechanism, part = scene_mechanism(drawn), driven.mechanism
-        y, unit = close_drawing(mechanism).y, float(mechanism.unit)
-        inputs = mechanism.input_values(y[mechanism.map.unknowns :])
-        home = {name: place * unit + mechanism.origin for name, place in mechanism.places(y).items()}
-        there = {point: np.array(place) for point, place in part.points.items()}
-        known: dict[str, float] = {}
-        for name in part.topology.required_inputs:
-            if name in mechanism.topology.required_inputs:
-                known[name] = float(inputs[name]) + 0.0
-                continue
-            # As an input it counts from the drawing as it stands, which need not close.
-            closed, as_it_stands = (_height(part, name.partition(".")[2], at) for at in (home, there))
-            known[name] = closed - as_it_stands
-        return replace(self, scene=driven, drawn=known)
+        scene = designs_of(self.scene, offsets=offsets).design(0)
+        own = None if self.own is None else designs_of(self.own, offsets=offsets).design(0)
+        return replace(self, scene=scene, own=own)
+
+    @cached_property
+    def solver(self) -> PoseSolver:
+        """Of the car's poses."""
+        return PoseSolver(self.scene, scene_mechanism(self.scene))
+
+    @cached_property
+    def closing(self) -> PoseSolver:
+        """The same by the scene's own inputs."""
+        return self.solver if self.own is None else PoseSolver(self.own, scene_mechanism(self.own))
+
+    @property
+    def travel(self) -> str:
+        """The input that is a travel; empty if none is."""
+        given = () if self.own is None else (*self.columns, *self.held)
+        return next((name for name in given if name.startswith(f"{TRAVEL}.")), "")
+
+    @cached_property
+    def drawn(self) -> Mapping[str, float]:
+        """The inputs of the closed drawing, which all others have, and from which a travel counts."""
+        found = {name: float(value) + 0.0 for name, value in self.solver.mechanism.drawn_inputs.items()}
+        if self.travel:
+            found[self.travel] = float(self._risen(self.closing.mechanism, self.closing.closed.y))
+        return found
+
+    def _risen(self, mechanism: Mechanism, y: Array) -> Array:
+        """How much higher the point of a travel is in a pose, (..., size), than drawn, (...), mm."""
+        # As an input it counts from the drawing as it stands, which need not close.
+        part, point = self.scene.mechanism, self.travel.partition(".")[2]
+        there = {name: place * mechanism.unit[..., None] for name, place in mechanism.places(y).items()}
+        return _height(part, point, there) - _height(part, point, mechanism.drawn_places)
 
     def level(self, name: str) -> float:
         """From where an input's column counts: a travel from the closed drawing."""
-        return self.drawn.get(name, 0.0) if name.startswith(f"{TRAVEL}.") else 0.0
+        return self.drawn[name] if name == self.travel else 0.0
 
     def inputs(self, values: Sequence[Array]) -> tuple[dict[str, Array], dict[int, str]]:
         """Every input at values of the columns of inputs, each (N,), and why a row has none."""
@@ -155,7 +176,7 @@ class Driven:
     @cached_property
     def sensible(self) -> dict[str, tuple[float, float]]:
         """Between which values inputs have a meaning and are no slip."""
-        mechanism, found = scene_mechanism(self.scene), {}
+        mechanism, found = self.solver.mechanism, {}
         for drive in mechanism.topology.drives:
             name, wide = drive.input, _widest(mechanism, drive.input)
             beyond = drive.extremes(mechanism.drawing)
@@ -205,7 +226,7 @@ class Driven:
         bounded: bool = False,
     ) -> Found:
         """The same at inputs, pose by pose; where there is a reason there is no pose."""
-        poses = solve_poses(self.scene, inputs, tolerance)
+        poses = self.solver.solve(inputs, tolerance)
         failed = {row: f"is out of reach: {error}" for row, error in poses.failures.items()}
         reached = poses.solved
         reached[[*reasons]] = False
@@ -215,6 +236,41 @@ class Driven:
             return found
         off = np.maximum(poses.bound, poses.carried_bound)
         return replace(found, bounds=self.within(found, np.where(reached, off, 0.0)))
+
+    def slopes(self, found: Found, coordinates: Sequence[str]) -> Numbers:
+        """What our numbers change by with drawn coordinates, (coordinates, N, 3) or (coordinates, N), per mm.
+
+        An input that the file gives is the same in every design, but a travel counts from the design's own
+        drawing; one that nothing gives or holds is as drawn. NaN where there is no pose.
+
+        Raises:
+            AssemblyError: as `slopes_of_poses`.
+        """
+        rows, scene = found.reached, self.scene
+        inputs = {name: value[rows] for name, value in found.inputs.items()}
+        if self.over_time:
+            slopes = slopes_of_motion(scene, self.motion.solved, inputs[TIME], coordinates)
+        else:
+            given = (*self.columns, *self.held)
+            drawn = [name for name in self.drawn if name not in given]
+            slopes = slopes_of_poses(self.solver, inputs, coordinates, drawn, self._levels(coordinates))
+        # Where each row is among those that have a pose.
+        at = np.maximum(np.cumsum(rows) - 1, 0)
+        return {
+            quantity: {
+                name: np.where(rows if array.ndim == 2 else rows[:, None], array[:, at], np.nan)
+                for name, array in part.items()
+            }
+            for quantity, part in slopes.numbers.items()
+        }
+
+    def _levels(self, coordinates: Sequence[str]) -> dict[str, Array]:
+        """What a travel's level changes by with drawn coordinates, (coordinates,), mm per mm."""
+        if not self.travel:
+            return {}
+        by_hardpoints = ByHardpoints(self.closing.readout, moves_of(self.closing.scene, coordinates))
+        closed = by_hardpoints.at(self.closing.closed.y[None], by_hardpoints.drawn_inputs, {})
+        return {self.travel: slope_of(self._risen(by_hardpoints.moved, closed.states[0]))[:, 0]}
 
     def within(self, found: Found, off: Array) -> Numbers:
         """How far numbers may be off whose points are off by so much, (N,), mm.
@@ -271,13 +327,10 @@ def at_either_end(
             yield i, (below, above)
 
 
-def ours_of(series: Series, found: Found) -> tuple[Array | None, Array | None]:
-    """Our numbers of a column and their bounds, (N,); None if not known."""
-    quantity, name, axis = series.meaning.quantity, series.meaning.name, series.meaning.axis
-    value, bound = (numbers.get(quantity, {}).get(name) for numbers in (found.numbers, found.bounds))
-    if axis is not None:
-        value, bound = (None if one is None else one[:, axis] for one in (value, bound))
-    return value, bound
+def ours_of(series: Series, numbers: Mapping[str, Mapping[str, Array]]) -> Array | None:
+    """What of our numbers, of their bounds or slopes, belongs to a column, (..., N); None if not known."""
+    value, axis = numbers.get(series.meaning.quantity, {}).get(series.meaning.name), series.meaning.axis
+    return value if value is None or axis is None else value[..., axis]
 
 
 def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Bools, rows: Any = slice(None)) -> Numbers:
@@ -330,25 +383,25 @@ def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measur
     return Scene.from_mapping(content, scene.title or "scene")
 
 
-def _height(part: MechanismPart, point: str, places: Mapping[str, Array]) -> float:
+def _height(part: MechanismPart, point: str, places: Mapping[str, Array]) -> Array:
     """How high a point is, or the contact: the lowest point of a thin disc about the wheel's centre, mm."""
     up = np.array(part.up)
     if point != CONTACT:
-        return float(places[point] @ up)
+        return np.asarray(places[point] @ up)
     inner, outer = part.topology.wheel_axis
     spin = places[outer] - places[inner]
-    lean = (spin @ up) / np.linalg.norm(spin)
-    return float(
-        places[part.topology.wheel_centre] @ up - (part.wheel_radius or 0.0) * np.sqrt(1.0 - lean**2)
-    )
+    square, lean = np.sum(spin**2, axis=-1), spin @ up
+    radius = part.wheel_radius or 0.0
+    return np.asarray(places[part.topology.wheel_centre] @ up - radius * np.sqrt(1.0 - lean**2 / square))
 
 
 def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
     """The input by which a point rises most, each moved by the same part of its widest range."""
-    drawn, up, found = drawn_inputs(scene), np.array(scene.mechanism.up), {}
+    mechanism, up, found = scene_mechanism(scene), np.array(scene.mechanism.up), {}
+    solver, drawn = PoseSolver(scene, mechanism), mechanism.drawn_inputs
     for name in inputs:
-        step = LITTLE * _widest(scene_mechanism(scene), name)
-        place = solve_poses(scene, drawn | {name: drawn[name] + np.array([-step, step])}).position[point]
+        step = LITTLE * _widest(mechanism, name)
+        place = solver.solve(drawn | {name: drawn[name] + np.array([-step, step])}).position[point]
         found[name] = float(np.abs(np.nan_to_num(np.diff(place @ up)))[0])
     return max(found, key=lambda name: found[name], default="")
 

@@ -98,7 +98,7 @@ def _implied(driven: Driven, some: Measured, name: str) -> Array | None:
     def gaps(x: Array) -> Array:
         """Our numbers minus the given ones, over their rounding, (columns, rows)."""
         found = driven.solved({**here, name: x}, {})
-        ours = [ours_of(s, found)[0] for s in some.numbers]
+        ours = [ours_of(s, found.numbers) for s in some.numbers]
         apart = [s.apart(one, s.values) for s, one in zip(some.numbers, ours, strict=True) if one is not None]
         return np.asarray(np.stack(apart) / wide[:, None])
 

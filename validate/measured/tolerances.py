@@ -152,18 +152,18 @@ def held_of(
         largest[s.meaning.quantity] = max(largest.get(s.meaning.quantity, 0.0), size)
     found, nothing = list[Held](), np.zeros(len(values[0]))
     for s in measured.numbers:
-        mine, bound = ours_of(s, here)
+        mine, bound = ours_of(s, here.numbers), ours_of(s, here.bounds)
         if mine is None or bound is None:
             nan = np.full(len(nothing), np.nan)
             found.append(Held(s, nan, nan, nothing, nothing, nothing, _why_unknown(s, driven)))
             continue
         swing, supposed = nothing, nothing
         for unstated, sides in around:
-            there = (ours_of(s, side)[0] for side in sides)
+            there = (ours_of(s, side.numbers) for side in sides)
             gaps = [np.nan_to_num(np.abs(s.apart(other, mine))) for other in there if other is not None]
             change = np.max([nothing, *gaps], axis=0)
             swing, supposed = swing + change, supposed + unstated * change
-        own = ours_of(s, granted)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
+        own = ours_of(s, granted.bounds) if s in unsaid else s.accuracy_or(accuracy or 0.0)
         rounding = 4.0 * EPS * largest[s.meaning.quantity]
         allowed = s.off + swing + rounding + (0.0 if own is None else own) + bound
         found.append(Held(s, mine, np.where(np.isfinite(mine), allowed, np.nan), swing, supposed, bound))

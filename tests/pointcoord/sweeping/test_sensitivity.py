@@ -2,29 +2,24 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
+from drawn_anew import PLACES, STEP, hold_to_designs, size_of
 from every_number import asked, one_of_each
+from numpy.typing import NDArray
 from random_mechanisms import random_mechanism
 
 from pointcoord import Scene, SweepError, UnknownName, sensitivity, simulate, sweep
-from pointcoord.effects.registry import QUANTITIES
 from pointcoord.results.samples import Channel
-from pointcoord.sweeping.hardpoint_slopes import ByHardpoints
+from pointcoord.sweeping.designs import coordinates_of
+from pointcoord.sweeping.hardpoint_slopes import slopes_of_motion
 from validate.formulations.reference_solution import inputs_at
 from validate.reference import Design, instants_of
 
+Array = NDArray[np.float64]
+
 TIME = {"start": 0.0, "stop": 0.4, "samples": 3}
-# (-f(-3h) + 9 f(-2h) - 45 f(-h) + 45 f(h) - 9 f(2h) + f(3h)) / 60 h is exact up to degree 6 (Fornberg, 1988).
-PLACES = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
-SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
-FOURTH = np.array([0.0, 1.0, -8.0, 8.0, -1.0, 0.0]) / 12.0
-# Of the car's size: what is left out goes with its sixth power.
-STEP = 1e-4
-# Of numbers and places of designs, in sizes of what these are made of; of a sixth derivative most.
-ROUNDED = 2e-13
 # Of the largest derivative, how far one may be off as a solved rate is, some ten times.
 SOLVED = 1e-13
 
@@ -40,14 +35,14 @@ def at_two_instants(name: str) -> Scene:
     return scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 2}), "tolerance": 1e-12})
 
 
-def every_number(channels: Mapping[str, Channel]) -> dict[str, tuple[str, str, Any]]:
-    """By name as `sensitivity` takes it: quantity, name, and which component if it is a vector."""
-    return {
-        f"{quantity}.{name}" + ("" if i is None else f".{'xyz'[i]}"): (quantity, name, i)
+def every_number(channels: Mapping[str, Channel]) -> list[str]:
+    """Their names as `sensitivity` takes them."""
+    return [
+        f"{quantity}.{name}{axis}"
         for quantity, channel in channels.items()
         for name in channel
-        for i in ((None,) if channel.quantity.of == "car" else range(3))
-    }
+        for axis in (("",) if channel.quantity.of == "car" else (".x", ".y", ".z"))
+    ]
 
 
 def hold_to_differences(scene: Scene, *coordinates: str) -> None:
@@ -57,35 +52,24 @@ def hold_to_differences(scene: Scene, *coordinates: str) -> None:
         coordinates: all unless given.
     """
     drawn = sweep(scene)
-    numbers = every_number(drawn.numbers)
-    found = sensitivity(scene, [*numbers], coordinates)
-    size = float(np.ptp(list(scene.mechanism.points.values()), axis=0).max())
-    step, along = STEP * size, np.random.default_rng(1).uniform(-1.0, 1.0, len(found.coordinates))
+    found = sensitivity(scene, every_number(drawn.numbers), coordinates)
+    size = size_of(scene)
     kept = np.array([name not in found.failures for name in found.coordinates])
     assert kept.any()
-    offsets = {name: step * PLACES * a for name, a in zip(found.coordinates, along * kept, strict=True)}
+    along = kept * np.random.default_rng(1).uniform(-1.0, 1.0, len(found.coordinates))
+    offsets = {name: STEP * size * PLACES * a for name, a in zip(found.coordinates, along, strict=True)}
     designs = sweep(scene, offsets=offsets)
     assert not designs.failures
-    sharp = []
-    for number, (quantity, name, axis) in numbers.items():
-        part = slice(None) if axis is None else axis
-        values = designs.numbers[quantity][name][..., part]
-        derivatives = found.derivatives[number][kept]
-        known = np.isfinite(drawn.numbers[quantity][name][0, ..., part])
-        assert (np.isfinite(derivatives) == known).all(), number
-        known &= np.isfinite(values).all(axis=0)
-        sixth, fourth = (weights @ values[:, known] / step for weights in (SIXTH, FOURTH))
-        ours = along[kept] @ derivatives[:, known]
-        # Numbers are rounded like the lengths and angles of the car, and like others of their kind.
-        unit = QUANTITIES[quantity].unit
-        scale = max(
-            size ** (unit.startswith("mm") - unit.endswith("/mm")),
-            *(float(np.abs(np.nan_to_num(other)).max()) for other in drawn.numbers[quantity].values()),
-        )
-        room = np.abs(sixth - fourth) + ROUNDED * scale / step
-        assert (np.abs(ours - sixth) <= room).all(), (number, ours, sixth, room)
-        sharp += (room <= 1e-5 * np.abs(ours))[np.abs(ours) * size > 1e-3 * scale].tolist()
-    assert np.mean(sharp) > 0.9, np.mean(sharp)
+    numbers, ours = ({q: dict[str, Array]() for q in drawn.numbers} for _ in range(2))
+    for quantity, channel in drawn.numbers.items():
+        for name, values in channel.items():
+            one, axes = f"{quantity}.{name}", "" if channel.quantity.of == "car" else "xyz"
+            parts = [found.derivatives[f"{one}.{axis}"] for axis in axes] or [found.derivatives[one]]
+            derivatives = [along[kept] @ part[kept] for part in parts]
+            numbers[quantity][name] = values[0]
+            ours[quantity][name] = np.stack(derivatives, axis=-1) if axes else derivatives[0]
+            assert (np.isfinite(ours[quantity][name]) == np.isfinite(values[0])).all(), one
+    hold_to_designs(numbers, ours, designs.numbers, size)
 
 
 @pytest.mark.parametrize("name", one_of_each(inputs=True))
@@ -151,10 +135,9 @@ def test_derivatives_are_those_of_the_many_digit_reference(
 @pytest.mark.parametrize("method", ["map", "newton"])
 def test_however_a_motion_was_solved_its_derivatives_are_the_same(method: str) -> None:
     scene = car("off-axis-strut", "camber", "acceleration", "toe_by_travel")
-    moves = {name: np.ones((1, 3)) * i for i, name in enumerate(scene.mechanism.points)}
     one, other = (
-        by_hardpoints.numbers(by_hardpoints.poses(scene.instants))
-        for by_hardpoints in (ByHardpoints(simulate(scene, way).solved, moves) for way in ("series", method))
+        slopes_of_motion(scene, simulate(scene, way).solved, scene.instants, coordinates_of(scene)).numbers
+        for way in ("series", method)
     )
     for quantity, numbers in one.items():
         for name, slopes in numbers.items():
@@ -168,7 +151,7 @@ def test_instants_and_coordinates_that_are_asked_for_beside_change_nothing(
     scene = scene.model_copy(update={"time": TIME, "effects": ("loads", "velocity")})
     numbers = ["rod_force.tie_rod", "velocity.wheel_centre.z"]
     every = sensitivity(scene, numbers)
-    monkeypatch.setattr("pointcoord.sweeping.sensitivity.ROOM", 1.0)
+    monkeypatch.setattr("pointcoord.sweeping.hardpoint_slopes.ROOM", 1.0)
     alone = sensitivity(scene, numbers, ["tie_rod_outer.z"])
     place = every.coordinates.index("tie_rod_outer.z")
     for number in numbers:

@@ -209,7 +209,11 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
         (TEXT + "0.3,1e308", {}, ("mine.csv: line 4, column 'camber': is 1e+308",)),
         (TEXT, {"colums": {}}, ("colums: there is no such key (did you mean 'columns'?)", "held")),
         (TEXT.replace("deg", "deg/mm"), {}, ("'deg/mm' is not a unit of wheel.camber",)),
-        (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not given", "deg")),
+        (
+            TEXT,
+            {"columns": {"camber": {"unit": ""}}},
+            ("columns.camber.unit", "its unit is not given", "deg"),
+        ),
         (TEXT, {"columns": {"camber": {"sign": 2}, "time": {}}}, ("columns.camber.sign", "1 or -1")),
         (TEXT, {"held": {"rack": -1e308}}, ("held.rack: Input should be", "greater than")),
         (
@@ -275,7 +279,7 @@ def test_a_travel_counts_from_the_closed_drawing_and_the_rack_as_drawn(point: st
     measured = understood(columns_of_text("\n".join(lines), "mine.csv"), content, car, "map.toml")
     if fitted:
         problem = Problem.of(car, measured, ("wheel_centre.x",))
-        found = problem.numbers(problem.solved(np.zeros(1)))
+        found = problem.solved(np.zeros(1)).numbers
     else:
         found = (
             Driven.of(car, measured)

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.car_axes import Direction
 from pointcoord.scene.scene_file import Scene
-from pointcoord.sweeping.hardpoint_slopes import ByHardpoints
+from pointcoord.sweeping.designs import coordinates_of
+from pointcoord.sweeping.hardpoint_slopes import slopes_of_motion
 from validate.diagnosis.evidence import Content, Evidence, Row
 from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.kinds.numbers import constant_gap, so_much_more
@@ -63,22 +64,19 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
     if motion is None:
         return iter(())
     some = [(point, i, others) for point, *others in _read_together(evidence.scene) for i in range(3)]
-    moves = {point: np.zeros((len(some), 3)) for point in points}
-    for k, (point, i, others) in enumerate(some):
-        for name in (point, *others):
-            moves[name][k, i] = 1.0
-    by_hardpoints = ByHardpoints(motion.solved, moves)
-    slopes = by_hardpoints.numbers(by_hardpoints.poses(evidence.few.times))
+    alone = coordinates_of(evidence.scene, [*points])
+    slopes = slopes_of_motion(evidence.scene, motion.solved, evidence.few.times, alone).numbers
     farthest = FARTHEST * float(np.ptp([*points.values()], axis=0).max())
 
-    def slope(k: int, looked: Sequence[Row]) -> Array:
-        return np.concatenate([slopes[quantity][of][k].ravel() for quantity, of in looked])
+    def slope(together: Sequence[str], i: int, looked: Sequence[Row]) -> Array:
+        moved = [alone.index(f"{point}.{'xyz'[i]}") for point in together]
+        return np.concatenate([slopes[quantity][of][moved].sum(axis=0).ravel() for quantity, of in looked])
 
     # Points that are given at their own positions do not show whether a point read with them is misread.
     wrong = {of for _, of in evidence.wrong}
     right = frozenset(row.name for row in evidence.given if row.is_place and row.name not in wrong)
 
-    def change(k: int, point: str, i: int, others: Sequence[str]) -> Change:
+    def change(point: str, i: int, others: Sequence[str]) -> Change:
         def put(content: Content, more: float) -> None:
             for name in (point, *others):
                 content["mechanism"]["points"][name][i] += more
@@ -87,9 +85,9 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
         words = partial(_in_words, evidence.scene, point, i, others=moved)
         silent = right.intersection(others)
         key = (point, i, *others)
-        return Change(key, put, words, partial(slope, k), farthest=farthest, silent=silent)
+        return Change(key, put, words, partial(slope, (point, *others), i), farthest=farthest, silent=silent)
 
-    return any_of(evidence, [change(k, *one) for k, one in enumerate(some)])
+    return any_of(evidence, [change(*one) for one in some])
 
 
 def _read_together(scene: Scene) -> list[tuple[str, ...]]:
