@@ -219,12 +219,10 @@ class KinematicMap(ReadOnly):
         readout, patch = self._readouts[len(states) - 1], self._patches_of(states)
         rows = readout.room(len(patch))
         found = readout.states(rows)
-        # Positions alone are the first rows of the table.
-        out = [rows[: 3 * len(self.points)]] if len(states) == 1 else None
-        sums = self.series.sums(self.series.coefficients, states, patch, out)
-        for order, part in enumerate(sums if out is None else ()):
-            for i, name in enumerate(self.points):
-                found[order][name][...] = part[3 * i : 3 * i + 3].T
+        # The first rows of a table are those of the points that move, by derivative.
+        height = 3 * len(self.points)
+        places = [rows[d * height : (d + 1) * height] for d in range(len(states))]
+        sums = self.series.sums(self.series.coefficients, states, patch, places)
         moving = [part.copy() for part in sums] if bounds else sums
         readout.complete(laws, found, rows)
         samples = readout.table.named(np.zeros(len(patch)), rows)

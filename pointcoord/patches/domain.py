@@ -77,6 +77,11 @@ class Domain:
         series |= {name: values[..., i, None] for i, name in enumerate(self.free)}
         return self.mechanism.known_series(series)[..., 0, :]
 
+    def in_boxes(self, values: Array) -> Array:
+        """How many of the smallest boxes values of the free inputs lie above the lower ends, (..., p)."""
+        low, high = self.ends
+        return np.asarray((values - low) * (self.parts / (high - low)))
+
     def nearest_place(self, values: Array) -> Whole:
         """The place that is nearest to values of the free inputs, in halves of the smallest box, (p,)."""
         low, high = self.ends

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -39,8 +39,7 @@ class Lookup:
 
     def at(self, values: Array) -> Whole:
         """The number at values inside the domain, shape (..., p) to (...)."""
-        low, high = self.domain.ends
-        places = ((values - low) * (self.domain.parts / (high - low))).astype(np.int64)
+        places = self.domain.in_boxes(values).astype(np.int64)
         return np.asarray(self.table[tuple(np.moveaxis(np.minimum(places, self.domain.parts - 1), -1, 0))])
 
     def at_one(self, values: Sequence[float]) -> int:
@@ -114,14 +113,9 @@ class Marked:
 
 def touched(domain: Domain, low: Array, high: Array) -> tuple[Whole, Whole]:
     """Corners of the smallest boxes that boxes of values touch, in these, each (N, p)."""
-    start, stop = domain.ends
-    along, last = domain.parts / (stop - start), domain.parts
-
-    def rounded(values: Array, shift: float, way: Callable[[Array], Array]) -> Array:
-        return np.asarray(way((values - start) * along + shift))
-
-    first = np.clip(rounded(low, -TOUCHING, np.floor), 0, last - 1).astype(np.int64)
-    final = np.clip(rounded(high, TOUCHING, np.ceil), 1, last).astype(np.int64)
+    last = domain.parts
+    first = np.clip(np.floor(domain.in_boxes(low) - TOUCHING), 0, last - 1).astype(np.int64)
+    final = np.clip(np.ceil(domain.in_boxes(high) + TOUCHING), 1, last).astype(np.int64)
     return first, np.maximum(final, first + 1)
 
 

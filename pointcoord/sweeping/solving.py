@@ -87,8 +87,7 @@ class Course:
 
     @cached_property
     def table(self) -> Table:
-        topology = self.scene.mechanism.topology
-        return Table.of(self.plan, topology)
+        return Table.of(self.plan, self.scene.mechanism.topology)
 
     def readout(self, mechanism: Mechanism) -> Readout:
         chassis = ChassisMotion.of(mechanism, self.scene.functions)
