@@ -16,6 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import data
+import diagnosis
 import fits
 import hard
 import imports
@@ -32,6 +33,7 @@ PARTS: dict[str, Callable[[Path], Record]] = {
     "import": imports.record,
     "fit": fits.record,
     "data": data.record,
+    "diagnosis": diagnosis.record,
     "report": report.record,
     "hard": hard.record,
 }

@@ -19,11 +19,20 @@ ONE_CORE = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 AXES = "xyz"
 
 
-def pointcoord(*arguments: str | Path) -> int:
-    """Run `pointcoord ARGUMENTS` from the checkout's folder with its code, on one core: its exit status."""
-    command = [sys.executable, "-m", "pointcoord", *map(str, arguments)]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), **ONE_CORE}
-    return subprocess.run(command, cwd=ROOT, env=environment, capture_output=True).returncode
+def pointcoord(*arguments: str | Path, **environment: str) -> int:
+    """Run `pointcoord ARGUMENTS` with this checkout's code, on one core: its exit status."""
+    return python("-m", "pointcoord", *arguments, **ONE_CORE, **environment)
+
+
+def python(*arguments: str | Path, **environment: str) -> int:
+    """Run this Python from the checkout's folder, with its code and this folder's to import from."""
+    paths = os.pathsep.join(map(str, (ROOT, Path(__file__).parent)))
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": paths, **environment},
+        capture_output=True,
+    ).returncode
 
 
 def document(path: Path) -> dict[str, Any]:

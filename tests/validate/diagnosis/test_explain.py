@@ -93,7 +93,6 @@ FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
     (lambda h: each(h, ("position",), lambda v: v + np.array([0.0, 0.0, 25.0])), "offset", "(0, 0, 25) mm"),
     (lambda h: angle(h, "camber", lambda v: v + 0.013), "offset", "constant offset of 0.013 rad"),
     (lambda h: each(h, STATES, lambda v: v[:, [1, 0, 2]]), "axes", "our y, x, z"),
-    (lambda h: each(h, (*STATES, *TURNS), lambda v: v[:, [1, 2, 0]]), "axes", "our y, z, x"),
     (mirrored, "mirror", "left for right"),
     (lambda h: angle(h, "camber", np.degrees), "unit", "degrees for radians"),
     (lambda h: angle(h, "toe", lambda v: 60.0 * v), "unit", "toe: minutes of arc taken for degrees"),
@@ -119,7 +118,6 @@ FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
         "toe: one sample late, the last one first, and the other sign",
     ),
     (lambda h: each(h, STATES, lambda v: v * [1.0, -1.0, 1.0] / 1e3), "sign and unit", "of y, and m for mm"),
-    (lambda h: angle(h, "camber", lambda v: -np.degrees(v)), "sign and unit", "and degrees for radians"),
     (
         lambda h: angle(h, "camber", lambda v: np.degrees(v) - 1.25),
         "unit and offset",
