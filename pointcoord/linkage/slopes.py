@@ -133,10 +133,10 @@ def known_slopes(mechanism: Mechanism, inputs: Mapping[str, Array], way: Way) ->
 
 
 def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
-    """For a gap: 1 at the coordinates that move, (size,), and 1 at the rows that read them there.
+    """For a gap: shift of each coordinate, (size,), and 1 at the rows that read the shifted coordinates.
 
-    A joint's point on the chassis moves as a known coordinate. Rows that only use the point as a centre of
-    rotation of the chassis are not part of the joint.
+    The shift of a point that moves is 1. A joint's point on the chassis moves as a known coordinate instead;
+    rows that only use it as a centre of rotation are not part of the joint, and read it shifted back by -1.
     """
     layout, system = topology.layout, topology.map
     moved, rows = np.zeros(layout.size), np.zeros(len(system.rows))

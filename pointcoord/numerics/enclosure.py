@@ -288,7 +288,8 @@ def aligned(a: Array, b: Array) -> tuple[Array, Array]:
 def both(proven: ArrayLike, expected: ArrayLike) -> Array:
     """Two arrays, broadcast to one shape, as one with a leading dimension of 2.
 
-    With three dimensions, the last is contiguous by components: groups of instants are stored together.
+    Arrays of three dimensions are stored with the last one, the components, outermost: the values of one
+    component at all groups of instants are contiguous.
     """
     shape = np.shape(proven)
     if shape != np.shape(expected):
