@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
@@ -17,15 +16,13 @@ from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.wording import nearest, shown
 from validate.comparison.given import given_by_both
-from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
+from validate.comparison.pair import SMALLEST, Pair
 from validate.exit_status import ExitStatus
-from validate.formulations.asked_numbers import asked_numbers, per_second
-from validate.formulations.protocol import NOTHING, AccuracyError, Formulation, FormulationError, Solution
+from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
 
 Array = NDArray[np.float64]
-# Numbers below the smallest normal one lose digits, and so do tolerances made of them.
-SMALLEST = float(np.finfo(float).tiny)
 GIVEN_BACK = "points of the chassis, or such as stay where they are drawn"
 Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
 
@@ -258,9 +255,7 @@ def compare_solutions(
         missing += lacking
         pair = Pair(quantity, (first, second), factor)
         for part in parts:
-            row = _reasoned(_row(name, part, pair, instants), lacking, notes, faults)
-            # Decided only where one of them may give what it has: else every row has to agree.
-            rows.append(replace(row, telling=pair.tells(scene, part)) if row.verdict == "agrees" else row)
+            rows.append(_reasoned(_row(name, part, pair, instants, scene), lacking, notes, faults))
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor, faults=faults)
 
 
@@ -314,146 +309,32 @@ def _reasoned(
     return replace(row, why="; ".join(found))
 
 
-@dataclass(frozen=True)
-class Pair:
-    """A quantity of two formulations at the same instants.
-
-    Attributes:
-        factor: how many times the derived tolerance to hold differences to.
-    """
-
-    quantity: str
-    sides: tuple[Solution, Solution]
-    factor: float
-
-    @cached_property
-    def largest(self) -> list[Array]:
-        """Of both sides the largest number at each instant, (N,)."""
-        return [largest_numbers(side.numbers[self.quantity].values(), len(side.times)) for side in self.sides]
-
-    @property
-    def names(self) -> list[str]:
-        """Those of which both have numbers, at one instant at least."""
-        one, two = (side.numbers[self.quantity] for side in self.sides)
-        return [name for name in one if name in two] if len(self.sides[0].times) else []
-
-    def numbers(self, name: str) -> tuple[Array, Array]:
-        """Of both, (N, components)."""
-        one, two = (_columns(side.numbers[self.quantity][name]) for side in self.sides)
-        return one, two
-
-    def claims(self, name: str) -> tuple[Array, Array]:
-        """What both claim of a name, (N, components): 0 where one claims nothing."""
-        claimed = (side.accuracy.claims[self.quantity].get(name) for side in self.sides)
-        one, two = (
-            np.zeros_like(own) if claim is None else _columns(claim)
-            for own, claim in zip(self.numbers(name), claimed, strict=True)
-        )
-        return one, two
-
-    def allowed(self, name: str) -> Array:
-        """What a difference is held to, (N, components)."""
-        # The smaller of both, so that a wrong number does not widen its own tolerance.
-        return self.factor * tolerance(*self.claims(name), min(float(most.max()) for most in self.largest))
-
-    def gap(self, name: str) -> Array:
-        """The difference, (N, components)."""
-        (mine, other), (own, others) = self.numbers(name), self.claims(name)
-        gap = gaps_between(mine, other, QUANTITIES[self.quantity].unit)
-        # Who gives a number that there is none of, a rounding over a rounding, claims nothing of it.
-        lone = np.where(np.isnan(mine), others, np.where(np.isnan(other), own, 0.0))
-        gap[lone >= NOTHING] = 0.0
-        return gap
-
-    @cached_property
-    def levels(self) -> tuple[Array, Array]:
-        """What both would claim of any number, see `tolerance.level`, (N,)."""
-        one, two = (
-            level(own.claims[self.quantity].values(), most, own.condition, own.usual.get(self.quantity))
-            for own, most in zip((side.accuracy for side in self.sides), self.largest, strict=True)
-        )
-        return one, two
-
-    def wide(self, name: str) -> NDArray[np.bool_]:
-        """At which instants what is allowed tests nothing, (N,)."""
-        # Whose accuracy was stated beforehand may claim much, and what it claims elsewhere is no measure.
-        stated = [side.accuracy.blind for side in self.sides if side.accuracy.blind is not None]
-        if stated:
-            return np.asarray(np.any(stated, axis=0))
-        one, two = (claim.max(axis=-1) for claim in self.claims(name))
-        return untested(one, two, *self.levels)
-
-    def tells(self, scene: Scene, name: str) -> bool:
-        """Whether a number is none that a solver was given: what was given would not agree as well.
-
-        It is asked of a solver with a stated accuracy only. It was given where each point is drawn, and that
-        of the chassis is all there is to know of its points. An instant of which its accuracy says nothing
-        does not count.
-        """
-        blind = [side.accuracy.blind for side in self.sides]
-        if (blind[0] is None) == (blind[1] is None):
-            return True
-        other = 0 if blind[0] is None else 1
-        kind, part, unseen = QUANTITIES[self.quantity], scene.mechanism, blind[1 - other]
-        if kind.of == "point" and name in part.topology.chassis:
-            return False
-        if per_second(self.quantity):
-            given_back = np.zeros(3)
-        elif kind.of == "point" and name in part.points:
-            given_back = np.array(part.points[name], dtype=float)
-        else:
-            return not np.all(unseen)
-        width = self.factor * tolerance(*self.claims(name), float(self.largest[other].max()))
-        return bool((np.abs(self.numbers(name)[other] - given_back) > width)[~np.asarray(unseen)].any())
-
-
-def _row(scene: str, name: str, pair: Pair, times: Array) -> Comparison:
-    """The comparison of a name at instants, (N,), s."""
+def _row(name: str, part: str, pair: Pair, instants: Array, scene: Scene) -> Comparison:
+    """The comparison of a point, body or angle at instants, (N,), s."""
     who, unit = [side.formulation for side in pair.sides], QUANTITIES[pair.quantity].unit
-    row = Comparison(scene, who[0], who[1], pair.quantity, name, unit)
-    if name not in pair.names:
+    row = Comparison(name, who[0], who[1], pair.quantity, part, unit)
+    if part not in pair.names:
         return row
-    gap, allowed, claims = pair.gap(name), pair.allowed(name), pair.claims(name)
-    share = float(shares(gap, allowed).max())
-    worst, widest = (np.unravel_index(np.argmax(array), array.shape) for array in (gap, allowed))
+    held = pair.held(part)
+    share = float(held.share.max())
+    worst, widest = (np.unravel_index(np.argmax(of), of.shape) for of in (held.gap, held.allowed))
     verdict: Verdict = "agrees"
-    if any(name not in side.accuracy.claims[pair.quantity] for side in pair.sides):
+    if not held.claimed:
         verdict = "not tested"
     elif share > 1.0:
         verdict = "disagrees"
-    elif (pair.wide(name) & (gap.max(axis=-1) > SMALLEST)).any():
+    elif (pair.wide(held) & (held.gap.max(axis=-1) > SMALLEST)).any():
         verdict = "not tested"
-    larger = int(claims[1][widest] > claims[0][widest])
+    larger = int(held.claims[1][widest] > held.claims[0][widest])
     return replace(
         row,
-        difference=float(gap[worst]),
-        tolerance=float(allowed[worst]),
+        difference=float(held.gap[worst]),
+        tolerance=float(held.allowed[worst]),
         share=share,
-        instant=float(times[worst[0]]),
+        instant=float(instants[worst[0]]),
         verdict=verdict,
         rests_on=who[larger],
-        part=float(pair.factor * claims[larger][widest] / (allowed[widest] + SMALLEST)),
+        part=float(pair.factor * held.claims[larger][widest] / (held.allowed[widest] + SMALLEST)),
+        # Decided only where one of them may give what it has: else every row has to agree.
+        telling=verdict != "agrees" or pair.tells(scene, held),
     )
-
-
-def shares(gap: Array, allowed: Array) -> Array:
-    """Differences in parts of what they are held to; 0 where nothing differs."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
-
-
-def gaps_between(mine: Array, other: Array, unit: str) -> Array:
-    """How far two arrays of numbers are apart, number by number; infinity where one alone is none."""
-    gap = np.abs(mine - other)
-    if unit == "rad":
-        # Whole turns apart is the same angle.
-        gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
-    # A NaN is a disagreement, and the worst one.
-    gap[~np.isfinite(gap)] = np.inf
-    # That there is none, as of a centre at infinity, is what both say.
-    gap[np.isnan(mine) & np.isnan(other)] = 0.0
-    return np.asarray(gap)
-
-
-def _columns(array: Array) -> Array:
-    return array.reshape(len(array), -1)

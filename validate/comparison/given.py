@@ -97,7 +97,7 @@ def given(solution: Solution, instants: Array) -> Given:
                 claims[quantity][name] = claimed[name][places]
             else:
                 notes.append(f"{what}: its accuracy is not given")
-    accuracy = replace(own, claims={}).at(places).with_claims(claims)
+    accuracy = replace(own.at(places), claims=claims)
     return Given(found, Solution(who, instants[found], numbers, accuracy, tuple(notes), tuple(faults)))
 
 

@@ -19,8 +19,9 @@ from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import finest_tolerance
-from validate.comparison.compare import SMALLEST, Outcome, Pair, gaps_between
+from validate.comparison.compare import Outcome
 from validate.comparison.given import given_by_both
+from validate.comparison.pair import SMALLEST, Pair, gaps_between
 from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import Numbers, Solution
 
@@ -182,7 +183,7 @@ class Evidence:
             given={row: one.numbers[row.quantity][row.name] for row in rows},
             held=trusted,
             allowed={
-                row: pairs[row.quantity].allowed(row.name).reshape(trusted[row].shape) + SMALLEST
+                row: pairs[row.quantity].held(row.name).allowed.reshape(trusted[row].shape) + SMALLEST
                 for row in rows
             },
             wrong=tuple(row for row in rows if row in disagree),

@@ -11,7 +11,7 @@ from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import Scene
 from validate.extras import not_there
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
-from validate.formulations.modelled import Found, Problem, require_the_drawn_car
+from validate.formulations.modelled import Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
 
 try:
@@ -35,7 +35,7 @@ class AbsoluteCoordinates:
         part = scene.mechanism
 
         def solution(solved: absolute.Solution) -> Solution:
-            return problem.solution(self.name, found_of(solved, asked))
+            return problem.solution(self.name, found_of(solved, asked), solved.accuracy)
 
         try:
             model = absolute.compile(part.plain(tuple(scene.inputs)))
@@ -58,14 +58,14 @@ class AbsoluteCoordinates:
             raise FormulationError(self.name, error) from error
 
 
-def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> Found:
+def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> Numbers:
     """The model's numbers; it calls the quantities of points and bodies as pointcoord does."""
     numbers: Numbers = {
         quantity: getattr(solved, quantity, solved.effects if QUANTITIES[quantity].of == "car" else {})
         for quantity in asked
     }
     states = {n: of for n, of in zip(STATES, solved.derivatives, strict=False) if n in ("position", *asked)}
-    return Found({**numbers, **states}, solved.accuracy)
+    return {**numbers, **states}
 
 
 def effects_in(scene: Scene, model: absolute.Model) -> tuple[list[str], bool]:

@@ -8,7 +8,7 @@ from pointcoord import Scene
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.registry import QUANTITIES
+from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.linkage.topology import Topology
 
 
@@ -29,6 +29,11 @@ def numbers_of(
             named = every[QUANTITIES[quantity].of] if names is None else names
             found[quantity] = tuple(dict.fromkeys((*found.get(quantity, ()), *named)))
     return {quantity: found[quantity] for quantity in QUANTITIES if quantity in found}
+
+
+def known_names(topology: Topology) -> dict[str, tuple[str, ...]]:
+    """By quantity, every name that a number of it can have, whether a scene asks for it or not."""
+    return numbers_of((*ALWAYS, *EFFECTS.values()), topology, tuple(topology.points))
 
 
 def asked_of_the_car(scene: Scene) -> tuple[str, ...]:

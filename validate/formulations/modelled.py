@@ -26,20 +26,6 @@ LONGEST = 500  # s, as a power of two whose square is still a number
 
 
 @dataclass(frozen=True)
-class Found:
-    """What a model found at the first of a scene's instants.
-
-    Attributes:
-        numbers: of every point, and of the bodies and angles that it has.
-        accuracy: how exactly it says that it places points, mm, (N,): what is left of its equations, and what
-            rounds lengths of the car's size. What that makes of each number is not its affair.
-    """
-
-    numbers: Numbers
-    accuracy: Array
-
-
-@dataclass(frozen=True)
 class Problem:
     """A scene and its inputs.
 
@@ -60,18 +46,20 @@ class Problem:
         laws = {name: law * unit[:, None] ** np.arange(law.shape[-1]) for name, law in laws.items()}
         return cls(scene, laws, unit)
 
-    def solution(self, who: str, found: Found) -> Solution:
-        """What the scene asks for, of all that was found.
+    def solution(self, who: str, found: Numbers, accuracy: Array) -> Solution:
+        """What the scene asks for, of all that was found at the first of its instants.
 
+        Args:
+            found: numbers of every point, and of the bodies and angles that the model has.
+            accuracy: how exactly it says that it places points, mm, (N,): what is left of its equations, and
+                what rounds lengths of the car's size. What that makes of each number is not its affair.
         Raises:
             AccuracyError: a pose is so near to a fold that the stated accuracy says nothing of it.
         """
-        count = len(found.accuracy)
+        count = len(accuracy)
         laws = {name: law[:count] for name, law in self.laws.items()}
         try:
-            stated = accuracy_at(
-                self.scene, found.accuracy, found.numbers["position"], laws, solves_rates=True
-            )
+            stated = accuracy_at(self.scene, accuracy, found["position"], laws, solves_rates=True)
         except NoReferenceError as error:
             raise AccuracyError(
                 "the car", f"has no equations to bound it by: {error}", "another car"
@@ -80,7 +68,7 @@ class Problem:
             # A model at fault may place points where there is no pose: it is held to that of the others.
             places = {name: place[:count] for name, place in self._places().items()}
             if places:
-                stated = accuracy_at(self.scene, found.accuracy, places, laws, solves_rates=True)
+                stated = accuracy_at(self.scene, accuracy, places, laws, solves_rates=True)
         assert stated.blind is not None  # of a stated accuracy it is known
         if stated.blind.any():
             raise AccuracyError(
@@ -88,9 +76,9 @@ class Problem:
                 "leaves open on which side of a fold it is",
                 "poses that a model's rounding cannot bring to another assembly",
             )
-        numbers = asked_of(found.numbers, self.scene)
-        accuracy = replace(stated, claims=self._per_second(stated.claims), blind=None)
-        return Solution(who, self.scene.instants[:count], self._per_second(numbers), accuracy)
+        numbers = self._per_second(asked_of(found, self.scene))
+        claimed = replace(stated, claims=self._per_second(stated.claims), blind=None)
+        return Solution(who, self.scene.instants[:count], numbers, claimed)
 
     def _places(self) -> Mapping[str, Array]:
         """Where pointcoord places every point; nothing of a scene that it refuses."""

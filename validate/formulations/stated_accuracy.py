@@ -59,21 +59,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from itertools import combinations
+from dataclasses import dataclass
 from math import comb, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import PointcoordError, Scene, simulate
-from pointcoord.effects.registry import EFFECTS as OURS
+from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
-from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
-from pointcoord.results.proof import ROUNDINGS, prove
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from validate.formulations.accuracy_of_forces import claims_of_forces
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
 from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
-from validate.formulations.protocol import NOTHING, Accuracy, Numbers
+from validate.formulations.protocol import NOTHING, Accuracy
 from validate.reference import Design
 from validate.reference.car_data import KNUCKLE, RACK, TIME
 from validate.reference.design import Known, values_only
@@ -161,57 +161,30 @@ def accuracy_at(
     blind = np.concatenate([one.blind for one in parts if one.blind is not None])
     condition = np.concatenate([one.condition for one in parts])
     if any(map(is_force, held.asked)):
-        claims |= _of_forces(scene, off, condition)
+        claims |= claims_of_forces(scene, off, condition)
     return Accuracy(condition, claims, blind=blind)
 
 
-def _of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str, Array]]:
-    """What points that are off make of forces, and what solving for these rounds.
+@dataclass(frozen=True)
+class _Motion:
+    """A motion through the poses, and what missing each equation makes of it.
 
-    The first is what pointcoord expects of poses that are left so far unsolved more than of those that are
-    not; the second, of any method, EPS times its condition number of the largest force that acts or holds,
-    ROUNDINGS times.
-
-    Args:
-        off: at the first instants of the scene, (N,), mm. condition: likewise.
+    Attributes:
+        rates: the unknowns with their derivatives, arrays (N,).
+        off: likewise, duals whose slopes are by row, (rows, N).
     """
-    forces = {q: names for q, names in asked_numbers(scene).items() if is_force(q)}
-    effects = tuple(e for e in scene.effects if any(is_force(q.name) for q in OURS[e].quantities))
-    try:
-        motion = simulate(scene.model_copy(update={"effects": effects}))
-    except PointcoordError:
-        return {}
-    count, solved = len(off), motion.solved
-    if len(motion.times) < count:
-        return {}
-    readout = solved.readout
 
-    samples = motion.part(0, count)
+    known: Known
+    rates: Sequence[Jet]
+    off: Sequence[Jet]
 
-    def expected(left: Array) -> Numbers:
-        return prove(solved, samples, rates=True, left=left).expected
-
-    # Each coordinate of a point may be off, and each half of a joint by itself.
-    with_it, without = expected(2.0 * off / motion.unit), expected(np.zeros(count))
-    numbers = {q: {n: motion.numbers[q][n][:count] for n in names} for q, names in forces.items()}
-    sizes = [np.abs(one).reshape(count, -1).max(axis=-1) for of in numbers.values() for one in of.values()]
-    applied = [
-        np.abs(force).max() + np.abs(moment).max() / motion.unit
-        for force, moment in readout.axes.loads.values()
-    ]
-    rounded = ROUNDINGS * EPS * condition * np.max(sizes, axis=0, initial=max(applied, default=0.0))
-    return {
-        q: {
-            n: _more(with_it[q][n], without[q][n]) + rounded.reshape(-1, *(1,) * (one.ndim - 1))
-            for n, one in of.items()
-        }
-        for q, of in numbers.items()
-    }
-
-
-def _more(one: Array, other: Array) -> Array:
-    """One less the other; of what is not bounded nothing is known."""
-    return np.subtract(one, other, out=np.full_like(one, NOTHING), where=np.isfinite(one))
+    @classmethod
+    def of(cls, known: Known, values: Sequence[Array], inverse: Array, missed: Array) -> _Motion:
+        """From the poses, the inverse of C' there, and by how much each equation is missed, (N, rows)."""
+        rates = with_rates(values, known, by_doubles(inverse))
+        # Missing a row by delta moves the unknowns by a column of the inverse.
+        slopes = motion_of_a_miss(np.einsum("nij,nj->ijn", inverse, missed), rates, inverse, known)
+        return cls(known, rates, with_slopes(rates, slopes))
 
 
 class _Held:
@@ -252,23 +225,25 @@ class _Held:
     def at(self, accuracy: Array, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
         """The claims at some instants, from where every point is, (N, 3), mm, and the inputs."""
         off = accuracy / self.unit
-        known = known_in_doubles(self.design, laws, len(next(iter(places.values()))))
-        values, inverse, matrix, blind = self._pose(places, values_only(known))
-        jets = with_rates(values, known, by_doubles(inverse))
-        missed = off[:, None] * self._missed(places, matrix, values_only(known))
-        # Missing a row by delta moves the unknowns by a column of the inverse.
-        first = np.einsum("nij,nj->ijn", inverse, missed)
-        slopes = motion_of_a_miss(first, jets, inverse, known)
-        change = _change(with_slopes(jets, slopes), inverse, values_only(known))
+        known = known_in_doubles(self.design, laws, len(off))
+        still = values_only(known)
+        values, inverse, matrix, blind = self._pose(places, still)
+        missed = off[:, None] * self._missed(places, matrix, still)
+        motion = _Motion.of(known, values, inverse, missed)
+        change = _change(motion, inverse)
         blind |= ~(change < LIMIT)
-        growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(len(slopes))]
-        along = {way: (with_slopes(jets, slopes), known) for way in self._ways() if way[1] == TIME}
-        for way, driver in self._drivers().items():
-            # The derivatives by an input are the rates of a motion that drives it alone, at 1 a unit of time.
-            driving = self._driving(way, driver, laws)
-            driven = with_rates(values, driving, by_doubles(inverse))
-            along[way] = with_slopes(driven, motion_of_a_miss(first, driven, inverse, driving)), driving
-        claims = self._claims(off, with_slopes(jets, slopes), known, growth, along)
+        orders = range(known.derivatives + 1)
+        growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in orders]
+        ways = {(prefix, number.effect.along) for number in self.of_car for prefix in number.corners}
+        # The derivatives by an input are the rates of a motion that drives it alone, at 1 a unit of time.
+        along = {
+            (prefix, way): motion
+            if way == TIME
+            else _Motion.of(self._driven_along(prefix, way, laws), values, inverse, missed)
+            for prefix, way in ways
+            if way is not None
+        }
+        claims = self._claims(off, motion, growth, along)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
         said = {
             q: {n: np.where(_like(blind, claim), NOTHING, claim) for n, claim in of.items()}
@@ -276,20 +251,12 @@ class _Held:
         }
         return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
 
-    def _drivers(self) -> dict[Way, str]:
-        """By way, the input that numbers along it are derivatives by; of the ways that are asked for."""
-        every = {prefix: drivers(self.design, prefix) for prefix in self.drawn}
-        return {(p, along): every[p][along] for p, along in self._ways() if along in every[p]}
-
-    def _ways(self) -> set[Way]:
-        return {(prefix, number.effect.along) for number in self.of_car for prefix in number.corners}
-
-    def _driving(self, way: Way, driver: str, laws: Mapping[str, Array]) -> Known:
+    def _driven_along(self, prefix: str, along: str, laws: Mapping[str, Array]) -> Known:
         """The inputs where they are, and one that moves; a slide by the design's own lengths."""
-        rate = self.unit if way[1] == RACK else 1.0
-        held = {n: np.stack([law[:, 0], *np.zeros((2, len(law)))], axis=-1) for n, law in laws.items()}
-        held[driver][:, 1] = rate
-        return known_in_doubles(self.design, held, len(held[driver]))
+        held = {n: np.stack([law[:, 0], np.zeros(len(law))], axis=-1) for n, law in laws.items()}
+        driver = held[drivers(self.design, prefix)[along]]
+        driver[:, 1] = self.unit if along == RACK else 1.0
+        return known_in_doubles(self.design, held, len(driver))
 
     def _pose(
         self, places: Mapping[str, Array], known: Known
@@ -302,20 +269,20 @@ class _Held:
         count = len(next(iter(places.values())))
         read = self.design.mechanism.unknown_of(local, known.numbers, float)
         values = drawn = np.array([np.broadcast_to(x, count) for x in read], dtype=float)
-        matrix = jacobian_of(list(values), known.numbers, known.equations)
+        matrix = jacobian_of(list(values), known)
         for _ in range(MOST_STEPS):
             before, inverse = matrix, inverse_of(matrix)
             step = np.array(by_doubles(inverse)(known.residual(list(values))))
             blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
             values = values + step
-            matrix = jacobian_of(list(values), known.numbers, known.equations)
+            matrix = jacobian_of(list(values), known)
             # Where a last step changes the Jacobian so much, doubles cannot tell the pose.
             blind |= ~(np.abs(inverse @ (matrix - before)).sum(axis=-1).max(axis=-1) < LIMIT)
             if not blind.any():
                 break
         else:
             values = np.where(blind, drawn, values)
-            matrix = jacobian_of(list(values), known.numbers, known.equations)
+            matrix = jacobian_of(list(values), known)
         return list(values), inverse_of(matrix), matrix, blind
 
     def _missed(self, places: Mapping[str, Array], matrix: Array, known: Known) -> Array:
@@ -335,41 +302,32 @@ class _Held:
         return np.asarray(np.abs(matrix @ slopes.transpose(2, 0, 1)).sum(axis=-1))
 
     def _per_length(
-        self, states: Mapping[str, Sequence[Array]], turns: Mapping[str, Sequence[Vector]]
+        self, points: Mapping[str, Vector], turns: Mapping[str, Sequence[Vector]], count: int, orders: int
     ) -> list[Array]:
         """What a point that is off by 1 makes of its own place and its derivatives, each (N,), beside it.
 
         Of a rotation R with R' = Omega R, |R^(d+1)| <= sum_k C(d, k) |Omega^(k)| |R^(d-k)|.
 
         Args:
-            states: by point its value and derivatives, each (N, 3). turns: of every body, likewise.
+            points: of jets of at least so many orders. turns: of every body, likewise. count: N.
         """
-        chassis = states[self.design.plain["bodies"][CHASSIS][0]]
-        count, found = len(chassis[0]), [np.ones(len(chassis[0]))]
-        turned, spins = [np.ones(count)], list[Array]()
-        for d in range(len(chassis) - 1):
+        found, turned, spins = [np.ones(count)], [np.ones(count)], list[Array]()
+        base = points[self.design.plain["bodies"][CHASSIS][0]]
+        for d in range(orders):
             spins.append(np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0))
             turned.append(np.asarray(sum(comb(d, k) * spins[k] * turned[d - k] for k in range(d + 1))))
-            moved = np.max([_lengths(state[d + 1] - chassis[d + 1]) for state in states.values()], axis=0)
-            found.append(ROOT_3 * (turned[-1] + moved / self.size))
+            still = values_of(part_of(base, d + 1), count)
+            speeds = [_lengths(values_of(part_of(p, d + 1), count) - still) for p in points.values()]
+            found.append(ROOT_3 * (turned[-1] + np.max(speeds, axis=0) / self.size))
         return found
 
     def _claims(
-        self,
-        off: Array,
-        solved: Sequence[Jet],
-        known: Known,
-        growth: Sequence[Array],
-        along: Mapping[Way, tuple[Sequence[Jet], Known]],
+        self, off: Array, motion: _Motion, growth: Sequence[Array], along: Mapping[tuple[str, str], _Motion]
     ) -> dict[str, dict[str, Array]]:
-        points = known.points_of(solved)
-        turns = body_turns(solved, known)
-        count = len(growth[0])
-        states = {
-            name: [values_of(part_of(p, d), count) for d in range(len(growth))] for name, p in points.items()
-        }
-        chassis = states[self.design.plain["bodies"][CHASSIS][0]]
-        per_length = self._per_length(states, turns)
+        known, count = motion.known, len(off)
+        points, turns = known.points_of(motion.off), body_turns(motion.off, known)
+        chassis = points[self.design.plain["bodies"][CHASSIS][0]]
+        per_length = self._per_length(points, turns, count, known.derivatives)
 
         @cache
         def moved(name: str, order: int) -> Array:
@@ -382,24 +340,24 @@ class _Held:
             return sum(comb(order, k) * per_length[k][:, None] * moved(name, order - k) for k in orders)
 
         far = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
-        of_car = self._of_car(off, solved, known, growth, along)
+        of_car = self._of_car(off, motion, per_length, growth, along)
         claims: dict[str, dict[str, Array]] = {}
         for quantity, names in self.asked.items():
             if is_force(quantity):
-                continue  # `_of_forces`
+                continue  # `accuracy_of_forces`
             d, of = per_second(quantity), QUANTITIES[quantity].of
             if d >= len(growth):
                 continue  # the inputs' own derivatives are not known so far
             if of == "point":
                 # Once where it is handed over, and once where the chassis' part of it is added.
-                added = UNIT_ROUNDOFF * np.abs(chassis[d]) if d else far
+                added = UNIT_ROUNDOFF * np.abs(values_of(part_of(chassis, d), count)) if d else far
                 claims[quantity] = {
                     n: self.unit
                     * (
                         moved(n, d)
                         + solved_for(n, d)
                         + (off * per_length[d])[:, None]
-                        + UNIT_ROUNDOFF * np.abs(states[n][d])
+                        + UNIT_ROUNDOFF * np.abs(values_of(part_of(points[n], d), count))
                         + added
                     )
                     for n in names
@@ -418,27 +376,27 @@ class _Held:
     def _of_car(
         self,
         off: Array,
-        solved: Sequence[Jet],
-        known: Known,
+        motion: _Motion,
+        per_length: Sequence[Array],
         growth: Sequence[Array],
-        along: Mapping[Way, tuple[Sequence[Jet], Known]],
+        along: Mapping[tuple[str, str], _Motion],
     ) -> dict[str, Array]:
         """Of every number of the car: what the pose makes of it, and the points that it is made of, which are
         off themselves.
         """
-        places = [jet.value for jet in solved]
-        cars: dict[Way, Car] = {(p, None): self._car(p, off, places, known, growth) for p in self.drawn}
-        for (prefix, way), (driven, driving) in along.items():
-            pose = [Dual(jet.value, jet.part(1)) for jet in driven]
-            points, turns = driving.points_of(driven), body_turns(driven, driving)
-            states = {
-                n: [values_of(part_of(p, d), len(off)) for d in range(driving.derivatives + 1)]
-                for n, p in points.items()
-            }
-            moved = self._per_length(states, turns)[1]
-            if way == TIME and self.solves:
+        places = [jet.value for jet in motion.off]
+        cars: dict[Way, Car] = {
+            (p, None): self._car(p, off, places, motion.known, growth) for p in self.drawn
+        }
+        for (prefix, way), driven in along.items():
+            known, moved = driven.known, per_length[1]
+            pose = [Dual(jet.value, jet.part(1)) for jet in driven.off]
+            if way != TIME:
+                points, turns = known.points_of(driven.rates), body_turns(driven.rates, known)
+                moved = self._per_length(points, turns, len(off), 1)[1]
+            elif self.solves:
                 pose = [_with_missed_rates(y, moved) for y in pose]
-            cars[prefix, way] = self._car(prefix, off, pose, driving, growth, moved)
+            cars[prefix, way] = self._car(prefix, off, pose, known, growth, moved)
         found = {}
         for number in self.of_car:
             effect = number.effect
@@ -498,10 +456,11 @@ def _height(a: Array, b: Array, c: Array) -> float:
     return area / longest if longest > 0.0 else 0.0
 
 
-def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
+def _change(motion: _Motion, inverse: Array) -> Array:
     """r of the top of this file, (N,)."""
     columns: dict[int, list[tuple[int, Array]]] = {}
-    for i, j, entry in known.equations.jacobian([jet.value for jet in jets], known.numbers):
+    known = values_only(motion.known)
+    for i, j, entry in known.equations.jacobian([jet.value for jet in motion.off], known.numbers):
         if isinstance(entry, Dual):
             columns.setdefault(j, []).append((i, np.asarray(entry.slope)))
     relative = np.zeros(inverse.shape[:2])

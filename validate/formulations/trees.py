@@ -13,7 +13,7 @@ import numpy as np
 from pointcoord import Scene, SceneError
 from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
-from validate.formulations.modelled import Found, Problem, require_the_drawn_car
+from validate.formulations.modelled import Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Solution
 from validate.peers.linkage import Linkage, linkage_of
 from validate.peers.motion import Poses
@@ -57,7 +57,7 @@ class InTree:
             with np.errstate(over="ignore"):  # what is too large has no claim either
                 rates = program.rates(poses, known.series)
                 found = numbers_of(linkage, known, poses, rates, asked_of_the_car(scene))
-            return problem.solution(self.name, Found(found, linkage.accuracy(poses.last_step)))
+            return problem.solution(self.name, found, linkage.accuracy(poses.last_step))
 
         def partial(before: Poses | None) -> Solution | None:
             try:

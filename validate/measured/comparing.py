@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from pointcoord import MissingLibrary, Scene
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
-from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
+from validate.comparison.compare import Comparison, Outcome, Verdict
+from validate.comparison.pair import SMALLEST
 from validate.diagnosis import Explanation, explain_evidence
 from validate.diagnosis.evidence import Evidence, Row, Solved
 from validate.formulations.asked_numbers import asked_numbers

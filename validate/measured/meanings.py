@@ -15,8 +15,7 @@ from typing import Literal
 from pointcoord.effects.angle import Angle
 from pointcoord.effects.registry import QUANTITIES, angle_called
 from pointcoord.linkage.topology import Topology
-from validate.formulations.asked_numbers import per_second
-from validate.solvers.names import known_names
+from validate.formulations.asked_numbers import known_names, per_second
 
 AXES = "xyz"
 PLACES = next(q for q, of in QUANTITIES.items() if of.of == "point" and of.unit == "mm")

@@ -40,7 +40,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.rounding import EPS
-from validate.comparison.compare import SMALLEST
+from validate.comparison.pair import SMALLEST
 from validate.formulations.asked_numbers import is_force
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured, Series

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.input_part import InputPart
-from validate.comparison.compare import SMALLEST, Comparison, Outcome
+from validate.comparison.compare import Comparison, Outcome
+from validate.comparison.pair import SMALLEST
 from validate.formulations.protocol import Accuracy, Solution
 from validate.formulations.registry import formulation
 from validate.measured.reading import Columns, read_columns

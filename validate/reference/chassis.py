@@ -9,7 +9,7 @@ from typing import Any
 
 from validate.reference.car_data import directions
 from validate.reference.jet import Jet, value_of
-from validate.reference.vectors import Scalar, Vector, cross, dot, each, minus, plus, root, times
+from validate.reference.vectors import Exact, Scalar, Vector, cross, dot, each, minus, plus, root, times
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class ChassisMotion:
         table: Mapping[str, Vector],
         unit: Fraction,
         driven: Mapping[str, Jet],
-        exact: Callable[[Fraction], Scalar],
+        exact: Exact,
     ) -> ChassisMotion:
         """From jets of any kind of number, rad and mm.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -18,7 +18,7 @@ from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
 from validate.reference.mechanism import Mechanism
-from validate.reference.vectors import Scalar, Vector, each, minus, times
+from validate.reference.vectors import Exact, Scalar, Vector, each, minus, times
 
 SAME_ROW = 1e-9  # of the largest: what is left of a row that others say already, in doubles
 
@@ -50,7 +50,7 @@ class Known:
         mechanism: Mechanism,
         equations: Equations,
         inputs: Mapping[str, Jet],
-        exact: Callable[[Fraction], Scalar],
+        exact: Exact,
     ) -> Known:
         """What inputs make of it, as jets of any kind of number, into which `exact` takes a fraction."""
         plain, table, unit = mechanism.plain, mechanism.table, mechanism.unit
@@ -144,7 +144,7 @@ class Design:
         """What a role names, or None."""
         return self.plain["roles"].get(name)
 
-    def equations(self, number: Callable[[Fraction], Scalar] = as_ball) -> Equations:
+    def equations(self, number: Exact = as_ball) -> Equations:
         """In one kind of number, unless given in balls at the present precision."""
         return equations_in(self.mechanism, self.chosen, number)
 

@@ -29,9 +29,9 @@ from validate.reference.chassis import ChassisMotion
 from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet, angle
-from validate.reference.mechanism import CHASSIS, Drive, Exact, Mechanism, Table
+from validate.reference.mechanism import CHASSIS, Drive, Mechanism, Table
 from validate.reference.polynomial import Polynomial
-from validate.reference.vectors import Scalar, across, cross, dot, each, minus, root
+from validate.reference.vectors import Exact, Scalar, across, cross, dot, each, minus, root
 
 
 def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:

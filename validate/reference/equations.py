@@ -2,9 +2,8 @@ r"""The equations of a mechanism in one kind of number: their values, their Jaco
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property, lru_cache
 
 from flint import arb, ctx
@@ -12,7 +11,7 @@ from flint import arb, ctx
 from validate.reference.krawczyk import Matrix, matrix_of
 from validate.reference.mechanism import Mechanism, at, of_kind
 from validate.reference.polynomial import Polynomial, ordered
-from validate.reference.vectors import Scalar, Vector
+from validate.reference.vectors import Exact, Scalar, Vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,9 +69,7 @@ class Equations:
         return at(one, unknown), at(two, unknown)
 
 
-def equations_in(
-    mechanism: Mechanism, rows: Sequence[int], number: Callable[[Fraction], Scalar]
-) -> Equations:
+def equations_in(mechanism: Mechanism, rows: Sequence[int], number: Exact) -> Equations:
     """The equations with their coefficients in one kind of number, kept for the present precision.
 
     Args:
@@ -83,9 +80,7 @@ def equations_in(
 
 
 @lru_cache(maxsize=256)
-def _equations(
-    mechanism: Mechanism, rows: tuple[int, ...], number: Callable[[Fraction], Scalar], precision: int
-) -> Equations:
+def _equations(mechanism: Mechanism, rows: tuple[int, ...], number: Exact, precision: int) -> Equations:
     chosen = [mechanism.rows[row][1] for row in rows]
     return Equations(
         size=mechanism.size,

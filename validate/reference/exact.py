@@ -32,7 +32,7 @@ def as_fraction(value: Any, what: str) -> Fraction:
         raise NoReferenceError(what, f"is {value!r}", allowed, value) from None
 
 
-def as_ball(value: Fraction | int) -> arb:
+def as_ball(value: Fraction | fmpq | int) -> arb:
     """A ball that contains the fraction, at the present precision; exact if it fits."""
     return arb(fmpq(value.numerator, value.denominator))
 

@@ -7,14 +7,13 @@ equations makes of them: each solves an equation with the one matrix C'.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
 from validate.reference.design import Design, Known
-from validate.reference.equations import Equations
 from validate.reference.jet import Dual, Jet, value_of
 from validate.reference.kinematics import Solved
 from validate.reference.vectors import Scalar, Vector
@@ -44,16 +43,14 @@ def local_places(design: Design, places: Mapping[str, Array], known: Known) -> d
     return local
 
 
-def jacobian_of(
-    values: Sequence[Scalar],
-    numbers: Sequence[Scalar],
-    equations: Equations,
-    part: Callable[[Scalar], Scalar] = value_of,
-) -> Array:
-    """The Jacobian or its slope, (..., N, size, size)."""
-    entries = [(i, j, part(entry)) for i, j, entry in equations.jacobian(values, numbers)]
-    shape = np.broadcast_shapes(*(np.shape(entry) for *_, entry in entries))
-    matrix = np.zeros((*shape, equations.size, equations.size))
+def jacobian_of(values: Sequence[Scalar], known: Known) -> Array:
+    """The Jacobian at poses, (N, size, size), by the values of what is known."""
+    return _matrix(known.equations.jacobian(values, known.numbers), known.equations.size)
+
+
+def _matrix(entries: Sequence[tuple[int, int, Scalar]], size: int) -> Array:
+    """Of its entries that are not zero, each a number or (N,): (N, size, size), or of numbers one."""
+    matrix = np.zeros((*np.broadcast_shapes(*(np.shape(entry) for *_, entry in entries)), size, size))
     for i, j, entry in entries:
         matrix[..., i, j] = entry
     return matrix
@@ -89,14 +86,12 @@ def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: K
         jets: the unknowns with their rates.
         inverse: of C', (N, size, size).
     """
-
-    def of_order(order: int) -> Array:
-        # An entry of the Jacobian may be a plain number.
-        return jacobian_of(
-            jets, known.numbers, known.equations, lambda x: x.part(order) if isinstance(x, Jet) else 0.0
-        )
-
-    turned = [of_order(order) for order in range(1, known.derivatives + 1)]
+    entries = known.equations.jacobian(jets, known.numbers)
+    # An entry of the Jacobian may be a plain number.
+    turned = [
+        _matrix([(i, j, x.part(order) if isinstance(x, Jet) else 0.0) for i, j, x in entries], len(jets))
+        for order in range(1, known.derivatives + 1)
+    ]
     found = [first.transpose(2, 0, 1)]
     for d in range(1, known.derivatives + 1):
         rest = sum(comb(d, k) * (turned[k - 1] @ found[d - k]) for k in range(1, d + 1))

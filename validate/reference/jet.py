@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import zip_longest
 from math import comb
+from operator import add, neg, sub
 from typing import ClassVar
 
 import numpy as np
@@ -47,10 +47,12 @@ class Jet:
         return self.parts[order] if order < len(self.parts) else 0
 
     def __add__(self, other: Scalar) -> Jet:
-        return Jet(*(a + b for a, b in zip_longest(self.parts, _jet(other).parts, fillvalue=0)))
+        one, two = self.parts, _jet(other).parts
+        return Jet(*map(add, one, two), *one[len(two) :], *two[len(one) :])
 
     def __sub__(self, other: Scalar) -> Jet:
-        return Jet(*(a - b for a, b in zip_longest(self.parts, _jet(other).parts, fillvalue=0)))
+        one, two = self.parts, _jet(other).parts
+        return Jet(*map(sub, one, two), *one[len(two) :], *map(neg, two[len(one) :]))
 
     def __mul__(self, other: Scalar) -> Jet:
         if not isinstance(other, Jet):

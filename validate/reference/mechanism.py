@@ -41,12 +41,23 @@ from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial, ordered, polynomial
-from validate.reference.vectors import Scalar, Vector, across, cross, dot, each, minus, near_one, plus, times
+from validate.reference.vectors import (
+    Exact,
+    Scalar,
+    Vector,
+    across,
+    cross,
+    dot,
+    each,
+    minus,
+    near_one,
+    plus,
+    times,
+)
 
 CHASSIS = "chassis"
 X, Y, Z = AXES = ((Fraction(1), 0, 0), (0, Fraction(1), 0), (0, 0, Fraction(1)))
 Table = Mapping[str, Vector]
-Exact = Callable[[Fraction], Scalar]
 Columns = tuple[Vector, Vector, Vector]
 Reader = Callable[[Table, Sequence[Scalar], Exact, Sequence[Scalar]], Sequence[Scalar]]
 
@@ -301,7 +312,15 @@ class Mechanism:
     def _loose(self, name: str, points: Sequence[str]) -> Columns:
         """A body that hangs on a point, or on none."""
         ends = {(p, q): minus(self.table[p], self.table[q]) for p, q in combinations(points, 2)}
-        (i, j), (k, m) = max(combinations(ends, 2), key=lambda pair: _spread(ends[pair[0]], ends[pair[1]]))
+        squared = {pair: dot(end, end) for pair, end in ends.items()}
+
+        def spread(edges: tuple[tuple[str, str], tuple[str, str]]) -> float:
+            """|k x m|^2 / (|k|^2 + |m|^2): errors of two edges turn a body the less the greater this is."""
+            k, m = edges
+            both, part = squared[k] + squared[m], dot(ends[k], ends[m])
+            return float(squared[k] * squared[m] - part * part) / (float(both) or 1.0)
+
+        (i, j), (k, m) = max(combinations(ends, 2), key=spread)
         one, two = ends[i, j], ends[k, m]
         normal = cross(one, two)
         area = dot(normal, normal)
@@ -376,9 +395,3 @@ def of_kind(vector: Vector, number: Exact) -> Vector:
 def at(vector: Vector, values: Sequence[Scalar]) -> Vector:
     """The values of a vector of polynomials."""
     return each(lambda one: one.at(values), vector)
-
-
-def _spread(k: Vector, m: Vector) -> float:
-    """|k x m|^2 / (|k|^2 + |m|^2): errors of two vectors turn a body the less the greater this is."""
-    normal = cross(k, m)
-    return float(dot(normal, normal)) / (float(dot(k, k) + dot(m, m)) or 1.0)

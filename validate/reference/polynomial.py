@@ -5,26 +5,30 @@ The unknowns are the symbols 0, 1 and so on, the numbers w of the inputs are -1,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import chain, product
 
-from validate.reference.vectors import Scalar
+from flint import fmpq
+
+from validate.reference.vectors import Exact, Scalar
 
 Monomial = tuple[int, ...]  # at most two symbols, in ascending order
 
 
 @dataclass(frozen=True)
 class Polynomial:
-    """A sum of products of at most two symbols, with exact coefficients, or in one kind of number."""
+    """A sum of products of at most two symbols, with exact coefficients, or in one kind of number.
+
+    The exact ones are flint's fractions: Python's take some twenty times as long to add and to multiply.
+    """
 
     terms: Mapping[Monomial, Scalar]
 
     @classmethod
     def symbol(cls, number: int) -> Polynomial:
         """One symbol."""
-        return cls({(number,): Fraction(1)})
+        return cls({(number,): fmpq(1)})
 
     def __add__(self, other: Scalar) -> Polynomial:
         return _summed(chain(self.terms.items(), polynomial(other).terms.items()))
@@ -34,7 +38,7 @@ class Polynomial:
         return _summed((tuple(sorted(one + two)), a * b) for (one, a), (two, b) in pairs)
 
     def __neg__(self) -> Polynomial:
-        return self * -1
+        return Polynomial({monomial: -coefficient for monomial, coefficient in self.terms.items()})
 
     def __sub__(self, other: Scalar) -> Polynomial:
         return self + -polynomial(other)
@@ -55,7 +59,7 @@ class Polynomial:
                 terms[tuple(rest)] = coefficient * monomial.count(symbol)
         return Polynomial(terms)
 
-    def of_kind(self, number: Callable[[Fraction], Scalar]) -> Polynomial:
+    def of_kind(self, number: Exact) -> Polynomial:
         """With coefficients in another kind of number, a constant last."""
         ordered = sorted(self.terms.items(), key=lambda term: -len(term[0]))
         return Polynomial({monomial: number(coefficient) for monomial, coefficient in ordered})
@@ -75,8 +79,10 @@ class Polynomial:
 
 
 def polynomial(number: Scalar) -> Polynomial:
-    """A number as a polynomial; a polynomial is itself."""
-    return number if isinstance(number, Polynomial) else Polynomial({(): Fraction(number)} if number else {})
+    """An exact number as a polynomial; a polynomial is itself."""
+    if isinstance(number, Polynomial):
+        return number
+    return Polynomial({(): fmpq(number.numerator, number.denominator)} if number else {})
 
 
 def ordered(unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
@@ -84,10 +90,10 @@ def ordered(unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar
     return [*unknown, *reversed(numbers)]
 
 
-def _summed(terms: Iterable[tuple[Monomial, Fraction]]) -> Polynomial:
-    found: dict[Monomial, Fraction] = {}
+def _summed(terms: Iterable[tuple[Monomial, Scalar]]) -> Polynomial:
+    found: dict[Monomial, Scalar] = {}
     for monomial, coefficient in terms:
         if len(monomial) > 2:
             raise ValueError("a product of more than two symbols: no row may be more than quadratic")
-        found[monomial] = found.get(monomial, Fraction(0)) + coefficient
+        found[monomial] = found[monomial] + coefficient if monomial in found else coefficient
     return Polynomial({monomial: coefficient for monomial, coefficient in found.items() if coefficient})

@@ -14,6 +14,8 @@ from flint import arb
 # of the equations serves them all.
 Scalar = Any
 Vector = tuple[Scalar, Scalar, Scalar]
+Exact = Callable[[Any], Scalar]
+"""Makes an exact number, a fraction of Python's or of flint's, a scalar of one kind."""
 
 
 def each(change: Callable[[Scalar], Scalar], a: Vector) -> Vector:

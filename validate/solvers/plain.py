@@ -25,8 +25,9 @@ from __future__ import annotations
 
 import importlib
 import traceback
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, cast
 
@@ -38,15 +39,15 @@ from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.wording import meant, shown
 from validate.errors import UsageError
-from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.asked_numbers import asked_numbers, known_names
 from validate.formulations.protocol import Accuracy, FormulationError, Solution
-from validate.solvers.names import known_names, misspelt
 
 Array = NDArray[np.float64]
 Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
 INSTANTS = "instants"
 METHOD = "solve"
+ALIKE = 0.8  # of their letters, of names of which one is the other misspelt: "iterations" is no acceleration
 HERE, IMPORTING = Path(__file__).parent, Path(importlib.__file__).parent
 
 
@@ -218,16 +219,21 @@ def _numbers(
                     found.setdefault(key, {})[name] = array
                 else:
                     what = f"{QUANTITIES[key].words} of {shown(name)}"
-                    told = faults if misspelt(name, known[key]) else notes
+                    told = faults if _misspelt(name, known[key]) else notes
                     told.append(_left_out(who, what, name, asked[key]))
         elif key in asked:
             faults.append(
                 f"{who}: {key} is of type {type(part).__name__}; needed: arrays by name; it is left out"
             )
         elif key != INSTANTS:
-            told = faults if misspelt(key, every) else notes
+            told = faults if _misspelt(key, every) else notes
             told.append(_left_out(who, shown(key), key, (*asked, *of_the_car)))
     return found, tuple(notes), tuple(faults)
+
+
+def _misspelt(name: object, known: Collection[str]) -> bool:
+    """Whether a name is one of the known ones misspelt; else it may be another."""
+    return name not in known and bool(get_close_matches(str(name).lower(), known, n=1, cutoff=ALIKE))
 
 
 def _left_out(who: str, what: str, name: object, there: Iterable[str]) -> str:

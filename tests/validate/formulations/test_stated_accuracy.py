@@ -1,7 +1,5 @@
 """What a stated accuracy makes of every number: wide enough for who keeps it, and for nobody else."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from cars_in_closed_form import VARIANTS
@@ -13,8 +11,8 @@ from pointcoord.effects.registry import QUANTITIES
 from validate.cars.car import content_of
 from validate.cars.input_ends import drawn_inputs, end
 from validate.comparison.compare import Outcome, compare
-from validate.formulations.modelled import Found, Problem, asked_of
-from validate.formulations.protocol import NOTHING, Solution
+from validate.formulations.modelled import Problem, asked_of
+from validate.formulations.protocol import NOTHING, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_for
 from validate.formulations.trees import linkage_in
 from validate.hard.cars import ASKED, scene_content
@@ -144,7 +142,7 @@ def test_it_covers_what_an_early_end_of_newtons_method_leaves() -> None:
     exact, found = (
         numbers(linkage, inputs, poses, program.rates(poses, inputs.series)) for poses in (best, coarse)
     )
-    solution = problem.solution("relative", Found(found, linkage.accuracy(coarse.last_step)))
+    solution = problem.solution("relative", found, linkage.accuracy(coarse.last_step))
     asked = asked_of(exact, scene)
     for quantity, arrays in solution.numbers.items():
         for point, array in arrays.items():
@@ -157,8 +155,8 @@ def test_an_accuracy_that_is_a_lie_is_seen_to_be_one(monkeypatch: pytest.MonkeyP
     """A check of the check: a model that says it is far more exact than it is goes beyond its claims."""
     right = Problem.solution
 
-    def boasting(problem: Problem, who: str, found: Found) -> Solution:
-        return right(problem, who, replace(found, accuracy=found.accuracy * 1e-3))
+    def boasting(problem: Problem, who: str, found: Numbers, accuracy: np.ndarray) -> Solution:
+        return right(problem, who, found, accuracy * 1e-3)
 
     monkeypatch.setattr(Problem, "solution", boasting)
     outcome = compare(Scene.load("bounce-and-steer"), "pointcoord", "relative")

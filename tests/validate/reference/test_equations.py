@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import pytest
+from flint import fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mechanism_drawings import DRAWINGS, drawing
 
 from validate.reference.equations import Equations, equations_in
 
-fractions = st.integers(-1000, 1000).map(lambda n: Fraction(n, 16))
+fractions = st.integers(-1000, 1000).map(lambda n: fmpq(n, 16))
 
 
 def exact_equations(name: str) -> tuple[Equations, int]:
@@ -33,7 +32,7 @@ def test_the_jacobian_is_exactly_the_central_difference_of_the_quadratic_residua
     w = data.draw(st.lists(fractions, min_size=count, max_size=count))
     ahead = equations.residual([a + b for a, b in zip(y, step, strict=True)], w)
     behind = equations.residual([a - b for a, b in zip(y, step, strict=True)], w)
-    product = [Fraction(0)] * size
+    product = [fmpq(0)] * size
     for row, column, entry in equations.jacobian(y, w):
         product[row] += entry * step[column]
     assert product == [(a - b) / 2 for a, b in zip(ahead, behind, strict=True)]

@@ -54,10 +54,10 @@ def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions
         """The motion that misses each equation by so much, and the inverse of its Jacobian."""
         solved = values
         for _ in range(4):
-            inverse = inverse_of(jacobian_of(list(solved), still.numbers, still.equations))
+            inverse = inverse_of(jacobian_of(list(solved), still))
             less = np.einsum("nij,j->in", inverse, missed)
             solved = solved + np.array(by_doubles(inverse)(still.residual(list(solved)))) + less
-        inverse = inverse_of(jacobian_of(list(solved), still.numbers, still.equations))
+        inverse = inverse_of(jacobian_of(list(solved), still))
         return with_rates(list(solved), known, by_doubles(inverse)), inverse
 
     size = design.mechanism.size

@@ -29,9 +29,8 @@ def in_bodies(scene: Scene, _: float | None) -> Solve:
 
     def solve(instants: Array) -> Answer:
         solved = assembled.solve(laws_at(scene, instants), rates, effects=effects, loads=loads)
-        return Answer(
-            asked_of(found_of(solved, asked).numbers, scene), {"newton_steps": int(solved.iterations.sum())}
-        )
+        numbers = asked_of(found_of(solved, asked), scene)
+        return Answer(numbers, {"newton_steps": int(solved.iterations.sum())})
 
     return solve
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from validate.ci.verdict import by_scene, complaints, disagreements, notes, standing, undecided, word
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
-from validate.comparison.over_time import over_time
+from validate.comparison.given import given_by_both
+from validate.comparison.pair import Pair
 from validate.exit_status import ExitStatus
 from validate.html.blocks import Block, Panel, Paragraph, Plots, fewer, gaps, plain
 from validate.html.run import POINTS, Run
@@ -138,10 +139,18 @@ def differences(run: Run) -> Iterator[Block]:
 
 def _panels(outcome: Outcome, row: Comparison, instants: Array) -> Iterator[Panel]:
     """The differences of a row over time; nothing if one of the two formulations does not give the number."""
-    if (found := over_time(outcome, row, instants)) is not None:
-        at = fewer(found.share, POINTS)
+    times, one, two = given_by_both(*outcome.solutions, instants)
+    pair = Pair(row.quantity, (one, two), outcome.factor)
+    if row.name in pair.names:
+        held = pair.held(row.name)
+        # At each instant, the component that comes closest to its tolerance.
+        worst = np.argmax(held.share, axis=1, keepdims=True)
+        gap, allowed, share = (
+            np.take_along_axis(of, worst, axis=1)[:, 0] for of in (held.gap, held.allowed, held.share)
+        )
+        at = fewer(share, POINTS)
         words = f"{about(row.quantity, row.name)}: {row.verdict}, at most {used(row.share)}"
-        yield gaps(words, "time [s]", found.times[at], found.difference[at], found.tolerance[at], row.unit)
+        yield gaps(words, "time [s]", times[at], gap[at], allowed[at], row.unit)
 
 
 def machine(run: Run) -> Iterator[Block]:

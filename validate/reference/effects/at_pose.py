@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cache
 
 from flint import arb
@@ -19,7 +18,7 @@ from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import value_of
 from validate.reference.kinematics import Solved, with_rates
-from validate.reference.vectors import Scalar, Vector
+from validate.reference.vectors import Exact, Vector
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,7 @@ def pair_of(design: Design) -> tuple[str, ...]:
     return tuple(prefix for prefix, _ in corners) if [side for _, side in corners] == [-1, 1] else ()
 
 
-def drawn_car(design: Design, number: Callable[[Fraction], Scalar], prefix: str = "") -> DrawnCar:
+def drawn_car(design: Design, number: Exact, prefix: str = "") -> DrawnCar:
     """The car as drawn, local.
 
     Args:

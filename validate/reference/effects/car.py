@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from validate.reference.car_data import LENGTHS, LINES, RADIUS, WHEEL, car_data, corners
-from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, times
+from validate.reference.vectors import Exact, Scalar, Vector, cross, dot, each, length, minus, times
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class DrawnCar:
         points: Mapping[str, Vector],
         origin: Vector,
         unit: Any,
-        number: Callable[[Any], Scalar],
+        number: Exact,
     ) -> DrawnCar:
         """A description's corner.
 
