@@ -56,10 +56,9 @@ condition for Newton's method): from LIMIT on the accuracy says nothing of that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import combinations
-from dataclasses import dataclass
 from math import comb, sqrt
 
 import numpy as np

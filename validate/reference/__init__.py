@@ -1,7 +1,7 @@
 """The reference: the equations of any mechanism in many digits, with a proof of every number.
 
-Third and independent: it shares no code with the formulations it judges. Where the project says
-"error" it means the distance from these numbers.
+The reference is a third, independent solution: it shares no code with the formulations that it judges. In
+this project "error" means the difference from these numbers.
 """
 
 from validate.extras import not_there

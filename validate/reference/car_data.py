@@ -1,4 +1,4 @@
-"""What no point of the suspension says of the car: directions, sides, data, and the names of what it has."""
+"""Car data that no point of the suspension gives: directions, sides, data, and names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TRAVEL, RACK, ROLL, TIME = "by_travel", "by_rack", "by_roll", "by_time"
 
 LENGTHS = (WHEELBASE, HEIGHT, FREE_LENGTH, RADIUS)
 AXLES = {"front": Fraction(-1), "rear": Fraction(1)}
-"""Of each axle where it lies, seen from the car's middle: -1 ahead, 1 behind."""
+"""Position of each axle relative to the car's middle: -1 in front, 1 behind."""
 
 
 def car_data(plain: Mapping[str, Any]) -> dict[str, Fraction]:
@@ -30,9 +30,10 @@ def car_data(plain: Mapping[str, Any]) -> dict[str, Fraction]:
 
 
 def corners(plain: Mapping[str, Any]) -> dict[str, int]:
-    """The prefix of each part's names, and 1 where outboard is `right` there, -1 where it is the opposite.
+    """The prefix of each part's names, and its side: 1 if outboard is `right` there, -1 if it is the
+    opposite.
 
-    Without parts there is one, whose names have none.
+    A car without parts counts as one part, with an empty prefix.
     """
     sides = {f"{part}.": side for part, side in plain.get("sides", {}).items()}
     return {prefix: 1 if side == "right" else -1 for prefix, side in (sides or {"": plain["side"]}).items()}

@@ -1,4 +1,4 @@
-"""How the car as a whole is moved: turned about fixed lines, one after the other, then displaced."""
+"""Motion of the car as a whole: turns about fixed lines, one after the other, then a displacement."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Turn:
     cosine: Scalar
 
     def turned(self, v: Vector) -> Vector:
-        """A vector after it (Rodrigues)."""
+        """A vector after the turn (Rodrigues)."""
         along = times(self.along, dot(v, self.along))
         across = minus(v, along)
         return plus(along, plus(times(across, self.cosine), times(cross(self.along, across), self.sine)))
@@ -48,7 +48,7 @@ class ChassisMotion:
 
         Args:
             plain, table, unit: of a design.
-            exact: a fraction in that kind of number.
+            exact: converts a fraction to that kind of number.
         """
         turns, rise = [], None
         for name, spec in plain["inputs"].items():
@@ -79,7 +79,7 @@ class ChassisMotion:
         return replace(self, rise=None)
 
     def taken_back(self, point: Vector) -> Vector:
-        """The point of the car that is there when the car is moved."""
+        """The point of the drawn car that is at this place in the moved car."""
         point = point if self.rise is None else minus(point, self.rise)
         for turn in reversed(self.turns):
             point = plus(replace(turn, sine=-turn.sine).turned(minus(point, turn.about)), turn.about)

@@ -1,4 +1,4 @@
-r"""Kinds of input: the rows that say them, the numbers w that these take, and where the drawing has them.
+r"""Kinds of input: their rows, the numbers w in these rows, and the values of w in the drawing.
 
     angle from a direction    (P - Q) . direction = w,          w = d cos(theta), d as drawn
     angle from the drawing    g1 w1 - g2 w2 = 0,                w1 = sin(theta), w2 = cos(theta) / |n|,
@@ -46,8 +46,8 @@ def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     mechanism.row(name, dot(minus(mechanism.place(end), mechanism.place(pivot)), along) - mechanism.number())
 
     def angle(numbers: Sequence[arb]) -> arb:
-        # By cosine and sine: an arc cosine loses its digits where the arm stands along the direction. That is
-        # a unit vector to rounding only, so the difference may be just below zero.
+        # By cosine and sine: an arc cosine loses its digits if the arm is along the direction. The direction
+        # is a unit vector only to rounding, so the difference may be just below zero.
         beside = (as_ball(d2) - numbers[0] * numbers[0]).nonnegative_part()
         return arb.atan2(beside.sqrt(), numbers[0])
 
@@ -103,7 +103,7 @@ def _steers(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
 
 
 def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scalar:
-    """What a rack goes as the steering wheel turns, rack_per_turn / (2 pi), mm, in a kind of number."""
+    """Travel of a rack per rad of the steering wheel, rack_per_turn / (2 pi), mm, in a kind of number."""
     quarter = angle(exact(Fraction(1)), exact(Fraction(0)))
     return exact(as_fraction(plain["rack_per_turn"], "rack_per_turn")) / (4 * quarter)
 
@@ -111,7 +111,7 @@ def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scala
 def _slid(
     mechanism: Mechanism, name: str, slides: Sequence[str], per_input: Callable[[Exact], Scalar]
 ) -> Drive:
-    """Slides that go `per_input` mm per mm or rad of the input."""
+    """Slides that travel `per_input` mm per mm or rad of the input."""
     drawn, lengths, unit = [], [], mechanism.unit
     for slide in slides:
         shares, along, squared = mechanism.lines[slide]
@@ -134,7 +134,7 @@ def _slid(
 
 
 def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    """It counts, in mm, from the drawing on."""
+    """It is measured in mm from the drawing."""
     along, unit = directions(mechanism.plain)[spec.get("along", "up")], mechanism.unit
     drawn = dot(mechanism.table[spec["height"]], along)
     mechanism.row(name, dot(mechanism.place(spec["height"]), along) - mechanism.number())
@@ -147,7 +147,7 @@ def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
 
 
 def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    """Over the ground along the true up, which the chassis' inputs turn in the chassis' frame."""
+    """Over the ground along the true up; in the chassis' frame the chassis' inputs turn this direction."""
     inner, centre = spec["contact"]
     plain, table, unit, first = mechanism.plain, mechanism.table, mechanism.unit, mechanism.count
     up, r = directions(plain)["up"], Fraction(plain["wheel_radius"]) / unit
@@ -194,7 +194,7 @@ def _own(
     input_of: Callable[[Sequence[arb]], arb],
     turns: bool = False,
 ) -> Drive:
-    """An input whose numbers hang on its own value alone."""
+    """An input whose numbers depend on its own value alone."""
     return Drive(lambda inputs, exact: numbers(inputs[name], exact), drawn, input_of, turns)
 
 
@@ -225,7 +225,7 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
     """The equations of a description with its inputs, see `Mechanism`.
 
     Raises:
-        NoReferenceError: something in the description cannot be.
+        NoReferenceError: the description contains something impossible.
     """
     mechanism = Mechanism(plain, table, unit, hangs)
     for name, spec in plain["inputs"].items():

@@ -1,4 +1,4 @@
-r"""The equations of a mechanism in one kind of number: their values, their Jacobian, and what they place."""
+r"""The equations of a mechanism in one kind of number: values, Jacobian, and places of points and bodies."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ class Equations:
         return matrix_of(self.size, self.jacobian(unknown, numbers))
 
     def bend(self, change: Sequence[arb]) -> Matrix:
-        """By how much a change of y changes dC/dy, which is linear in y."""
+        """The change of dC/dy for a change of y; dC/dy is linear in y."""
         return matrix_of(self.size, ((i, j, entry.at(change)) for i, j, entry in self._bending))
 
     @cached_property
     def _bending(self) -> list[tuple[int, int, Polynomial]]:
-        """Of the entries the terms that y changes."""
+        """The terms of the entries that depend on y."""
         bending = (
             (i, j, Polynomial({m: x for m, x in entry.terms.items() if m and m[0] >= 0}))
             for i, j, entry in self.entries
@@ -60,7 +60,7 @@ class Equations:
         return [entry for entry in bending if entry[2].terms]
 
     def points_of(self, unknown: Sequence[Scalar], names: Iterable[str] | None = None) -> dict[str, Vector]:
-        """Where every point is, or some are, relative to the chassis."""
+        """Positions of all points, or of some, relative to the chassis."""
         return {n: at(self.places[n], unknown) for n in (self.places if names is None else names)}
 
     def frame_of(self, unknown: Sequence[Scalar], body: str) -> tuple[Vector, Vector]:
@@ -73,8 +73,8 @@ def equations_in(mechanism: Mechanism, rows: Sequence[int], number: Exact) -> Eq
     """The equations with their coefficients in one kind of number, kept for the present precision.
 
     Args:
-        rows: those that are solved, as many as unknowns.
-        number: a fraction in that kind.
+        rows: the rows that are solved, as many as unknowns.
+        number: converts a fraction to that kind of number.
     """
     return _equations(mechanism, tuple(rows), number, ctx.prec)
 

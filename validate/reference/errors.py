@@ -1,6 +1,6 @@
-"""What can go wrong on the way to a proven number.
+"""Errors of the reference.
 
-No function of this package returns a number that it could not prove: it raises one of these.
+No function of this package returns a number that it could not prove: it raises one of these errors.
 """
 
 from __future__ import annotations
@@ -12,15 +12,14 @@ from flint import arb
 
 
 class NoReferenceError(Exception):
-    """There is no proven number: something given cannot be used, or does not tell which assembly is meant,
-    or a way is too long for the time that a reference may take. What the program does about the other
-    reasons has classes of their own.
+    """There is no proven number: an input cannot be used, or does not determine the assembly, or a path takes
+    too many steps. The other reasons have their own classes, because the program handles them differently.
 
     Args:
-        what: the entry, the choice that is open, the way or the claim.
+        what: the entry, the undetermined choice, the path or the claim.
         problem: what is wrong with it, with the value.
-        allowed: what would be right, or what to try.
-        value: what was given or reached, if it is a number by itself.
+        allowed: what is allowed, or what to try.
+        value: the value given or reached, if it is a number.
     """
 
     def __init__(self, what: str, problem: str, allowed: str, value: object = None) -> None:
@@ -34,15 +33,15 @@ class NoReferenceError(Exception):
 
 
 class InfeasibleError(NoReferenceError):
-    """The assembly of the drawing does not come to these inputs: the way there meets a fold, proven.
+    """The assembly of the drawing cannot reach these inputs: it is proven that the path to them meets a fold.
 
-    There is no pose beyond a fold on its branch. From the drawing the straight way is tried, and the ways
-    that take one input after the other; from one instant of a motion to the next only the straight one.
+    A branch has no pose beyond its fold. From the drawing the straight path is tried, and the paths that
+    change one input after the other; from one instant of a motion to the next only the straight path.
 
     Attributes:
-        way: which way it is.
-        share: how much of it is left behind at the fold, 0 to 1.
-        inputs: at the fold, rad or mm, without those that move the whole car.
+        way: name of the path.
+        share: share of the path before the fold, 0 to 1.
+        inputs: inputs at the fold, rad or mm, without those that move the whole car.
     """
 
     def __init__(self, way: str, share: float, inputs: Mapping[str, Fraction]) -> None:
@@ -62,17 +61,17 @@ class NotDecidedError(NoReferenceError):
     Args:
         what: the claim that could not be proven.
         value: the size that was reached.
-        limit: the size that was needed.
+        limit: the required size.
     """
 
     def __init__(self, what: str, value: object, limit: object) -> None:
-        # A ball of 400 digits is no message: six say where the proof stands.
+        # A ball of 400 digits is unreadable in a message; six digits are enough.
         value, limit = (x.str(6) if isinstance(x, arb) else str(x) for x in (value, limit))
         super().__init__(what, f"is {value}", limit, value)
 
 
 class SingularPoseError(NoReferenceError):
-    """No certificate at the greatest number of digits: the pose is singular, or all but singular.
+    """No certificate at the greatest number of digits: the pose is singular or nearly singular.
 
     Attributes:
         digits: the greatest number of digits tried.

@@ -1,4 +1,4 @@
-"""Numbers without loss: a given float is a fraction, a proven number is a ball with an exact centre."""
+"""Exact numbers: a given float is a fraction, a proven number is a ball with an exact centre."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Answer = TypeVar("Answer")
 
 
 def as_fraction(value: Any, what: str) -> Fraction:
-    """The given number as a fraction, exactly: binary numbers (float, mpmath's mpf) are what they are.
+    """The given number as an exact fraction; binary numbers (float, mpmath's mpf) are not rounded.
 
     Raises:
         NoReferenceError: not a real number, or not finite.
@@ -44,15 +44,15 @@ def centre_of(ball: arb) -> Fraction:
 
 
 def bits(digits: int) -> int:
-    """Binary digits that hold so many decimal digits, with 25 to spare for the arithmetic."""
+    """Binary digits for so many decimal digits, with 25 decimal digits to spare for the arithmetic."""
     return math.ceil((digits + 25) * math.log2(10))
 
 
 def with_more_digits(attempt: Callable[[int], Answer], ladder: Sequence[int]) -> Answer:
-    """What an attempt gives with the first of these digits with which its proofs hold.
+    """The result of an attempt with the first of these numbers of digits with which its proofs succeed.
 
     Raises:
-        SingularPoseError: they hold with none.
+        SingularPoseError: the proofs succeed with none of them.
     """
     for digits in ladder:
         try:

@@ -1,11 +1,12 @@
-r"""The fold that a way leads into: proven, with the branch from a pose before it.
+r"""The fold at the end of a path: proven, with the branch from a pose before it.
 
-Where a way turns back, its Jacobian is singular. There t is no parameter of the branch, but s = y_j is: with
-the row y_j = s the equations in (y, t) are a curve of their own, regular at the fold, where dt/ds = 0;
-Newton's method finds that s. A tube about this curve (see `way`) that holds both the pose and the fold makes
-the fold that pose's own. By the enclosure of d2t/ds2 < 0 over the tube t has no other extreme there: every t
-between is met once before the fold, by a regular pose, and no t beyond the fold is met. With d2t/ds2 <= -m
-and dt/ds = e at some s the fold is no farther from it than |e| / m, and its t higher by at most e^2 / 2m.
+Where a path turns back, its Jacobian is singular. There t cannot be the parameter of the branch, but s = y_j
+can: with the added row y_j = s the equations in (y, t) define a curve that is regular at the fold, where
+dt/ds = 0. Newton's method finds this s. If a tube about this curve (see `way`) contains both the pose and the
+fold, the fold is on the pose's branch. If d2t/ds2 < 0 on the whole tube (by its enclosure), t has no other
+extremum there: each t between them belongs to one regular pose before the fold, and no t beyond the fold to
+any. With d2t/ds2 <= -m and dt/ds = e at some s, the distance of the fold from this s is at most |e| / m, and
+its t is higher by at most e^2 / 2m.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from validate.reference.krawczyk import Curve, Matrix, column, middle_inverse
 from validate.reference.vectors import Scalar
 from validate.reference.way import Pose, Tube, Way, proven_tube, series_of, start_pose
 
-STEPS = 16  # of Newton's method: a guess that is good to two digits has 400 after eight
-FOLD_ORDER = 3  # of the series about the fold: one of second order says which way t turns
-BEYOND = 0.02  # of the way to the fold, at both ends of the tube, so that they lie inside
+STEPS = 16  # of Newton's method: from a guess with two correct digits, eight steps give 400
+FOLD_ORDER = 3  # of the series about the fold: the second order gives the sense in which t turns
+BEYOND = 0.02  # share of the distance to the fold added at both ends of the tube, so that both lie inside
 
 
 @dataclass(frozen=True)
@@ -33,11 +34,11 @@ class Bordered(Curve):
     index: int
 
     def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
-        """Both."""
+        """Both kinds of row."""
         return [*self.way.rows(x[:-1], x[-1]), x[self.index] - t]
 
     def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
-        """Of their Jacobian; dC/dt is a central difference, exact as C is quadratic."""
+        """Entries of their Jacobian; dC/dt is a central difference, which is exact because C is quadratic."""
         last = len(x) - 1
         ahead, behind = (self.way.rows(x[:-1], x[-1] + step) for step in (1, -1))
         by_time = [(i, last, (a - b) * arb(0.5)) for i, (a, b) in enumerate(zip(ahead, behind, strict=True))]
@@ -65,10 +66,10 @@ class Fold:
     """A fold ahead of a pose, on its branch.
 
     Attributes:
-        t: where on the way, a ball. s: y_j there, a ball.
+        t: place on the path, a ball. s: y_j there, a ball.
         index: j, the unknown that is the parameter.
-        tube: of (y, t) along s.
-        before: s at the pose less that at the fold.
+        tube: tube of (y, t) along s.
+        before: s at the pose minus s at the fold.
     """
 
     t: arb
@@ -103,7 +104,7 @@ def pose_before(way: Way, fold: Fold, t: arb) -> Pose:
     """The pose at t on the branch before the fold, which lies beyond t.
 
     Raises:
-        NotDecidedError: it cannot be proven with the present digits.
+        NotDecidedError: the pose cannot be proven with the present digits.
     """
     squared = ((fold.t - t) / -fold.tube.series[-1][2]).mid()
     if not squared > 0:
@@ -130,7 +131,7 @@ def _guess(way: Way, pose: Pose) -> tuple[list[arb], int]:
 
 
 def _turning(bordered: Bordered, near: Sequence[arb]) -> Pose:
-    """Where dt/ds is 0, to half the digits of s and all of t."""
+    """The pose at which dt/ds = 0, to half the digits in s and all digits in t."""
     s = near[bordered.index].mid()
     for _ in range(STEPS):
         top = start_pose(bordered, near, s)

@@ -1,8 +1,9 @@
-r"""The equations at many instants at once, in doubles: poses that are known, their rates, and small changes.
+r"""The equations at many instants at once, in doubles: known poses, their rates, and small changes.
 
-One text of the equations serves every kind of number (`equations`): here arrays over the instants, (N,), and
-duals of them whose slopes are (directions, N). From C(y, t) = 0 follow y' and y'', and what missing the
-equations makes of them: each solves an equation with the one matrix C'.
+The same code of the equations is used for every kind of number (`equations`): here for arrays over the
+instants, (N,), and for duals of arrays with slopes (directions, N). From C(y, t) = 0 follow y' and y'', and
+the effect on them of a residual of the equations; each is the solution of an equation with the same matrix
+C'.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ Array = NDArray[np.float64]
 
 
 def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> Known:
-    """What the equations take as given, as jets of arrays (N,).
+    """The known quantities of the equations, as jets of arrays (N,).
 
     Args:
-        laws: of each input that does not rest at zero, value and time derivatives, (N, orders); rad or mm.
+        laws: value and time derivatives of each input that is not constantly zero, (N, orders); rad or mm.
         count: N.
     """
     still = np.zeros((count, max((law.shape[-1] for law in laws.values()), default=3)))
@@ -57,7 +58,7 @@ def _matrix(entries: Sequence[tuple[int, int, Scalar]], size: int) -> Array:
 
 
 def inverse_of(matrix: Array) -> Array:
-    """Of matrices (N, size, size); of one without an inverse what comes nearest to one."""
+    """Inverses of matrices (N, size, size); the pseudoinverse if one of them is singular."""
     try:
         return np.asarray(np.linalg.inv(matrix), dtype=float)
     except np.linalg.LinAlgError:
@@ -75,16 +76,16 @@ def by_doubles(inverse: Array) -> Solved:
 
 
 def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
-    """What equations that are missed by a constant make of the unknowns, by order, unknown, miss and instant.
+    """Effect of constant residuals of the equations on the unknowns, by order, unknown, residual and instant.
 
     From C(y, t) = delta follows C' dy = delta at every instant, and so by differentiating
 
         C' dy'  = -(C')' dy,        C' dy'' = -2 (C')' dy' - (C')'' dy,        and so on.
 
     Args:
-        first: dy of each miss, (size, misses, N).
+        first: dy of each residual, (size, residuals, N).
         jets: the unknowns with their rates.
-        inverse: of C', (N, size, size).
+        inverse: inverse of C', (N, size, size).
     """
     entries = known.equations.jacobian(jets, known.numbers)
     # An entry of the Jacobian may be a plain number.

@@ -36,15 +36,16 @@ class Instant:
         position: every point, mm.
         velocity: every point, mm/s.
         acceleration: every point, mm/s^2.
-        higher: jerk of every point, mm/s^3, and so on: as many as the inputs are given with.
+        higher: jerk of every point, mm/s^3, and so on, to the highest derivative given for the inputs.
         angular_velocity: of every moving body, rad/s.
-        angular_acceleration: of the same, rad/s^2.
-        effects: those that were asked for, by name, with its part's prefix if there are parts, see
-            `effects.registry`; rad, mm, these per mm, and %. One is not there if the car lacks what it needs,
-            or if it is undefined in this pose: 0/0, an angle at 180 deg, a wheel that does not travel, a
-            centre at infinity, wheels that are steered apart.
-        rod_force, joint_force, hinge_thrust: where loads are given, of rods, dampers, joints, N; see `loads`.
-        error_bound: proven bound on the error of each quantity above, in its unit; of jerks as
+        angular_acceleration: of every moving body, rad/s^2.
+        effects: the requested effects by name, with the part's prefix if there are parts, see
+            `effects.registry`; rad, mm, these per mm, and %. An effect is missing if the car lacks what it
+            needs, or if it is undefined in this pose: 0/0, an angle at 180 deg, a wheel that does not travel,
+            a centre at infinity, wheels that are steered in opposite directions.
+        rod_force, joint_force, hinge_thrust: if loads are given, forces of rods, dampers, joints, N; see
+            `loads`.
+        error_bound: proven bound on the error of each quantity above, in its unit; the key of jerks is
             "derivative 3", and so on.
     """
 
@@ -62,11 +63,11 @@ class Instant:
 
     @property
     def derivatives(self) -> tuple[Mapping[str, Triple], ...]:
-        """Of points by order, that of order 0 their positions."""
+        """Time derivatives of the points by order; order 0 is their positions."""
         return self.position, self.velocity, self.acceleration, *self.higher
 
     def position_as_float(self, name: str) -> tuple[float, float, float]:
-        """The point rounded to float64, mm: the nearest, up to its error bound where two are equally near."""
+        """The point rounded to the nearest float64, mm; to either one if both are equally near."""
         x, y, z = self.position[name]
         return float(x), float(y), float(z)
 
@@ -78,9 +79,9 @@ def prove_instant(
 
     Args:
         known: with rates, local.
-        followed: the pose that a way led to with fewer digits; it must come out.
-        digits: what every returned number must have, relative to the greatest of its kind.
-        effects: names of those that are wanted.
+        followed: the pose at the end of a path, from fewer digits; the result must be this pose.
+        digits: correct digits of every returned number, relative to the greatest of its kind.
+        effects: names of the requested effects.
     Raises:
         NotDecidedError: a proof fails with the present digits.
         NoReferenceError: there is no such effect.
@@ -115,17 +116,17 @@ def prove_instant(
 
 
 def derivative_called(order: int) -> str:
-    """What a time derivative of positions is called among the error bounds."""
+    """The name of a time derivative of positions among the error bounds."""
     return DERIVATIVES[order] if order < len(DERIVATIVES) else f"derivative {order}"
 
 
 def _require_others(design: Design, enclosure: Sequence[arb], known: Known, least: arb) -> None:
-    """Pass if the rows that are not solved, because the others say them in the drawing, hold here too.
+    """Check the rows that are not solved because they depend on the others in the drawing.
 
-    That they hold exactly cannot be proven by balls, only that they do to the digits asked for.
+    Balls cannot prove that these rows hold exactly, only that they hold to the requested digits.
 
     Raises:
-        NoReferenceError: one does not hold.
+        NoReferenceError: one of these rows is violated.
     """
     values = ordered(enclosure, known.numbers)
     for i in set(range(len(design.mechanism.rows))) - set(design.chosen):
@@ -145,7 +146,7 @@ def _require_others(design: Design, enclosure: Sequence[arb], known: Known, leas
 def _motion(
     design: Design, points: Mapping[str, Vector], turns: Mapping[str, Sequence[Vector]], derivatives: int
 ) -> dict[str, Mapping[str, Any]]:
-    """Positions, rates and turning in mm, s, rad."""
+    """Positions, rates and angular rates in mm, s, rad."""
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
     found: dict[str, Mapping[str, Any]] = {
         derivative_called(order): {name: times(part_of(points[name], order), unit) for name in design.names}
@@ -160,7 +161,7 @@ def _motion(
 
 
 def _scales(found: Mapping[str, Mapping[str, Vector]], unit: arb) -> dict[str, arb]:
-    """The greatest number of each kind; centripetal parts may cancel: their size counts."""
+    """The greatest number of each kind; centripetal terms count with their size, because they may cancel."""
     largest = {
         quantity: max(x.abs_upper() for vector in of.values() for x in vector)
         for quantity, of in found.items()
@@ -174,7 +175,7 @@ def _scales(found: Mapping[str, Mapping[str, Vector]], unit: arb) -> dict[str, a
 
 
 def _largest_radius(found: Mapping[str, Any]) -> arb:
-    """Of balls, or of vectors of balls."""
+    """The largest radius of balls, or of vectors of balls."""
     every = chain.from_iterable(of if isinstance(of, tuple) else (of,) for of in found.values())
     return max((x.rad() for x in every), default=arb(0))
 

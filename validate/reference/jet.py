@@ -16,13 +16,13 @@ from validate.reference.vectors import Scalar, Vector, each, root
 
 @dataclass(frozen=True, init=False)
 class Jet:
-    """(x, x', x'', ...), by time or by one parameter; the parts may be jets by another one.
+    """(x, x', x'', ...), by time or by one parameter; the parts may be jets by another parameter.
 
     Products, quotients and roots follow Leibniz. (x y)'' = x'' y + 2 x' y' + x y'': the factor 2 that
     eq. (23) of the paper drops cannot be forgotten here, because no equation is differentiated by hand.
 
     Attributes:
-        parts: the number and its derivatives; those that are missing are zero.
+        parts: the number and its derivatives; missing derivatives are zero.
     """
 
     __array_ufunc__: ClassVar[None] = None  # numpy's arrays leave sums and products with a jet to the jet
@@ -43,7 +43,7 @@ class Jet:
         return self.part(1)
 
     def part(self, order: int) -> Scalar:
-        """A derivative; the number itself is that of order 0."""
+        """A derivative; order 0 is the number itself."""
         return self.parts[order] if order < len(self.parts) else 0
 
     def __add__(self, other: Scalar) -> Jet:
@@ -61,7 +61,7 @@ class Jet:
         return Jet(*(_leibniz(one, two, order) for order in range(max(len(one), len(two)))))
 
     def __truediv__(self, other: Scalar) -> Jet:
-        """q of q y = x: the derivatives of q that are known so far are taken off those of x."""
+        """q of q y = x: each derivative of q follows from that of x and the lower derivatives of q."""
         divisor = _jet(other)
         found = [self.value / divisor.value]
         for order in range(1, max(len(self.parts), len(divisor.parts))):
@@ -78,7 +78,7 @@ class Jet:
         return Jet(other).__truediv__(self)
 
     def sqrt(self) -> Jet:
-        """The root r of a positive number, r r = x likewise."""
+        """The root r of a positive number, from r r = x in the same way."""
         found = [root(self.value)]
         for order in range(1, len(self.parts)):
             found.append((self.part(order) - _leibniz(found, found, order)) / (2 * found[0]))
@@ -117,7 +117,7 @@ def part_of(vector: Vector, order: int) -> Vector:
 
 
 def angle(y: Scalar, x: Scalar) -> Scalar:
-    """atan2(y, x), rad, of balls, of arrays, or with one derivative; no number of two balls about 0."""
+    """atan2(y, x), rad, of balls, of arrays, or with one derivative; NaN if both balls contain 0."""
     if isinstance(y, arb) and isinstance(x, arb):
         return arb("nan") if y.contains(0) and x.contains(0) else arb.atan2(y, x)
     if not (isinstance(y, Jet) or isinstance(x, Jet)):
@@ -128,7 +128,7 @@ def angle(y: Scalar, x: Scalar) -> Scalar:
 
 
 def _leibniz(one: Sequence[Scalar], two: Sequence[Scalar], order: int) -> Scalar:
-    """A derivative of a product; what a factor lacks is zero."""
+    """A derivative of a product; missing derivatives of a factor are zero."""
     total: Scalar | None = None
     for i in range(min(order, len(one) - 1), max(order - len(two), -1), -1):
         product = one[i] * two[order - i]

@@ -1,4 +1,4 @@
-"""Velocities, accelerations and turning of the bodies, by differentiating the equations."""
+"""Velocities, accelerations and angular rates of the bodies, by differentiating the equations."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def with_rates(
 
     Args:
         solved: gives -C'^-1 times a column.
-        derivatives: how many; as many as are known of the inputs unless given.
+        derivatives: their number; by default as many as are known for the inputs.
     """
     zero, moving = values[0] * 0, [Jet(value) for value in values]
     for order in range(1, 1 + (known.derivatives if derivatives is None else derivatives)):
         rows = known.residual([Jet(*jet.parts, zero) for jet in moving])
-        # A row in which nothing moves is a plain number.
+        # A row without moving parts is a plain number.
         rest = [row.part(order) if isinstance(row, Jet) else zero for row in rows]
         moving = [Jet(*jet.parts, rate) for jet, rate in zip(moving, solved(rest), strict=True)]
     return moving

@@ -25,7 +25,7 @@ from flint import acb, acb_mat, arb, arb_mat, arb_poly, ctx
 from validate.reference.errors import NotDecidedError
 from validate.reference.vectors import Scalar
 
-MOST_STEPS = 60  # quadratic convergence needs 5 from float accuracy; the rest is for a far guess
+MOST_STEPS = 60  # from float accuracy quadratic convergence needs 5; the rest is for a distant guess
 HOPELESS = 4  # so many times as large as before: a step of Newton's method, or a width that is to settle
 TRIES = 6  # of the widths: they settle on what the equations make of them
 SETTLED = 0.125  # a last term of A that changes A F' by no more leaves room in M
@@ -48,7 +48,7 @@ class Curve(ABC):
 
     @abstractmethod
     def bend(self, change: Sequence[Scalar]) -> Matrix:
-        """By how much a change of x changes F', which is linear in x."""
+        """The change of F' for a change of x; F' is linear in x."""
 
     def matrix(self, x: Sequence[Scalar], t: Scalar) -> Matrix:
         """F' in balls."""
@@ -57,7 +57,7 @@ class Curve(ABC):
 
 @dataclass(frozen=True)
 class Contraction:
-    """What proves boxes about a centre, or along a curve.
+    """Data for the proof of boxes about a centre, or along a curve.
 
     Attributes:
         missed: upper bounds on |A F|.
@@ -108,7 +108,7 @@ class Contraction:
         return [(eta + x).upper() for eta, x in zip(self.missed, spread, strict=True)]
 
     def settled(self) -> list[arb] | None:
-        """Half widths of a box that is proven, not much wider than need be; None if none is found."""
+        """Half widths of a proven box, not much wider than necessary; None if none is found."""
         width = [2 * x + arb(2) ** (-ctx.prec // 2) for x in self.missed]
         for _ in range(TRIES):
             image = self.image(width)
@@ -124,7 +124,7 @@ def newton(curve: Curve, start: Sequence[Scalar], t: Scalar) -> tuple[list[Scala
     """Newton's method to the present precision: exact numbers, not yet a proof, and nearly the inverse there.
 
     Raises:
-        NotDecidedError: it does not settle, or the Jacobian is singular to the present precision.
+        NotDecidedError: it does not converge, or the Jacobian is singular to the present precision.
     """
     x, last = [number.mid() for number in start], arb(2) ** ctx.prec
     good_enough = arb(2) ** (-ctx.prec // 2)  # the next step's error is the square of this one's
@@ -177,7 +177,7 @@ def middle_inverse(matrix: Matrix) -> Matrix:
 
 
 def matrix_of(size: int, entries: Iterable[tuple[int, int, Scalar]]) -> Matrix:
-    """A square matrix, of its entries that are not zero."""
+    """A square matrix from its nonzero entries."""
     rows: list[list[Scalar]] = [[0] * size for _ in range(size)]
     for i, j, entry in entries:
         rows[i][j] = entry

@@ -1,15 +1,15 @@
 r"""The forces in rods and joints that loads on the wheels make, by virtual work.
 
-The chassis and every driven input hold the mechanism, but where a corner has a damper its length is held and
-the input that moves the wheel is free. A force f and a moment m act on the knuckle at the contact point c.
-With q_j = f . dc/dy_j + m . dtheta/dy_j and the Jacobian C' of what holds,
+The chassis and every driven input fix the mechanism. Exception: if a corner has a damper, the damper's length
+is fixed and the input that moves the wheel is free. A force f and a moment m act on the knuckle at the
+contact point c. With q_j = f . dc/dy_j + m . dtheta/dy_j and the Jacobian C' of the fixed mechanism,
 
     C'^T l = q
 
-gives the work l_i of the load for each unit by which row i is violated, all other rows held. So a rod of the
+gives the work l_i of the load per unit of violation of row i, with all other rows satisfied. So a rod of the
 length d, whose row |a - b|^2 - d^2 is violated by 2 d e where it is e longer, has the tension 2 d l. The rows
-p - p' of a ball joint say how far its halves are apart: it pulls the body of p by -l, and the other by l.
-A hinge has these rows at one point of its line, and at another one the two products of p - p' with sides s
+p - p' of a ball joint are the gap between its halves: the joint pulls the body of p by -l, and the other by
+l. A hinge has these rows at one point of its line, and at another one the two products of p - p' with sides s
 that are square to the line: there it pulls by -(l s + l' s'). Along the line only one row holds, so that of
 the two forces along it the sum is known. The rows p - p' of a point p on a slide, p' its place on the line,
 pull p by -l: across the line, and along it where an input drives the share of the line that p' is at. The
@@ -45,16 +45,16 @@ Forces = dict[str, dict[str, Any]]
 def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: int) -> Forces:
     """The forces at a pose, N, in balls, to so many digits of the loads.
 
-    There are none where no load is given, where the car lacks what they need, and where what holds the wheel
-    does not hold it at this pose, or all but.
+    There are no forces if no load is given, if the car lacks what they need, or if the wheel is not held at
+    this pose, or hardly.
 
     Args:
-        known: its rates are not looked at.
+        known: its rates are not used.
         enclosure: of the unknowns.
     Returns:
         By quantity and name. Of `FORCES`
 
-        rod_force, tension: of every rod by its name and of every damper that holds, `left.damper`.
+        rod_force, tension: of every rod by its name and of every fixed damper, `left.damper`.
         joint_force, in the scene's axes: of every point that is a ball joint of just two bodies, or one of
             both points of their hinge, and is on no slide: on the body of a role knuckle if it is one of
             them, else on the one that the mechanism's file names first and that is not the chassis. Of a

@@ -2,7 +2,7 @@ r"""A mechanism's description, compiled: its equations C(y, w) = 0, every one at
 
 The unknowns y are, in local coordinates (see `design`) and relative to the chassis:
 
-    of a body hinged on the chassis     c, s      it is turned about n, the line of its two points there:
+    of a body hinged on the chassis     c, s      turned about n, the line of its two points there:
                                                   v -> n (n.v)/n^2 + c (v - n (n.v)/n^2) + s (n x v)
     of any other body                   c1 c2 c3  the columns of its matrix R,
     and if no point of it is placed yet p         the place of its first point
@@ -20,9 +20,9 @@ and the rows are
                                                          across the line  R u . R' v - R v . R' u = 0
     and those of the inputs: see `drives`
 
-A body that shares a point with one before it hangs on that point, so its place is no unknown, unless every
-joint is to have its rows (see `loads`). The numbers w are what the inputs stand for. Everything that the
-drawing gives is exact.
+A body that shares a point with an earlier body is placed by that point, so its position is not an unknown,
+unless every joint shall have its own rows (see `loads`). The numbers w are functions of the inputs. All data
+of the drawing are exact.
 """
 
 from __future__ import annotations
@@ -70,8 +70,8 @@ class Drive:
         numbers: the numbers w of the values of all inputs, rad or mm, as jets of any kind of number, and of
             what makes a fraction one of that kind.
         drawn: these numbers as drawn.
-        input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
-        turns: whether it is an angle of any number of turns.
+        input_of: the input itself, rad or mm, from its numbers; for an angle from the drawing the least one.
+        turns: whether it is an angle that may be any number of turns.
     """
 
     numbers: Callable[[Mapping[str, Jet], Exact], Sequence[Jet]]
@@ -93,12 +93,12 @@ class Body:
         return cls(columns, minus(place, cls(columns, place).turned(drawn)))
 
     def turned(self, v: Vector) -> Vector:
-        """Where a vector fixed in it points to."""
+        """Direction of a vector fixed in the body."""
         x, y, z = (times(column, part) for column, part in zip(self.columns, v, strict=True))
         return plus(plus(x, y), z)
 
     def place(self, drawn: Vector) -> Vector:
-        """Where a point of it is."""
+        """Position of a point of the body."""
         return plus(self.origin, self.turned(drawn))
 
 
@@ -213,7 +213,7 @@ class Mechanism:
         self.rows.append((name, polynomial(row)))
 
     def _vanish(self, name: str, apart: Vector) -> int:
-        """Two places are one: three rows; the first of them."""
+        """Add the three rows that make two places coincide; return the first row's number."""
         for part in apart:
             self.row(name, part)
         return len(self.rows) - 3
@@ -231,7 +231,7 @@ class Mechanism:
         return x, y, z
 
     def _in_order(self) -> Iterator[str]:
-        """The moving bodies, each after those that it hangs on."""
+        """The moving bodies, each after the bodies that place it."""
         left = {name: set(points) for name, points in self.plain["bodies"].items() if name != CHASSIS}
         chassis = set(self.plain["bodies"][CHASSIS])
         placed = set(chassis)
@@ -243,7 +243,8 @@ class Mechanism:
     def _add_body(self, name: str) -> None:
         points: list[str] = self.plain["bodies"][name]
         shared = {other: [p for p in points if p in self.plain["bodies"][other]] for other in self.bodies}
-        # A hinge is told by both its points: bodies with two come first, and of these the chassis.
+        # A hinge is recognised by its two points: bodies with two points come first, and of these the
+        # chassis.
         ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
         if len(shared[CHASSIS]) == 2 and self.hangs:
             columns, tied = self._hinged(name, *shared[CHASSIS]), {*shared[CHASSIS]}

@@ -1,4 +1,4 @@
-"""Exact polynomials of at most second degree: the equations are written with them once, as vector algebra.
+"""Exact polynomials of at most second degree, with which the equations are written once, as vector algebra.
 
 The unknowns are the symbols 0, 1 and so on, the numbers w of the inputs are -1, -2 and so on.
 """
@@ -86,7 +86,7 @@ def polynomial(number: Scalar) -> Polynomial:
 
 
 def ordered(unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
-    """Values such that each stands where its symbol says, of w counted from the end."""
+    """Values in the order of their symbols; the negative symbols of w are indices from the end."""
     return [*unknown, *reversed(numbers)]
 
 

@@ -1,8 +1,9 @@
-r"""From the drawing to wanted inputs: first the drawing is closed, then its inputs go there, straight.
+r"""From the drawing to given inputs: first the drawing is closed, then its inputs change along a straight
+path.
 
-An angle that is counted from the drawing goes in steps of less than a quarter turn, each straight in its sine
-and cosine: only their ratio counts in its row. The other inputs go straight in the numbers that the equations
-take of them (see `drives`).
+An angle measured from the drawing changes in steps of less than a quarter turn, each linear in its sine and
+cosine, because only their ratio matters in its row. The other inputs change linearly in the numbers w of the
+equations (see `drives`).
 """
 
 from __future__ import annotations
@@ -30,17 +31,17 @@ from validate.reference.way import Pose, Way, bending, next_pose, start_pose
 DIGITS = (7, 39, 103, MOST_DIGITS)  # of the arithmetic on the way: twice a double's bits, and twice that
 FOLDS_FROM = 0.05  # of the way: shorter steps lead into a fold, which is then looked for
 TURN = Fraction(3, 2)  # rad, less than a quarter turn
-# Ways take one step or a few, however thin a body is, and up to a hundred where they end within 1e-12 of a
-# fold, or meet a singular pose that is none: so many none has taken.
+# A path takes a few steps at most, however thin a body is, and up to a hundred if it ends within 1e-12 of a
+# fold, or meets a singular pose that is not a fold. No path has yet taken this many.
 MOST_STEPS = 400
 MOST_ORDERS = 6  # in which the inputs go there in turn
-CLEAR = 1e-9  # a drawing is rounded to floats and need not close: where its assemblies are closer is noise
+CLEAR = 1e-9  # drawings are rounded to floats and need not close: a smaller distance of assemblies is noise
 REMEDY = "the points are drawn at a singular pose: draw the car where it is wanted, off that pose"
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """Where a route has come to: a proven pose, with these inputs as driven and the others as drawn."""
+    """The end of a route: a proven pose, with these inputs as driven and the others as drawn."""
 
     driven: Driven
     pose: Pose
@@ -51,9 +52,9 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
     """The drawing, closed at its own inputs.
 
     Args:
-        clearness: how far a second assembly must be from the drawing, in parts of the mechanism's size.
+        clearness: least distance of a second assembly from the drawing, as a share of the mechanism's size.
     Raises:
-        NoReferenceError: the drawing lies (nearly) at a singular pose.
+        NoReferenceError: the drawing is at a singular pose, or nearly.
         InfeasibleError, SingularPoseError: it does not close without passing one.
     """
 
@@ -80,12 +81,14 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
 
 
 def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
-    """The assembly that a way from the closed drawing leads to: straight, or else input by input in turn.
+    """The assembly at the end of a path from the closed drawing: the straight one, or else one input after
+    another.
 
     Raises:
-        NoReferenceError: the drawing lies (nearly) at a singular pose.
-        InfeasibleError: proven that each of these ways meets a fold before its end; of the straight one.
-        SingularPoseError: a way meets a singular pose, or one so near that 400 digits do not tell.
+        NoReferenceError: the drawing is at a singular pose, or nearly.
+        InfeasibleError: it is proven that each path meets a fold before its end; the error is the straight
+            one's.
+        SingularPoseError: a path meets a singular pose, or comes so near that 400 digits cannot decide.
     """
     here = closed(design, clearness)
     try:
@@ -106,13 +109,13 @@ def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
 
 
 def moved(design: Design, here: Assembly, driven: Driven) -> Assembly:
-    """The assembly that the straight way to other inputs leads to.
+    """The assembly at the end of the straight path to other inputs.
 
     Args:
-        driven: the inputs that go there, the others being as drawn.
+        driven: the new values of inputs; the others are as drawn.
     Raises:
-        InfeasibleError: proven that the way meets a fold before its end.
-        SingularPoseError: the way meets a singular pose, or one so near that 400 digits do not tell.
+        InfeasibleError: it is proven that the path meets a fold before its end.
+        SingularPoseError: the path meets a singular pose, or comes so near that 400 digits cannot decide.
     """
 
     def attempt(_: int) -> Assembly:
@@ -129,10 +132,10 @@ def moved(design: Design, here: Assembly, driven: Driven) -> Assembly:
 
 
 def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
-    """The pose at the end of a way.
+    """The pose at the end of a path.
 
     Raises:
-        NoReferenceError: it takes more than `MOST_STEPS`.
+        NoReferenceError: the path takes more than `MOST_STEPS` steps.
     """
     longest, tried, steps = arb(1), FOLDS_FROM, 0
     while pose.t < 1:
@@ -160,7 +163,7 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
 
 
 def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
-    """The numbers w between which the ways are straight."""
+    """The numbers w at the ends of the straight paths."""
     turns = {
         name: [Fraction(inputs[name].value) if name in inputs else Fraction(0) for inputs in (begin, end)]
         for name, one in design.mechanism.drives.items()
@@ -179,7 +182,7 @@ def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
 
 
 def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
-    """The numbers w of each input, of those that are not driven as drawn."""
+    """The numbers w of each input; inputs that are not driven have their drawn values."""
     given = {name: balls(driven.get(name, Jet(Fraction(0)))) for name in design.inputs}
     return {
         name: [jet.value for jet in one.numbers(given, as_ball)] if name in driven else [*one.drawn()]

@@ -26,26 +26,26 @@ def instants_of(
 ) -> Iterator[Instant]:
     """A motion, with a proof of every digit.
 
-    All numbers given (int, float, Fraction, mpf) are taken as exact. The assembly is the one that a way from
-    the drawing leads to without meeting a singular pose: the drawing is closed, then its inputs go to the
-    wanted ones (see `route`), and from each instant straight to the next, every step of it proven. The number
-    of digits rises by itself where the pose is nearly singular. It sets the precision of python-flint, which
-    is global: not for several threads at once.
+    All given numbers (int, float, Fraction, mpf) are taken as exact. The assembly is the one at the end of a
+    path from the drawing that meets no singular pose: the drawing is closed, then its inputs change to those
+    of the first instant (see `route`), and from each instant straight to the next; every step is proven. The
+    number of digits is raised automatically if the pose is nearly singular. The function sets the precision
+    of python-flint, which is global, so it is not safe for several threads.
 
     Args:
         design: of a car whose points fix the lengths and need not be assembled.
-        inputs: of each instant by name, rad or mm, each (value, rate, acceleration) or with as many more of
-            their derivatives; those that are not named rest at zero.
+        inputs: the inputs of each instant by name, rad or mm, each (value, rate, acceleration) or with more
+            derivatives; inputs that are not named are constantly zero.
         digits: digits of every number, relative to the greatest of its kind; 15 to 200.
-        clearness: how far another assembly must be from the drawing, in parts of the mechanism's size; 0
-            where the drawing is exact.
-        effects: names of those that are wanted, see `effects.registry`; each costs what it takes.
+        clearness: least distance of another assembly from the drawing, as a share of the mechanism's size; 0
+            if the drawing is exact.
+        effects: names of the requested effects, see `effects.registry`; only these are computed.
     Returns:
         The instants, mm, s, rad.
     Raises:
-        NoReferenceError: something given cannot be used, or the drawing lies at a singular pose.
-        InfeasibleError: proven that the ways from the drawing meet a fold.
-        SingularPoseError: no proof with 400 digits.
+        NoReferenceError: an input cannot be used, or the drawing is at a singular pose.
+        InfeasibleError: it is proven that the paths from the drawing meet a fold.
+        SingularPoseError: no proof succeeds with 400 digits.
 
     >>> arm = Design.from_plain({  # level, so that the wheel moves straight up at first
     ...     "name": "arm", "rods": {}, "slides": {}, "roles": {"wheel_axis": ["inner", "wheel"]},
@@ -67,9 +67,9 @@ def instants_of(
 
 
 def pose_exists(design: Design, inputs: Inputs, clearness: float = CLEAR) -> bool:
-    """Whether the assembly of the drawing comes to these inputs.
+    """Whether the assembly of the drawing can reach these inputs.
 
-    A pose that is singular to 400 digits counts as existing: it is the end itself.
+    A pose that is singular to 400 digits counts as existing: it is the end of the range itself.
     """
     try:
         reached(design, clearness, design.driven(inputs))
@@ -81,11 +81,11 @@ def pose_exists(design: Design, inputs: Inputs, clearness: float = CLEAR) -> boo
 
 
 def _proven(design: Design, here: Assembly, driven: Driven, digits: int, effects: Sequence[str]) -> Instant:
-    """Tried with twice the digits until the proofs hold, the last time with 400.
+    """The digits are doubled until the proofs succeed; the last attempt has 400.
 
     Raises:
         NoReferenceError: `digits` is not from 15 to 200.
-        SingularPoseError: they do not hold with 400.
+        SingularPoseError: the proofs do not succeed with 400.
     """
 
     def attempt(_: int) -> Instant:

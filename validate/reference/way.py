@@ -1,17 +1,18 @@
-r"""The assembly that a way leads to, followed with a proof of every step.
+r"""The assembly at the end of a path, followed with a proof of every step.
 
-Along a way, 0 <= t <= 1, the numbers of the inputs run straight from one place to another,
+Along a path (`Way`), 0 <= t <= 1, the numbers of the inputs change linearly from one value to another,
 
-    C(y, w(t)) - (1 - t) c = 0,          w(t) = w0 + t (w1 - w0),
+    C(y, w(t)) - (1 - t) c = 0,          w(t) = w0 + t (w1 - w0).
 
-and c, zero but for a drawing that does not close, is what the drawing misses. From a solution y(t0) follow
-the terms of its power series one by one: the coefficient k of C needs the terms before k only, and
-y_k = -C'^-1 C_k. Let q(u) be that polynomial about the middle of a step, |u| <= h, and A(u), one as well,
-nearly the inverse of C'(q(u)). With these a box about q(u), for each u by itself, is proven to hold one
-solution, and the Jacobian to be regular there (see `krawczyk`): a branch that meets no singular pose. A body
-that hardly holds its turn turns far while the inputs hardly move. As q and A go along with it, the box need
-be no wider than what q misses, and steps are as long as those of any other body. Where the next step starts,
-a far smaller box is proven to hold one, and to lie inside the first: so it is the same one. All in balls.
+c is the residual of the drawing; it is zero unless the drawing does not close. From a solution y(t0) follow
+the terms of its power series one by one: the coefficient k of C needs only the terms before k, and
+y_k = -C'^-1 C_k. Let q(u) be this polynomial about the middle of a step, |u| <= h, and A(u) another one,
+nearly the inverse of C'(q(u)). With q and A it is proven, for each u by itself, that a box about q(u)
+contains one solution and that the Jacobian is regular there (see `krawczyk`): a branch that meets no singular
+pose. A body whose rotation is nearly undetermined turns far while the inputs hardly move. As q and A follow
+this rotation, the box need only be as wide as the error of q, and steps are as long as for any other body. At
+the start of the next step a far smaller box is proven to contain a solution and to lie inside the first box,
+so both solutions are the same. All arithmetic is in balls.
 """
 
 from __future__ import annotations
@@ -26,18 +27,18 @@ from validate.reference.errors import NotDecidedError
 from validate.reference.krawczyk import Contraction, Curve, Matrix, column, largest, less, newton, within
 from validate.reference.vectors import Scalar
 
-ORDER = 9  # of the series: what a step misses falls with the power ORDER + 1 of its length
+ORDER = 9  # of the series: the error of a step is proportional to its length to the power ORDER + 1
 SHARE = 0.4  # of the series' radius at most: 0.4^8 is 1/1500
-SHORTER = 0.6  # so much of a step that could not be proven is tried next
+SHORTER = 0.6  # after a step that could not be proven, this share of it is tried
 BOXES = (0.75, 0.5, 0.25)  # of the bits: how narrow the boxes about a pose are
 
 
 @dataclass(frozen=True)
 class Way(Curve):
-    """A straight way.
+    """A straight path.
 
     Attributes:
-        begin, end: the numbers w there.
+        begin, end: the numbers w at its two ends.
         missed: c, or nothing.
     """
 
@@ -69,9 +70,9 @@ class Pose:
     """A solution on a curve: it lies within `error` of `unknown`, and no other within `reach`, by coordinate.
 
     Attributes:
-        t: where on the curve.
+        t: place on the curve.
         unknown: exact numbers.
-        inverse: nearly, of the Jacobian.
+        inverse: approximate inverse of the Jacobian.
     """
 
     t: arb
@@ -95,7 +96,7 @@ class Tube:
     """A step: each box of half width `width` about the series in t - `start` holds one solution.
 
     Attributes:
-        all_along: a box about all of them.
+        all_along: a box that contains all these boxes.
     """
 
     start: arb
@@ -104,7 +105,7 @@ class Tube:
     all_along: Sequence[arb]
 
     def at(self, t: arb) -> list[arb]:
-        """The series there."""
+        """The series at t."""
         return [one(t - self.start) for one in self.series]
 
     def holds(self, t: arb, solution: Sequence[arb]) -> bool:
@@ -116,11 +117,11 @@ def start_pose(curve: Curve, near: Sequence[arb], t: arb) -> Pose:
     """The solution next to a place, proven.
 
     Raises:
-        NotDecidedError: there is none so near, or the Jacobian is singular to the present precision.
+        NotDecidedError: no solution is that near, or the Jacobian is singular to the present precision.
     """
     unknown, inverse = newton(curve, near, t)
     proof = Contraction.at(curve, unknown, t, inverse)
-    # The narrowest box tells where the solution is, the widest how far it is from any other.
+    # The narrowest box gives the place of the solution, the widest its distance from any other solution.
     proofs = []
     for share in BOXES:
         width = [2 * x + arb(2) ** int(-ctx.prec * share) for x in proof.missed]
@@ -134,10 +135,10 @@ def start_pose(curve: Curve, near: Sequence[arb], t: arb) -> Pose:
 
 
 def next_pose(curve: Curve, pose: Pose, longest: arb) -> Pose:
-    """One step on, proven to lead along the branch; at most so long.
+    """The pose one step further, proven to be on the same branch; the step is at most `longest`.
 
     Raises:
-        NotDecidedError: a step falls below the least that the present digits can carry.
+        NotDecidedError: the step becomes smaller than the present digits allow.
     """
     series = series_of(curve, pose, ORDER)
     step = arb.min(arb(_reach(curve, pose, series)), longest).mid()
@@ -156,15 +157,15 @@ def next_pose(curve: Curve, pose: Pose, longest: arb) -> Pose:
 
 
 def bending(curve: Curve, pose: Pose) -> float:
-    """|A C''| at a pose, in doubles: within half of its inverse Newton's method cannot leave the solution
-    (Kantorovich).
+    """|A C''| at a pose, in doubles. From any start nearer than half of its inverse, Newton's method
+    converges to the solution (Kantorovich).
     """
     box = [arb(0, 1)] * len(pose.unknown)
     return float(largest((pose.inverse * (curve.bend(box) * column(box))).entries()))
 
 
 def series_of(curve: Curve, pose: Pose, order: int) -> list[arb_poly]:
-    """The unknowns as polynomials in t less the pose's t."""
+    """The unknowns as polynomials in t minus the pose's t."""
     terms, time = [[x] for x in pose.unknown], arb_poly([pose.t, 1])
     for k in range(1, order + 1):
         rows = curve.rows([arb_poly(one) for one in terms], time)
@@ -188,9 +189,10 @@ def proven_tube(curve: Curve, start: arb, series: Sequence[arb_poly], begin: arb
 
 
 def _reach(curve: Curve, pose: Pose, series: Sequence[arb_poly]) -> float:
-    """How far a series leads: its radius is estimated from its last two terms against its first.
+    """Length of a step of a series; its radius is estimated from the ratio of its last two terms to its
+    first.
 
-    It misses some speed * radius * share^(ORDER + 1), and that may bend A C' by an eighth.
+    The error of the series is about speed * radius * share^(ORDER + 1), and may change A C' by an eighth.
     """
     weights = [max(abs(float(one[k].mid())) for one in series) for k in (1, ORDER - 1, ORDER)]
     speed, guesses = weights[0], [1e6]

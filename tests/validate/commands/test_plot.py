@@ -106,7 +106,7 @@ def test_what_is_named_is_computed_and_a_point_that_is_not_reported_is_said_how_
     for words in ("wheel_centre.z", "travel"):
         with pytest.raises(NotComputed, match="add 'wheel_centre' to the scene's points"):
             asking_for(scene, found(words, numbers_of(scene)))
-    with pytest.raises(UsageError, match="is more than one number"):
+    with pytest.raises(UsageError, match="names more than one number"):
         found("z", numbers_of(scene))
 
 

@@ -91,7 +91,7 @@ def axle(file: str, y: int = 0) -> dict[str, Any]:
         ({"Axles": []}, "has no Axles"),
         ({"Axles": [{"Suspension Input File": "front.json"}]}, "Location of axle 1' has 'None'"),
         (axle("nothing"), "names 'own/nothing.json', which is in none of the folders above it"),
-        (axle("suspension/front", 1), "has y 1, beside the middle"),
+        (axle("suspension/front", 1), "has y 1, which is not the middle"),
         ({"Template": "TrackedVehicle", "Axles": None}, "Type 'Vehicle' and Template 'TrackedVehicle'"),
     ],
 )

@@ -207,7 +207,7 @@ NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle"
         (table(order=(1, 0, 2)), {}, "lower_arm_front lies along [+]y from lower_arm_rear"),
         (table(names=EXCHANGED), {}, "lower_arm_front lies along -x from lower_arm_rear"),
         (table(per_unit="1000"), {}, r"spans 0\.54 mm .*--unit m makes 540 mm"),
-        (table(titles="Point,X (mm),Y (mm),Z (mm)\n"), {"unit": "m"}, "says that its lengths are in mm"),
+        (table(titles="Point,X (mm),Y (mm),Z (mm)\n"), {"unit": "m"}, "states that its lengths are in mm"),
         (LEFT_STRUT, {"side": "right"}, "--side left --mirror makes the right wheel"),
         # A file that has the wheel is not told to mirror the other one.
         (
@@ -249,22 +249,22 @@ NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle"
             {},
             "line 1: has unknown titles: 'Punkt, Hoch, Quer, Laengs'",
         ),
-        ("Point Hoch Quer Laengs\nA 1 2 3", {}, "line 1: .* not known: 'Point Hoch Quer Laengs'"),
+        ("Point Hoch Quer Laengs\nA 1 2 3", {}, "line 1: has unknown titles: 'Point Hoch Quer Laengs'"),
         ("Point,X,Y,Z,X,Y,Z\nA,1,2,3,4,5,6", {}, "line 1: has 2 columns of x"),
         ("-3.5,529,122.84\n-45,190,129.9", {}, "line 1: has coordinates without a name"),
         ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", {}, "line 3: has numbers with points and with commas"),
         ("", {}, "has no points"),
-        ("PK\x03\x04\x00\x00", {}, "is no text"),
-        (LEFT_CHRONO.replace("]", ",", 1), {}, "is no JSON"),
+        ("PK\x03\x04\x00\x00", {}, "is not text"),
+        (LEFT_CHRONO.replace("]", ",", 1), {}, "is not JSON"),
         (
             LEFT_CHRONO.replace("{", "{ // Type\n/* a\n\nb */", 1).replace("0.718", "x"),
             {},
-            "line 12: is no JSON",
+            "line 12: is not JSON",
         ),
         (
             LEFT_CHRONO.replace('"Tierod"', '"Rod"'),
             {},
-            "lacks tie_rod_outer .*not known in it: .*'Rod: Location",
+            "lacks tie_rod_outer .*not recognised: .*'Rod: Location",
         ),
     ],
 )

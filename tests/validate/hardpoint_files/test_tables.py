@@ -76,7 +76,7 @@ def test_a_rocker_of_optimumk_makes_a_car_with_a_pushrod_and_the_same_damper(tmp
     assert found.scene.mechanism.side == "left"
     assert drawn(found) == {name: (x, -y, z) for name, (x, y, z) in car.items()}
     assert not found.others
-    assert any("pushrod_outer is taken for a point of the lower arm" in fact for fact in found.facts)
+    assert any("pushrod_outer is taken as a point of the lower arm" in fact for fact in found.facts)
 
 
 def corners(title: str) -> str:

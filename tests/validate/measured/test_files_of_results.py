@@ -98,7 +98,7 @@ def test_a_time_too_coarse_to_tell_anything_tests_nothing() -> None:
     right = f"time [s],position.wheel_centre.x [mm]\n0.1,{x[0]:.1f}\n0.2,{x[1]:.1f}\n"
     found = compared(right, content, STEER)
     assert found.outcome.rows[0].verdict == "not tested"
-    assert any("is not tested: what its rows are taken by is rounded so" in n for n in found.outcome.notes)
+    assert any("is not tested: the independent column is rounded so" in n for n in found.outcome.notes)
 
 
 def test_numbers_that_are_none_and_rows_outside_the_time_are_counted_and_the_others_go_on() -> None:

@@ -84,7 +84,7 @@ def test_parquet_gives_the_numbers_themselves(tmp_path: Path) -> None:
         ("time,camber\n", ("no line of numbers",)),
         ("time,camber\n0,1\n1,1.O\n", ("line 3, column 'camber'", "'1.O' is not a finite number")),
         ("time,camber\n0,1\n1,2,3\n", ("line 3", "3 cells", "2, one for each of time, camber")),
-        ("time,time\n0,1\n", ("'time' is there 2 times",)),
+        ("time,time\n0,1\n", ("'time' occurs 2 times",)),
         ("a,b,c\n0,1\n", ("2 columns of numbers under 3 names",)),
         ("time,camber\ns,furlong\n0,1\n", ("line of units", "'furlong'")),
         ("time;camber\n0.5;1\n1.0;1,5\n", ("line 3", "has a decimal comma", "one sign before the decimals")),

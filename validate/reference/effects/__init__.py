@@ -1,1 +1,1 @@
-"""What the reference tells of a pose beside points and bodies: one file for a group of effects."""
+"""Effects: the reference's numbers of a pose beside points and bodies. One file for each group of effects."""

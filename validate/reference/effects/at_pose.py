@@ -1,4 +1,4 @@
-"""A pose as the car of its effects, and the driven inputs that it can be differentiated by."""
+"""A pose in the form that effects take, and the driven inputs by which it can be differentiated."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from validate.reference.vectors import Exact, Vector
 
 @dataclass(frozen=True)
 class Number:
-    """A number that an effect makes of a car.
+    """A number that an effect computes from a car.
 
     Attributes:
-        name: what results call it, `left.camber`.
+        name: its name in results, for example `left.camber`.
         corners: the prefixes of the parts whose cars `effect.evaluate` takes, in this order.
     """
 
@@ -36,7 +36,8 @@ class Number:
 
 
 def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
-    """The numbers that names mean and the car can have; without a prefix each part has one of a wheel's.
+    """The numbers of these names that the car can have; the name of a wheel's number without prefix means all
+    parts.
 
     Raises:
         NoReferenceError: there is no such effect.
@@ -65,14 +66,14 @@ def drawn_car(design: Design, number: Exact, prefix: str = "") -> DrawnCar:
     """The car as drawn, local.
 
     Args:
-        number: a fraction in the kind of number of the poses.
-        prefix: of the part.
+        number: converts a fraction to the kind of number of the poses.
+        prefix: prefix of the part.
     """
     return DrawnCar.of(design.plain, prefix, design.table, design.origin, design.unit, number)
 
 
 def drivers(design: Design, prefix: str = "") -> dict[str, str]:
-    """The driven input that `TRAVEL`, `RACK` and `ROLL` go along in a part, where there is exactly one."""
+    """The driven input of `TRAVEL`, `RACK` and `ROLL` in a part, where there is exactly one."""
     inputs = design.plain["inputs"]
     others = tuple(other for other in design.corners if other != prefix)
     own = [name for name in design.mechanism.drives if not name.startswith(others)]
@@ -84,7 +85,7 @@ def drivers(design: Design, prefix: str = "") -> dict[str, str]:
 
 
 def provided(design: Design, prefix: str = "") -> frozenset[str]:
-    """What effects may need and a part of the car has, see `Effect.needs`."""
+    """The needs of effects that a part of the car meets, see `Effect.needs`."""
     lines = (role for role in LINES if design.role(prefix + role) is not None)
     knuckle = [KNUCKLE] if design.role(prefix + KNUCKLE) in design.mechanism.frames else []
     return frozenset({*lines, *drivers(design, prefix), *design.car, *knuckle})
@@ -99,8 +100,8 @@ def car_at(
     """The car at a pose, local.
 
     Args:
-        chassis: how it is moved, without rates or with them as slopes, as the places have theirs.
-        places: of the lines' points, relative to the chassis.
+        chassis: its motion, with rates as slopes if the places have rates.
+        places: positions of the lines' points, relative to the chassis.
         knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
     """
     turning, lines = chassis.without_displacement(), lines_of(drawn.ends, places)
@@ -118,8 +119,8 @@ def effects_at(
     velocity of a motion that drives it at unit rate; those by time are of the motion itself.
 
     Args:
-        known: as jets; their rates are looked at by numbers by time alone.
-        solver: of the rates over the enclosure.
+        known: as jets; only numbers that are derivatives by time use the jets' rates.
+        solver: solver for the rates over the enclosure.
     """
     unit, equations = as_ball(design.unit), known.equations
 
@@ -131,7 +132,7 @@ def effects_at(
             return car_at(drawn, known.chassis.still(), places)
         driven = known
         if along != TIME:
-            # A slide is driven in the design's own lengths, in which the car's are.
+            # A slide is driven in the design's own unit of length, which is also the car's.
             driver = drivers(design, prefix)[along]
             rate = unit if along == RACK else arb(1)
             if "steers" in design.plain["inputs"][driver]:

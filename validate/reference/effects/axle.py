@@ -1,7 +1,7 @@
-r"""The numbers that the two wheels of an axle make together, defined in `pointcoord/effects/README.md`.
+r"""The numbers of the two wheels of an axle together, defined in `pointcoord/effects/README.md`.
 
-c is a contact point, v its velocity as a point of the wheel's carrier as that wheel travels, d a steer angle,
-positive to the left, L the wheelbase, t the track as drawn.
+c is a contact point, v its velocity as a point of the wheel's carrier during that wheel's travel, d a steer
+angle, positive to the left, L the wheelbase, t the track as drawn.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def _track(left: Car, right: Car) -> Scalar:
 def _roll_centre(left: Car, right: Car) -> tuple[Scalar, Scalar]:
     """Offset and height of the point P in the front view where (P - c) . v = 0 on both sides.
 
-    The offset is that from the origin along right, the height that above the line through both c.
+    The offset is measured from the origin along right, the height from the line through both c.
     """
 
     def seen(car: Car, vector: Vector) -> tuple[Scalar, Scalar]:
@@ -43,7 +43,7 @@ def _roll_centre(left: Car, right: Car) -> tuple[Scalar, Scalar]:
 
 
 def _by_side(left: Car, right: Car, to_left: Scalar, to_right: Scalar) -> Scalar:
-    """The first where both wheels are steered to the left, the second where both to the right, else none."""
+    """The first if both wheels are steered to the left, the second if both to the right, else no number."""
     one, two = (value_of(steer_angle(car)) for car in (left, right))
     if isinstance(one, np.ndarray):
 
@@ -78,7 +78,7 @@ def _drawn_track(left: Car, right: Car) -> Scalar:
 def _ackermann(left: Car, right: Car) -> Scalar:
     """100 (d inner - d outer) / (arccot((R - t/2) / L) - arccot((R + t/2) / L)), R the turning radius.
 
-    Of magnitudes; their difference is that of the angles, d left - d right, whichever wheel is the inner one.
+    The angles are magnitudes. Their difference is d left - d right, whichever wheel is the inner one.
     """
     wheelbase, radius = left.drawn.data[data.WHEELBASE], _turning_radius(left, right)
     half = _drawn_track(left, right) / 2
@@ -90,7 +90,7 @@ def _ackermann(left: Car, right: Car) -> Scalar:
 
 
 def _ackermann_error(left: Car, right: Car) -> Scalar:
-    """d outer - arccot(cot d inner + t / L), magnitudes: what the outer wheel is steered too much."""
+    """d outer - arccot(cot d inner + t / L), magnitudes: the excess of the outer wheel's steer angle."""
     apart = _drawn_track(left, right) / left.drawn.data[data.WHEELBASE]
 
     def needed(inner: Scalar) -> Scalar:

@@ -1,4 +1,4 @@
-"""A wheel's corner of the car in any kind of number, and what an effect is: one number that a pose has."""
+"""A wheel's corner of the car in any kind of number, and the definition of an effect: a number of a pose."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ class Effect:
     """A number of a pose.
 
     Attributes:
-        name: what results call it, behind the prefix of its part if there are parts.
-        unit: of the number, a unit or a quotient of two.
-        needs: what the car must have: lines by their roles, a knuckle that moves, an entry of `car_data`,
-            exactly one driven input that goes along; with `PAIR` two parts on opposite sides, which each do.
-        evaluate: the number of a `Car`, or with `PAIR` of the left and the right one, in their kind of scalar
-            and their lengths; not a finite ball where it is undefined.
-        along: None, or `TRAVEL`, `RACK`, `ROLL` or `TIME`: the numbers of the car are duals, whose slopes are
-            by the one driven input that is not the travel of a slide, in any unit, by the one that is, in the
-            car's own lengths, or by the one that rolls the chassis, rad, while the others rest; or by time,
-            as all of them move.
+        name: its name in results; if there are parts, the prefix of its part stands before it.
+        unit: unit of the number, a unit or a quotient of two.
+        needs: what the car must have: lines by their roles, a moving knuckle, an entry of `car_data`,
+            exactly one driven input of the kind `along`; with `PAIR` two parts on opposite sides, each with
+            all of these.
+        evaluate: computes the number from a `Car`, or with `PAIR` from the left and the right one, in their
+            kind of scalar and unit of length; not a finite ball if the number is undefined.
+        along: None, or the variable of the derivatives, if the numbers of the car are duals. `TRAVEL`: the
+            one driven input that is not the travel of a slide, in any unit. `RACK`: the one that is the
+            travel of a slide, in the car's own unit of length. `ROLL`: the one that rolls the chassis, rad.
+            In these three the other inputs are constant. `TIME`: time, and all inputs move.
     """
 
     name: str
@@ -35,13 +36,13 @@ class Effect:
 
     @property
     def power(self) -> int:
-        """Of a unit of length, which the number in the car's own lengths is multiplied by."""
+        """Power of the unit of length by which the number in the car's own unit is multiplied."""
         # A force is the rate of a spring, N/mm, times a length.
         above, below = (int(part in ("mm", "N")) for part in f"{self.unit}/".split("/")[:2])
         return above - below
 
     def of(self, has: Collection[str]) -> bool:
-        """Whether a car that has these has the number."""
+        """Whether a car with these properties has the number."""
         return {*self.needs} <= {*has}
 
 
@@ -54,23 +55,24 @@ class Line:
 
     @property
     def along(self) -> Vector:
-        """The one less the other."""
+        """The first minus the second."""
         return minus(self.end, self.start)
 
 
 @dataclass(frozen=True)
 class DrawnCar:
-    """What effects know of a corner beside its pose; lengths in any unit, the same in all.
+    """Data of a corner beside its pose; lengths in any unit, the same for all.
 
     Attributes:
-        ends: of each of `LINES` that a role names its points: of the wheel's spin axis its inner point and
-            the wheel centre, of the steering axis its lower and its upper point, of the damper its ends.
-        lines: as drawn, neither closed nor turned.
+        ends: the two points of each of `LINES` that a role names: for the wheel's spin axis its inner point
+            and the wheel centre, for the steering axis its lower and its upper point, for the damper its
+            ends.
+        lines: the lines as drawn, neither closed nor turned.
         up: unit vector.
         forward: unit vector, up x right.
         outboard: unit vector, away from the car's middle.
-        origin: where the user's coordinates have theirs, a point of the car's middle plane.
-        data: what is given of the car as a whole, see `car_data`.
+        origin: origin of the user's coordinates, a point of the car's middle plane.
+        data: data of the car as a whole, see `car_data`.
     """
 
     ends: Mapping[str, tuple[str, str]]
@@ -94,9 +96,9 @@ class DrawnCar:
         """A description's corner.
 
         Args:
-            prefix: of its names.
+            prefix: prefix of its names.
             points: as drawn, (p - origin) / unit.
-            number: what is given in the kind of number of the poses.
+            number: converts a given number to the kind of number of the poses.
         """
         named = {role: plain["roles"].get(prefix + role) for role in LINES}
         ends = {role: (points[0], points[1]) for role, points in named.items() if points is not None}
@@ -125,13 +127,13 @@ class DrawnCar:
 
 @dataclass(frozen=True)
 class Car:
-    """A pose of a corner. A displacement of the chassis is in none of its lines.
+    """A pose of a corner. Its lines do not include the displacement of the chassis.
 
     Attributes:
-        drawn: what it is a pose of; its unit vectors do not turn with the chassis.
-        lines: with the chassis turned.
-        on_chassis: before its turns.
-        knuckle: two vectors fixed in the wheel's carrier, with the chassis turned; None where nobody says it.
+        drawn: the corner in the drawing; its unit vectors do not turn with the chassis.
+        lines: the lines after the turns of the chassis.
+        on_chassis: the lines before the turns of the chassis.
+        knuckle: two vectors fixed in the wheel's carrier, after the turns of the chassis; None if not given.
     """
 
     drawn: DrawnCar
@@ -178,7 +180,7 @@ def lines_of(ends: Mapping[str, tuple[str, str]], points: Mapping[str, Vector]) 
 def contact_of(drawn: DrawnCar, wheel: Line) -> Vector:
     """The lowest point of a thin disc about a spin axis a: c = W - R m / |m|, m = up (a . a) - a (a . up).
 
-    That is the part of `up` in the disc's plane, times a . a.
+    m is the component of `up` in the disc's plane, times a . a.
     """
     a, up = wheel.along, drawn.up
     across = minus(times(up, dot(a, a)), times(a, dot(a, up)))

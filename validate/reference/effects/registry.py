@@ -10,4 +10,4 @@ EFFECTS: dict[str, Effect] = {
 }
 
 ANGLES = ("camber", "kingpin", "toe", "caster")
-"""Those that are computed where nobody says which."""
+"""The effects that are computed by default."""

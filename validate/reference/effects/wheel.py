@@ -24,12 +24,12 @@ LEANS: dict[str, tuple[str, Callable[[Scalar, Scalar, Scalar], Scalar]]] = {
     "kingpin": (data.STEERING, lambda out, _, up: angle(-out, up)),  # eq. (16)
     "toe": (data.WHEEL, lambda out, ahead, _: angle(ahead, out)),  # ISO 8855, 7.1.6
     "caster": (data.STEERING, lambda _, ahead, up: angle(-ahead, up)),
-    # An arcsine of a component of a unit vector, from it and the other two of a vector of any length: all are
-    # along the car's axes, which are rounded, and l^2 - s^2 would be of other axes than s is.
+    # The arcsine of a unit vector's component, from the three components of a vector of any length along the
+    # car's axes. As the axes are rounded, l^2 - s^2 is not the sum of squares of the other two components.
     "camber_by_arcsine": (data.WHEEL, lambda out, ahead, up: angle(-up, root(out * out + ahead * ahead))),
     "toe_by_arcsine": (data.WHEEL, lambda out, ahead, up: angle(ahead, root(out * out + up * up))),
 }
-"""Angles of a line by its components outboard, forward and up; by arcsine as Adams/Car and OptimumK do."""
+"""Angles of a line from its components outboard, forward and up; by arcsine as in Adams/Car and OptimumK."""
 
 
 def _lean(name: str, car: Car, along: Vector | None = None) -> Scalar:
@@ -40,7 +40,7 @@ def _lean(name: str, car: Car, along: Vector | None = None) -> Scalar:
 
 
 def _toe_change_by_arcsine(car: Car) -> Scalar:
-    """asin(n . forward) - asin(drawn n . forward) (OptimumK's steer angle, the other way)."""
+    """asin(n . forward) - asin(drawn n . forward) (OptimumK's steer angle with the opposite sign)."""
     return _lean("toe_by_arcsine", car) - _lean("toe_by_arcsine", car, car.drawn.lines[data.WHEEL].along)
 
 
@@ -86,15 +86,15 @@ OFFSETS: dict[str, tuple[bool, Callable[[Car, Vector, Vector], Scalar]]] = {
     "kingpin_offset_at_wheel": (False, lambda car, off, _: dot(off, car.outboard)),
     "hub_trail": (False, lambda car, off, _: dot(off, car.forward)),
 }
-"""Whether it is one of c, or of W; and its formula in the offset of that point from an axis, and a."""
+"""By number: whether it belongs to c, not W; its formula from that point's offset from an axis, and a."""
 
 
 def _offset(name: str, car: Car, start: Vector, k: Vector, known: Callable[[Vector], Vector]) -> Scalar:
-    """One of `OFFSETS`, from the point of the axis along k that is as high: o - k (o . up) / (k . up).
+    """One of `OFFSETS`, from the point of the axis along k at the same height: o - k (o . up) / (k . up).
 
     Args:
         start: any point of the axis.
-        known: what is taken of the wheel's vectors.
+        known: the part of the wheel's vectors that is used.
     """
     at_contact, formula = OFFSETS[name]
     o = minus(known(car.contact if at_contact else car.wheel.end), start)
@@ -133,15 +133,16 @@ def velocity_of_contact(car: Car) -> Vector:
 def _roll_centre(car: Car, v: Vector) -> Scalar:
     """(c . outboard) (v . outboard) / (v . up).
 
-    The line through c at right angles to v meets the middle plane, which holds the origin, there above c.
+    The line through c at right angles to v meets the middle plane, which contains the origin, at this height
+    above c.
     """
     far = dot(minus(_values(car.contact), car.drawn.origin), car.outboard)
     return far * dot(v, car.outboard) / dot(v, car.up)
 
 
 def _arm_roll_centre_height(car: Car) -> Scalar:
-    """The same with the turn omega + f k about the steering axis besides, f such that no point of the axis of
-    this motion moves along it: (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
+    """The same with an added turn f k about the steering axis. f is such that no point of the axis of the
+    total motion moves along it: (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
     """
     axis, omega = car.lines[data.STEERING], _turning(car)
     lower, k = _values(axis.start), _values(axis.along)
@@ -171,8 +172,8 @@ def _spring_force(car: Car) -> Scalar:
     return given[data.SPRING_RATE] * (given[data.FREE_LENGTH] - value_of(_damper_length(car)))
 
 
-# As the rack moves, all else held, the carrier turns with omega about an axis that leads through
-# W + omega x W' / omega^2, and goes along it by omega . W' / omega^2 per radian. Where it does not turn, or
+# As the rack moves and all else is fixed, the carrier turns with omega about an axis through
+# W + omega x W' / omega^2, and moves along it by omega . W' / omega^2 per radian. If it does not turn, or
 # omega is level, the quotients are not finite.
 
 
@@ -213,11 +214,11 @@ def _above(car: Car, h: Vector) -> Scalar:
 # A force F that brakes the car shifts F h / L from the rear wheels to the front ones: h is the height of the
 # centre of gravity above the ground at this pose, L the wheelbase. This axle's part of it, b F rearward, acts
 # on a point of the carrier that moves with v as the wheel travels, and so lifts the wheel as a force
-# b F (v . rearward) / (v . up) would. What that takes off the shifted load, of all of it, is
+# b F (v . rearward) / (v . up) would. The share of the shifted load that this force carries is
 #     b s (v . rearward) / (v . up) L / h,      s = -1 at the front and +1 at the rear.
-# A brake at the wheel holds it to the carrier: v is that of c. A driving force is forward and shifts load
-# rearward, which is the same quotient; its torque comes from the chassis by a shaft, so that the carrier
-# feels a force at the wheel centre alone: v = W'.
+# A brake at the wheel locks the wheel to the carrier: v is the velocity of c. A driving force is forward and
+# shifts load rearward, which gives the same quotient; a shaft from the chassis transmits its torque, so the
+# carrier has a force at the wheel centre alone: v = W'.
 
 
 def _anti(car: Car, share: str, v: Vector) -> Scalar:
