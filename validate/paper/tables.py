@@ -134,6 +134,6 @@ def _pair(number: int, name: str, held: str, table: Sequence[PrintedRow]) -> tup
         f"Figure {number + 1}: height of the wheel centre {said}",
     )
     return (
-        Figure(f"{words[0]} {said}", "deg", motion.times, angles, None),
-        Figure(f"{words[1]} {said}", "mm", motion.times, height, printed),
+        Figure(words[0], "deg", motion.times, angles, None),
+        Figure(words[1], "mm", motion.times, height, printed),
     )
