@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, StrictBool
 
+from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
 from pointcoord.mechanism.compiled import Compiler, Place
@@ -161,6 +162,9 @@ class MechanismFile:
             TableFault: the first fault.
         """
         known_keys(tables, (*TABLES, "title"))
+        title = tables.get("title")
+        if not isinstance(title, str | None):
+            raise TableFault(("title",), f"is {shown(title)}", "text")
         given = {key: value for key, value in tables.items() if value is not None}
         # Absent tables are not read: most files have neither, and building a reader takes time.
         changed = read(dict[Name, CHANGES], given["closures"], "closures") if "closures" in given else {}
@@ -178,7 +182,7 @@ class MechanismFile:
                     raise
                 raise fault.under("closures", closure) from None
         mirrored = {f"{part}.": one.mirrored for part, one in parts.items()}
-        return cls(str(given.get("title") or name), structures, mirrored)
+        return cls(title or name, structures, mirrored)
 
 
 def _first_driven(inputs: Iterable[str], linkage: Callable[[tuple[str, ...]], Topology]) -> tuple[str, ...]:
@@ -224,14 +228,19 @@ def mechanism_file(name: str) -> MechanismFile:
     return replace(MechanismFile.of(tables, name), name=name)
 
 
-def read_tables(path: Path) -> dict[str, Any]:
+def read_tables(path: Path, whole: tuple[Path, ...] = ()) -> dict[str, Any]:
     """The checked tables of a mechanism file, with the tables of parts in place of their files.
 
+    Args:
+        whole: the files of which this one is a part.
     Raises:
         SceneError: the file cannot be read, or something in it is wrong.
     """
+    if path.resolve() in whole:
+        raise SceneError(str(path), "parts", "is a part of itself", "a part that is another mechanism")
     allowed = f"a path to a mechanism file, or one of {', '.join(shipped())}"
-    tables = whole_tables(parsed(read_file(path, allowed), str(path)), path.parent)
+    own = parsed(read_file(path, allowed), str(path))
+    tables = whole_tables(own, path.parent, (*whole, path.resolve()))
     tables.setdefault("title", path.stem)
     try:
         MechanismFile.of(tables, path.stem)
@@ -240,8 +249,8 @@ def read_tables(path: Path) -> dict[str, Any]:
     return tables
 
 
-def whole_tables(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables with the tables of parts in place of the paths of their files."""
+def whole_tables(tables: Mapping[str, Any], folder: Path, whole: tuple[Path, ...] = ()) -> dict[str, Any]:
+    """The tables with tables of parts in place of the paths of their files; whole: as in `read_tables`."""
     parts = tables.get("parts")
     if not isinstance(parts, Mapping):
         return dict(tables)
@@ -249,7 +258,7 @@ def whole_tables(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     for part, table in parts.items():
         put_in[part] = table
         if isinstance(table, Mapping) and is_path(table.get("mechanism")):
-            put_in[part] = {**table, "mechanism": read_tables(folder / table["mechanism"])}
+            put_in[part] = {**table, "mechanism": read_tables(folder / table["mechanism"], whole)}
     return {**tables, "parts": put_in}
 
 

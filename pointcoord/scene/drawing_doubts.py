@@ -46,8 +46,8 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
         Doubt(
             ~((size >= SMALLEST) & (size <= LARGEST)),
             lambda one: (
-                f"the car is {float(size[one]):.3g} mm long; points are in mm: if these are in another unit, "
-                'write units = "m" or "in" at the top of the scene'
+                f"the car is {float(size[one]):.3g} mm long; if its points are in another unit than the "
+                'scene states, write units = "mm", "m" or "in" at its top (mm if not given)'
             ),
         ),
         *_front_behind_rear(topology, points, axes),

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Collection, Mapping
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import pairwise
 from math import isfinite
 from pathlib import Path
@@ -23,6 +24,26 @@ LAWS = ("constant", "polynomial", "sine", TABLE, SUM)
 """The kinds of an input over time; a sweep is converted to a polynomial before checking."""
 DRAWN = "drawn"
 SPAN = ("start", "stop")
+RADIAN = "rad"
+TIME_UNITS = ("s", "sec")
+# Words in brackets after a column title that are units; other words belong to the title.
+KNOWN_UNITS = {
+    *TIME_UNITS,
+    "ms",
+    "min",
+    "h",
+    "mm",
+    "cm",
+    "m",
+    "in",
+    "ft",
+    RADIAN,
+    "mrad",
+    "deg",
+    "°",
+    "turns",
+}
+_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]$")
 
 
 def _no_word(value: object) -> object:
@@ -54,8 +75,10 @@ class TablePart(Part):
     def agree(self) -> None:
         if len(self.times) != len(self.values):
             raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
-        if not all(earlier < later for earlier, later in pairwise(self.times)):
-            raise ValueError("times do not increase; allowed: strictly increasing times")
+        if stops := [pair for pair in pairwise(self.times) if not pair[0] < pair[1]]:
+            earlier, later = stops[0]
+            problem = f"times do not increase: {later:.17g} follows {earlier:.17g}"
+            raise ValueError(f"{problem}; allowed: strictly increasing times")
         if not Table(self.times, self.values).finite:
             raise ValueError(
                 "the spline through the table is not finite; allowed: smaller values, or times further apart"
@@ -186,20 +209,22 @@ def _numbers(value: object) -> bool:
     )
 
 
-def read_in(part: Any, folder: Path = Path()) -> Any:
+def read_in(part: Any, length: object, folder: Path = Path()) -> Any:
     """A scene's inputs, a law or its terms, with tables read from their paths, which start from a folder.
 
+    Args:
+        length: the scene's unit of length.
     Raises:
-        SceneError: a file cannot be read, or is not two columns of numbers.
+        SceneError: a file cannot be read, is not two columns of numbers, or states other units.
     """
     if isinstance(part, Mapping) and part.keys() == {TABLE} and isinstance(part[TABLE], str):
-        return {TABLE: _table_of(str(folder / part[TABLE]))}
+        return {TABLE: _table_of(str(folder / part[TABLE]), str(length))}
     if isinstance(part, Mapping):
-        return {name: read_in(each, folder) for name, each in part.items()}
-    return [read_in(each, folder) for each in part] if isinstance(part, list | tuple) else part
+        return {name: read_in(each, length, folder) for name, each in part.items()}
+    return [read_in(each, length, folder) for each in part] if isinstance(part, list | tuple) else part
 
 
-def _table_of(path: str) -> dict[str, list[float]]:
+def _table_of(path: str, length: str) -> dict[str, list[float]]:
     allowed = "two columns of numbers, time in s and the input's value, with commas between them"
     try:
         text = read_file(path, "the path of a file of two columns").decode("utf-8-sig")
@@ -208,14 +233,27 @@ def _table_of(path: str) -> dict[str, list[float]]:
     rows: list[list[Any]] = []
     for number, cells in enumerate(csv.reader(text.splitlines()), start=1):
         numbers = [_number(cell) for cell in cells]
-        titles = number == 1 and all(one is None for one in numbers)
-        if not cells or titles:
+        if number == 1 and all(one is None for one in numbers):
+            _check_titles(cells, path, length)
+            continue
+        if not cells:
             continue
         if len(numbers) != 2 or None in numbers:
             raise SceneError(path, f"line {number}", f"is {shown(','.join(cells))}", allowed)
         rows.append(numbers)
     times, values = ([row[i] for row in rows] for i in range(2))
     return {"times": times, "values": values}
+
+
+def _check_titles(cells: Sequence[str], path: str, length: str) -> None:
+    """Refuse titles that say another unit than a table's numbers are taken in: nothing is converted."""
+    columns = ("first column, time,", TIME_UNITS), ("second column, the input,", (length, RADIAN))
+    for cell, (column, ours) in zip(cells, columns, strict=False):
+        found = _UNIT.search(cell.strip())
+        unit = "" if found is None else found.group(1).strip()
+        if unit in KNOWN_UNITS and unit not in ours:
+            allowed = f"{' or '.join(ours)}; nothing is converted"
+            raise SceneError(path, "line 1", f"says that the {column} is in {unit}", allowed)
 
 
 def _number(cell: str) -> float | None:

@@ -14,7 +14,8 @@ from pointcoord.scene.input_part import with_values
 from pointcoord.scene.scene_part import own_list, own_number
 from pointcoord.wording import shown
 
-UNITS = {"mm": 1.0, "m": 1000.0, "in": 25.4}
+MM = "mm"
+UNITS = {MM: 1.0, "m": 1000.0, "in": 25.4}
 """The units of length that a scene may be written in, in mm."""
 
 AXES = {

@@ -40,7 +40,7 @@ from pointcoord.numerics.rounding import EPS
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of, read_in, swept, with_drawn
-from pointcoord.scene.own_units import in_directions, in_mm
+from pointcoord.scene.own_units import MM, in_directions, in_mm
 from pointcoord.scene.scene_part import (
     AS_LIST,
     NotZero,
@@ -110,7 +110,7 @@ def _file_of(keys: Mapping[str, Any]) -> MechanismFile | None:
     if keys["type"] is not None:
         return mechanism_file(keys["type"])
     tables = {name: keys[name] for name in TABLES if keys[name] is not None}
-    return _inline(json.dumps({"title": keys["title"], **tables})) if tables else None
+    return _inline(json.dumps({"title": keys.get("title", ""), **tables})) if tables else None
 
 
 @lru_cache(maxsize=64)
@@ -514,7 +514,7 @@ class Scene(Part):
         """
         if "inputs" not in content:
             return in_mm(content, ())
-        content["inputs"] = read_in(_by_dotted_name(content["inputs"], _is_no_part))
+        content["inputs"] = read_in(_by_dotted_name(content["inputs"], _is_no_part), content.get("units", MM))
         if "units" in content:
             part = _part_of(content.get("mechanism"))
             known = {} if part is None else part.structure.inputs
@@ -716,7 +716,8 @@ def _is_no_part(table: Mapping[str, Any]) -> bool:
 
 def _found_beside(content: dict[str, Any], folder: Path) -> dict[str, Any]:
     """A scene's content with paths of mechanism files counted from a folder, and its tables read."""
-    content = {**content, "inputs": read_in(content["inputs"], folder)} if "inputs" in content else content
+    if "inputs" in content:
+        content = {**content, "inputs": read_in(content["inputs"], content.get("units", MM), folder)}
     mechanism = content.get("mechanism")
     if not isinstance(mechanism, dict):
         return content

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from pointcoord import Scene, SceneError
+from pointcoord.toml_text import parsed, read_file
 from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
 from validate.ci.record import Record, ends_the_run
@@ -178,17 +179,29 @@ def _names(options: argparse.Namespace) -> list[str]:
 def _scenes_below(folder: str) -> list[str]:
     """The paths of all scene files in a folder and those below it, sorted; links to folders are not followed.
 
+    A mechanism's file, which stands beside the scenes that name it, is no scene.
+
     Raises:
         UsageError: there is no such folder, or it holds no scene.
     """
     try:
-        found = sorted(path for path in Path(folder).rglob("*.toml") if path.is_file())
+        files = sorted(path for path in Path(folder).rglob("*.toml") if path.is_file())
+        found = [path for path in files if not _is_mechanism(path)]
         problem = "contains no scene" if Path(folder).is_dir() else "is not a folder"
     except (OSError, ValueError) as error:
         found, problem = [], f"cannot be read ({error})"
     if not found:
         raise UsageError(f"--scenes-dir {folder}: {problem}; allowed: a folder with a .toml file below it")
     return list(map(str, found))
+
+
+def _is_mechanism(path: Path) -> bool:
+    """Whether a file holds the tables of a mechanism and no scene; False for a file that cannot be read."""
+    try:
+        content = parsed(read_file(path, ""), str(path))
+    except SceneError:
+        return False
+    return "mechanism" not in content and ("bodies" in content or "parts" in content)
 
 
 def _pairs(options: argparse.Namespace, console: Console) -> tuple[tuple[str, str], ...]:

@@ -50,7 +50,7 @@ def whole(least: int) -> Callable[[str], int]:
     def read(word: str) -> int:
         if word.isascii() and word.isdigit() and int(word) >= least:
             return int(word)
-        raise argparse.ArgumentTypeError(f"{shown(word)!r}; allowed: a whole number, {least} or more")
+        raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: a whole number, {least} or more")
 
     return read
 
@@ -60,7 +60,7 @@ def positive(word: str) -> float:
     with suppress(ValueError):
         if 0.0 < (value := float(word)) < math.inf:
             return value
-    raise argparse.ArgumentTypeError(f"{shown(word)!r}; allowed: a positive, finite number")
+    raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: a positive, finite number")
 
 
 TYPES: Mapping[str, Callable[[str], Any]] = {

@@ -11,6 +11,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from validate.formulations.asked_numbers import asked_numbers, is_force
 from validate.formulations.input_rates import laws_of
 from validate.formulations.protocol import Accuracy, Numbers, Solution
 from validate.reference import Design, Instant, instants_of
+from validate.reference.effects.at_pose import numbers_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.exact import as_fraction
 from validate.reference.route import CLEAR
@@ -34,6 +36,7 @@ Arrays = dict[str, Array]
 # The reference is proven to 60 digits of the greatest number of its kind; ten are left for what "greatest"
 # means.
 DUST = 1e-50
+ANGLE = NUMBERS_OF_THE_CAR[ANGLES[0]].quantity.name
 DIGITS = 60
 Inputs = Mapping[str, Sequence[float]]
 
@@ -87,8 +90,7 @@ def _numbers_of_the_car(scene: Scene) -> dict[str, tuple[str, ...]]:
     """By quantity, in which angles are though nobody asks for them."""
     asked = {q: names for q, names in asked_numbers(scene).items() if QUANTITIES[q].of == "car"}
     asked = {quantity: names for quantity, names in asked.items() if not is_force(quantity)}
-    quantity = NUMBERS_OF_THE_CAR[ANGLES[0]].quantity.name
-    return asked | {quantity: tuple(dict.fromkeys((*ANGLES, *asked.get(quantity, ()))))}
+    return asked | {ANGLE: tuple(dict.fromkeys((*ANGLES, *asked.get(ANGLE, ()))))}
 
 
 def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
@@ -108,10 +110,16 @@ def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None =
     """The reference at the instants of a scene, or at other times, rounded to doubles.
 
     Numbers that are zero up to the reference's own proven error, which it claims, are zero: the middles of
-    its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
+    its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out; any other
+    number of the car is none there, NaN: the wheels are not steered to one side, a centre is at infinity.
     """
     times, first = scene.instants if times is None else times, instants[0]
-    told = [name for name in first.effects if all(name in i.effects for i in instants)]
+    told = [
+        number.name
+        for number in numbers_of(design_of(scene), effects_of(scene))
+        if all(number.name in i.effects for i in instants)
+        or NUMBERS_OF_THE_CAR[number.effect.name].quantity.name != ANGLE
+    ]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         **{
@@ -128,14 +136,14 @@ def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None =
         numbers[quantity] = {n: np.array([row[n] for row in rows], dtype=float) for n in forces}
     for quantity, names in _numbers_of_the_car(scene).items():
         there = [name for name in names if name in told]
-        numbers[quantity] = {n: np.array([float(i.effects[n]) for i in instants]) for n in there}
+        numbers[quantity] = {n: np.array([float(i.effects.get(n, nan)) for i in instants]) for n in there}
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
     swept = {
-        q: {n: np.where(np.abs(array) > dust[q], array, 0.0) for n, array in arrays.items()}
+        q: {n: np.where(np.abs(array) <= dust[q], 0.0, array) for n, array in arrays.items()}
         for q, arrays in numbers.items()
     }
     claims = {
-        q: {n: UNIT_ROUNDOFF * np.abs(array) + dust[q] for n, array in arrays.items()}
+        q: {n: UNIT_ROUNDOFF * np.abs(np.nan_to_num(array)) + dust[q] for n, array in arrays.items()}
         for q, arrays in swept.items()
     }
     return Solution("reference", times, swept, Accuracy(np.ones(len(times)), claims, proven=True))
@@ -177,12 +185,13 @@ def off_by(found: float, exact: Any) -> float:
 
 
 def told_by(reference: Solution, scene: Scene) -> dict[str, tuple[str, ...]]:
-    """What the scene asks for, by quantity, without the angles that the reference leaves out.
+    """What the scene asks for, by quantity, without what the reference has not at every instant.
 
-    Such an angle is 0/0 there, or half a turn, where its sign has no meaning.
+    An angle that it leaves out is 0/0 there, or half a turn, where its sign has no meaning.
     """
+    given = reference.numbers
     return {
-        quantity: tuple(name for name in names if name in reference.numbers[quantity])
+        quantity: tuple(n for n in names if n in given[quantity] and not np.isnan(given[quantity][n]).any())
         for quantity, names in asked_numbers(scene).items()
-        if quantity in reference.numbers
+        if quantity in given
     }

@@ -31,6 +31,7 @@ from validate.tables.units import is_unit
 Array = NDArray[np.float64]
 
 NOTHING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
+NO_UNIT = ("", "-", "1")
 # A number with so many digits is a double written in full.
 DOUBLE = 15
 _UNIT_BEHIND = re.compile(r"(.*\S)\s*(?:\[([^\]]*)\]|\(([^)]*)\))")
@@ -172,7 +173,9 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
     """Names and units from the lines above the numbers; lines with another number of cells are skipped."""
     short = [row if any(row[count:]) else row[:count] for row in head]
     wide = [row if len(row) == count else joined(row) for row in short]
+    # A spreadsheet pads lines above the names with empty cells: the names are the first of the fullest lines.
     wide = [row for row in wide if len(row) == count]
+    wide = wide[_fullest(wide) :]
     if not wide:
         if head:
             problem = f"has {count} columns of numbers under {len(joined(head[-1]))} names"
@@ -180,13 +183,28 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
         return tuple(str(i + 1) for i in range(count)), ("",) * count
     names, units = (list(part) for part in zip(*map(name_and_unit, wide[0]), strict=True))
     for row in wide[1:]:
-        bare = [cell.strip("[]() ") for cell in row]
-        wrong = [cell for cell in bare if cell not in ("", "-", "1") and not is_unit(cell)]
+        bare = [_bare(cell) for cell in row]
+        wrong = [cell for cell in bare if cell not in NO_UNIT and not is_unit(cell)]
         if wrong:
             problem = f"contains {shown(wrong[0])!r}, which is not a unit"
             raise FileError(source, "line of units", problem, "mm, deg, rad, s and so on")
         units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, bare, strict=True)]
     return tuple(names), tuple(units)
+
+
+def _fullest(head: Sequence[Sequence[str]]) -> int:
+    """Number of the first line with the most filled cells; lines of units do not count."""
+    filled = [0 if _units(row) else sum(map(bool, row)) for row in head]
+    return filled.index(max(filled)) if filled else 0
+
+
+def _units(row: Sequence[str]) -> bool:
+    """Whether every cell of a line can be a unit."""
+    return all(cell in NO_UNIT or is_unit(cell) for cell in map(_bare, row))
+
+
+def _bare(cell: str) -> str:
+    return cell.strip("[]() ")
 
 
 def name_and_unit(cell: str) -> tuple[str, str]:

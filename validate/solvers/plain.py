@@ -8,9 +8,12 @@ numpy's, its own copies, and cannot be written to):
     up, right   unit vectors of the car's axes, [x, y, z]
     points      where the hardpoints are drawn, {name: [x, y, z]}
     carried     names of the points that ride on the knuckle without holding it
+    wheel_radius, rack_per_turn    mm, or None where the scene does not say it
+    car, loads  what the scene says of the whole car and of loads at its wheels, mm, N, N mm; empty if nothing
     instants    (N,)
-    inputs      {name: {"position": (N,), "velocity": (N,), "acceleration": (N,)}}; all that the car has,
-                those that rest too; and "jerk" and so on, if such are asked for
+    inputs      {name: {"position": (N,), "velocity": (N,), "acceleration": (N,)}} of those that the scene
+                drives and of what can move the chassis, though it rests; and "jerk" and so on, if such are
+                asked for
     asked       what is compared, {quantity: [names]}
 
 It answers with a mapping of what it has, any part of what is asked, as arrays or lists:
@@ -73,6 +76,7 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
     driven = laws_of(scene, instants)
     still = np.zeros_like(next(iter(driven.values())))
     laws = {name: driven.get(name, still) for name in part.topology.inputs}
+    plain = part.plain(tuple(laws))
     given = {
         "suspension": part.name,
         "closure": part.closure,
@@ -81,6 +85,7 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
         "right": list(part.right),
         "points": {name: list(place) for name, place in part.points.items()},
         "carried": list(part.topology.carried),
+        **{name: plain[name] for name in ("wheel_radius", "rack_per_turn", "car", "loads")},
         INSTANTS: instants,
         "inputs": {
             name: {order: rate.copy() for order, rate in zip(STATES, law.T, strict=False)}

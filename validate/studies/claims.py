@@ -18,9 +18,15 @@ from pointcoord import SceneError
 from pointcoord.effects.registry import QUANTITIES
 from validate.cars.random_scenes import SEED, random_scene
 from validate.exit_status import ExitStatus
-from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import FormulationError
-from validate.formulations.reference_solution import DUST, as_solution, off_by, reference_motion, scales
+from validate.formulations.reference_solution import (
+    DUST,
+    as_solution,
+    off_by,
+    reference_motion,
+    scales,
+    told_by,
+)
 from validate.formulations.registry import formulation
 from validate.output.table import Table
 from validate.reference import NoReferenceError
@@ -55,10 +61,10 @@ def scene_rows(task: Task, name: str) -> list[Row]:
         return [of_all]
     reference = as_solution(scene, instants)
     rows: list[Row] = []
-    for quantity in asked_numbers(scene):
+    for quantity, names in told_by(reference, scene).items():
         # The error of the reference is relative to the largest numbers from which a number is computed.
         dust, of_car = DUST * scales(reference.numbers)[quantity], QUANTITIES[quantity].of == "car"
-        for one in (n for n in solution.numbers[quantity] if n in reference.numbers[quantity]):
+        for one in (n for n in solution.numbers[quantity] if n in names):
             numbers = solution.numbers[quantity][one].reshape(len(instants), -1)
             claimed = solution.accuracy.claims[quantity][one].reshape(len(instants), -1)
             for ours, claim, instant in zip(numbers, claimed, instants, strict=True):

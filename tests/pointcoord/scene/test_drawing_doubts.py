@@ -63,6 +63,14 @@ def test_a_misdrawn_or_swapped_point_is_doubted_with_its_value(
     assert any(words in doubt for doubt in doubts), doubts
 
 
+def test_a_car_in_mm_in_a_scene_that_says_m_is_told_to_look_at_its_units() -> None:
+    scene = Scene.from_mapping(content_of(WISHBONE) | {"units": "m"}, "in m")
+    (doubt,) = (doubt for doubt in scene.mechanism.doubts if "mm long" in doubt)
+    # It is not: the scene says so, and is wrong.
+    assert "points are in mm" not in doubt
+    assert "another unit than units says" in doubt
+
+
 def test_a_point_with_the_wrong_sign_to_the_right_is_doubted_and_a_rack_near_the_middle_is_not() -> None:
     part = Scene.load(WISHBONE).mechanism
     # A wheel centre beyond the middle is refused.

@@ -73,7 +73,7 @@ def wheel_travel(folder: Path, law: str) -> Path:
     return path
 
 
-@pytest.mark.parametrize("head", ["", "time [s],travel [mm]\n", "\n"])
+@pytest.mark.parametrize("head", ["", "time [s],travel [mm]\n", "t,travel (left)\n", "\n"])
 def test_a_table_beside_the_scene_is_the_one_in_it(tmp_path: Path, head: str) -> None:
     lines = [f"{t!r},{v!r}\n" for t, v in zip(TIMES, VALUES, strict=True)]
     (tmp_path / "bump.csv").write_text(head + "".join(lines))
@@ -88,6 +88,15 @@ def test_a_table_beside_the_scene_is_the_one_in_it(tmp_path: Path, head: str) ->
         ("t,z\n0,1\n1\n", "bump.csv: line 3: is '1'; allowed: two columns of numbers"),
         ("0,down\n1,2\n", "bump.csv: line 1: is '0,down'; allowed"),
         ("0,1\n0.5,up\n", "bump.csv: line 2: is '0.5,up'; allowed"),
+        (
+            "t [ms],z\n0,1\n",
+            "bump.csv: line 1: says that the first column, time, is in ms; allowed: s or sec",
+        ),
+        (
+            "t,z (m)\n0,1\n",
+            "bump.csv: line 1: says that the second column, the input, is in m; allowed: mm or",
+        ),
+        ("0,1\n0.5,2\n0.5,3\n1,4\n", "table: times do not increase: 0.5 follows 0.5; allowed"),
         ("", "inputs.wheel_travel.table.times: "),
         (None, "bump.csv: cannot be read (No such file or directory)"),
     ],

@@ -12,6 +12,7 @@ from junit_schema import checked
 from program import BOUNCE, PAST_ITS_END, complaints, run, short_scene
 
 from pointcoord import Scene
+from pointcoord.mechanism.file import MECHANISMS
 from validate import Solution
 from validate.cli import main
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
@@ -47,6 +48,9 @@ def test_every_toml_file_below_a_folder_is_compared_in_order_and_a_broken_one_is
     ]
     (tmp_path / "b" / "notes.txt").write_text("no scene")
     (tmp_path / "b" / "folder.toml").mkdir()
+    # A mechanism's file stands beside the scenes that name it, and is none.
+    for shipped in ("double_wishbone", "axle"):
+        (tmp_path / "b" / f"{shipped}.toml").write_bytes((MECHANISMS / f"{shipped}.toml").read_bytes())
     os.symlink(tmp_path, tmp_path / "b" / "again")  # leads in no circle
     (tmp_path / "a" / "m.toml").write_text("no = [toml")
     wanted.insert(1, str(tmp_path / "a" / "m.toml"))

@@ -23,6 +23,7 @@ WRITTEN = {
     "comments, a title and quotes": (
         'Run 7\n# a car\n"time [s]","camber [deg]"\n0.0,1.5\n% x\n0.1,-2.75\n\n0.25,3d-3\n'
     ),
+    "a spreadsheet's title": "Run 7;\n;\ntime;camber\ns;deg\n0,0;1,5\n0,1;-2,75\n0,25;3e-3\n",
     "a delimiter at the end": "time [s],camber [deg],\n0.0,1.5,\n0.1,-2.75,\n0.25,3e-3,\n",
     "a byte order mark and a minus sign": "\ufeff" + TIDY.replace("-2", "\u22122").replace("\n", "\r\n"),
     "utf-16": TIDY,

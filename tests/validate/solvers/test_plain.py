@@ -54,7 +54,7 @@ def plain(value: Any) -> bool:
         return type(value) is dict and all(type(key) is str and plain(one) for key, one in value.items())
     if type(value) is list:
         return all(plain(one) for one in value)
-    return type(value) in (str, float, np.ndarray)
+    return value is None or type(value) in (str, float, np.ndarray)
 
 
 def test_what_a_solver_is_given_is_plain_and_whole() -> None:
@@ -69,6 +69,24 @@ def test_what_a_solver_is_given_is_plain_and_whole() -> None:
     # An input that the scene does not name rests.
     assert not np.any(given["inputs"]["heave"]["position"])
     assert given["asked"]["wheel"] == ["camber", "kingpin", "toe", "caster"]
+
+
+def test_what_a_solver_is_given_is_enough_for_the_contact_point() -> None:
+    scene = Scene.load("double-wishbone")
+
+    def contact_travel(given: Any) -> Any:
+        up, radius = np.array(given["up"]), given["wheel_radius"]
+
+        def height(inner: Any, centre: Any) -> Any:
+            leans = (centre - inner) @ up / np.linalg.norm(centre - inner, axis=-1)
+            return centre @ up - radius * np.sqrt(1.0 - leans**2)
+
+        ends = "wheel_axis_inner", "wheel_centre"
+        drawn = height(*(np.array(given["points"][end]) for end in ends))
+        places = simulate(scene).position
+        return {"dimension": {"contact_travel": height(*(places[end] for end in ends)) - drawn}}
+
+    assert check(contact_travel, scene, accuracy=1e-9).passed
 
 
 def test_a_solver_cannot_change_what_others_are_given() -> None:

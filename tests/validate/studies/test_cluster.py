@@ -157,7 +157,7 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
         (["random", "--workers", "2", "--scheduler", "tcp://h:1"], "leave one of the two options out"),
         (["random", "--count", "0"], "the study has no scene"),
         (["random", "--records", " "], "names no folder"),
-        (["bounds", "--seed", "-1"], "--seed: '-1'; allowed: a whole number, 0 or more"),
+        (["bounds", "--seed", "-1"], "--seed: is '-1'; allowed: a whole number, 0 or more"),
         (["hard", "at-rests"], "similar names: at-rest"),
     ],
 )

@@ -10,6 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from math import nan
+
+import numpy as np
 
 import validate.reference.car_data as data
 from validate.reference.effects.car import Car, Effect, contact_of
@@ -198,17 +201,23 @@ def _screw_pitch(car: Car) -> Scalar:
 # In the plane through c that a level direction h and `up` span, the carrier moves its points as a plane
 # figure. The point c + x h + z up rests in this plane where
 #     v . h - z omega . a = 0,      v . up + x omega . a = 0,      a = h x up.
-# Where omega . a = 0 this instant centre is at infinity: the quotients are not finite.
+# Where omega . a = 0 this instant centre is at infinity, and so is by definition what is farther from c than
+# this, in radii of the wheel: there is no number.
+FARTHEST = 10**9
 
 
 def _beside(car: Car, h: Vector) -> Scalar:
     """x."""
-    return -dot(velocity_of_contact(car), car.up) / dot(_turning(car), cross(h, car.up))
+    far = -dot(velocity_of_contact(car), car.up) / dot(_turning(car), cross(h, car.up))
+    away, limit = abs(value_of(far)), FARTHEST * car.drawn.data[data.RADIUS]
+    if isinstance(away, np.ndarray):
+        return far + np.where(away <= limit, 0.0, nan)
+    return far if away <= limit else far * nan
 
 
 def _above(car: Car, h: Vector) -> Scalar:
-    """z."""
-    return dot(velocity_of_contact(car), h) / dot(_turning(car), cross(h, car.up))
+    """z, none where x is."""
+    return dot(velocity_of_contact(car), h) / dot(_turning(car), cross(h, car.up)) + 0 * _beside(car, h)
 
 
 # A force F that brakes the car shifts F h / L from the rear wheels to the front ones: h is the height of the
