@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,9 +68,3 @@ def interpolation(degree: int) -> Interpolation:
         powers[k, : k + 1] = series.cheb2poly(np.eye(degree + 1)[k])
     slopes: Array = series.chebvander(points, degree - 1) @ np.asarray(series.chebder(coefficients), float)
     return Interpolation(points, coefficients, powers, slopes)
-
-
-@lru_cache(maxsize=64)
-def binomials(orders: int) -> Array:
-    """binomial(j, m), [j, m], for j and m below `orders`."""
-    return np.array([[float(comb(j, m)) for m in range(orders)] for j in range(orders)])

@@ -68,11 +68,6 @@ class Converged:
     work: Work
     lipschitz: Array | float = np.nan
 
-    def lipschitz_with(self, system: QuadraticMap, factors: Factors) -> Array:
-        """The Lipschitz constant of X C_u with the inverse X of these factors, shape (...,)."""
-        known = factors.inverse is self.factors.inverse and not np.isnan(self.lipschitz).any()
-        return np.asarray(self.lipschitz) if known else system.lipschitz(factors.preconditioner)
-
 
 def newton_refine(
     system: QuadraticMap, y: Array, offset: Array | float = 0.0, tolerance: Array | float = 0.0
@@ -155,9 +150,11 @@ def factors_at(system: QuadraticMap, reached: Converged, tolerance: float = 0.0)
     With z = omega |last step|, their solutions have a relative error of z^2, which must be below rounding or
     the tolerance.
     """
-    matrix = system.jacobian(reached.y)
+    matrix, omega = system.jacobian(reached.y), reached.lipschitz
+    if np.isnan(omega).any():
+        omega = system.lipschitz(reached.factors.preconditioner)
     with np.errstate(all="ignore"):
-        z = reached.lipschitz_with(system, reached.factors) * reached.last_step
+        z = omega * reached.last_step
         near = (z * z <= max(EPS, tolerance)).all()
     if near:
         return reached.factors.moved(matrix), Work()

@@ -194,10 +194,21 @@ class QuadraticMap:
         both, count = y.take(plus, axis=-1) - y.take(minus, axis=-1), len(coefficients)
         return both[..., :count], both[..., count:]
 
+    def sizes_of_factors(self, data: Array) -> tuple[Array, Array]:
+        """At most both differences of every term, of coordinates of some sizes, each (..., terms)."""
+        coefficients, plus, minus, _ = self._terms
+        both, count = data.take(plus, axis=-1) + data.take(minus, axis=-1), len(coefficients)
+        return both[..., :count], both[..., count:]
+
     def gather(self, products: Array) -> Array:
         """Sum the products of factors, shape (..., terms), into rows, shape (..., rows)."""
         coefficients, *_, starts = self._terms
         return np.add.reduceat(products * coefficients, starts, axis=-1)
+
+    def gather_sizes(self, products: Array) -> Array:
+        """Sum the sizes of products of factors, shape (..., terms), into rows, shape (..., rows)."""
+        coefficients, *_, starts = self._terms
+        return np.add.reduceat(products * np.abs(coefficients), starts, axis=-1)
 
     def moving_products(self, moving: tuple[int, ...]) -> MovingProducts:
         """The products of two moving differences, where all unknowns and some known coordinates move.
@@ -225,40 +236,26 @@ class QuadraticMap:
         """The derivative of C by some coordinates, shape (..., rows, coordinates)."""
         return self._derivative(y, _pattern(self, coordinates), len(coordinates))
 
-    @property
-    def filled(self) -> Indices:
-        """Flat positions of the entries of C_u, row by row."""
-        return self._jacobian_pattern[-1]
-
-    def entries(self, y: Array) -> Array:
-        """The entries of C_u(y) at the positions `filled`, shape (..., entries)."""
-        return self._entries(y, self._jacobian_pattern)
-
-    def _entries(self, y: Array, pattern: Pattern) -> Array:
-        plus, minus, coefficients, first, _ = pattern
+    def _derivative(self, y: Array, pattern: Pattern, columns: int) -> Array:
+        plus, minus, coefficients, *_ = pattern
         parts = y.take(plus, axis=-1) - y.take(minus, axis=-1)
         parts *= coefficients
-        return np.add.reduceat(parts, first, axis=-1)
+        return self._matrix(parts, pattern, columns)
 
-    def _derivative(self, y: Array, pattern: Pattern, columns: int) -> Array:
-        flat = pattern[-1]
-        matrix = np.zeros((*y.shape[:-1], len(self.rows) * columns))
+    def _matrix(self, parts: Array, pattern: Pattern, columns: int) -> Array:
+        """The matrix of the parts of its entries, shape (..., rows, columns)."""
+        *_, first, flat = pattern
+        matrix = np.zeros((*parts.shape[:-1], len(self.rows) * columns))
         if len(flat):
-            matrix[..., flat] = self._entries(y, pattern)
-        return matrix.reshape(*y.shape[:-1], len(self.rows), columns)
+            matrix[..., flat] = np.add.reduceat(parts, first, axis=-1)
+        return matrix.reshape(*parts.shape[:-1], len(self.rows), columns)
 
     def jacobian_uncertainty(self, data: Array) -> Array:
         """Bound of the change of C_u if each coordinate changes by `data`, shape (..., rows, unknowns)."""
-        matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
-        matrix[..., self.filled] = self.spread_entries(data)
-        return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
-
-    def spread_entries(self, data: Array) -> Array:
-        """The entries of `jacobian_uncertainty` at the positions `filled`, shape (..., entries)."""
-        plus, minus, coefficients, first, _ = self._jacobian_pattern
+        plus, minus, coefficients, *_ = self._jacobian_pattern
         parts = data.take(plus, axis=-1) + data.take(minus, axis=-1)
         parts *= np.abs(coefficients)
-        return np.add.reduceat(parts, first, axis=-1)
+        return self._matrix(parts, self._jacobian_pattern, self.unknowns)
 
     def uncertainty(self, y: Array, data: Array) -> Array:
         r"""Bound of the error of the computed C(y), shape (..., rows).
@@ -267,14 +264,14 @@ class QuadraticMap:
         (shape (..., size)). The row adds the rounding of its products and of their sum, gamma = (terms + 2) u
         relative to the sum of magnitudes (Higham, Accuracy and Stability, ch. 3).
         """
-        coefficients, plus, minus, starts = self._terms
+        coefficients, plus, minus, _ = self._terms
         sizes, count = np.abs(y.take(plus, axis=-1) - y.take(minus, axis=-1)), len(coefficients)
         errors = UNIT_ROUNDOFF * sizes + data.take(plus, axis=-1) + data.take(minus, axis=-1)
         left, right = sizes[..., :count], sizes[..., count:]
         left_error, right_error = errors[..., :count], errors[..., count:]
         gamma = (max(len(row) for row in self.rows) + 2) * UNIT_ROUNDOFF
         spread = gamma * left * right + left * right_error + left_error * (right + right_error)
-        return np.add.reduceat(spread * np.abs(coefficients), starts, axis=-1)
+        return self.gather_sizes(spread)
 
     def lipschitz(self, preconditioner: Array, weights: Array | None = None) -> Array:
         r"""The Lipschitz constant of X C_u in a maximum norm, weighted or plain, shape (...,).

@@ -160,7 +160,7 @@ def _remaining(
     moved = off[0] * later[1] + first[1] * off[1] + off[0] * off[1]
     doubted = _of_factors(system, data)
     moved += doubted[0] * later[0] + first[0] * doubted[1]
-    spread = (rounded + moved).each(lambda part: _gathered(system, part))
+    spread = (rounded + moved).each(system.gather_sizes)
     spread += Jet.of(rows, exponents).scaled((system.unknowns + 2) * EPS)
     spread += Jet.constant(centre.radius[0] + UNIT_ROUNDOFF * np.abs(rows[:, 0]), inputs)
     spread = Jet(
@@ -186,12 +186,6 @@ def _of_factors(system: QuadraticMap, off: Jet) -> tuple[Jet, Jet]:
     (first, second), (left, right) = system.differences
     each = off.taken(first) + off.taken(second)
     return each.taken(left), each.taken(right)
-
-
-def _gathered(system: QuadraticMap, part: Array) -> Array:
-    """Sums of magnitudes of terms, (..., terms), to (..., rows)."""
-    coefficients, starts = system.terms
-    return np.add.reduceat(part * np.abs(coefficients), starts, axis=-1)
 
 
 def _change(system: QuadraticMap, factors: Factors, series: Array, order: int, low: Array, data: Jet) -> Jet:

@@ -22,7 +22,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.few_entries import LARGE
 from pointcoord.numerics.linear import Factors, factorise
@@ -30,7 +29,7 @@ from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.place import Path
-from pointcoord.solve.proven_step import prove
+from pointcoord.solve.proven_step import hidden, orientation, prove, same_side
 
 Array = NDArray[np.float64]
 Law = Callable[[NDArray[np.intp], Array, int], Array]
@@ -44,8 +43,6 @@ ORDER, OF_LARGE = 8, 3
 # where two assemblies meet as the root of the distance: they are still 1e-6 of the path apart, and
 # rounding, which grows as the inverse of that root, is near 1e-10.
 SMALLEST_STEP = 1e-13
-# Lengths of steps that are tried, as shares of what is left: few of those that few steps need.
-LENGTHS = np.concatenate([0.85 ** np.arange(16.0), 0.5 ** np.arange(4.0, 44.0)])
 # Part of a step that is tried instead where digits have run out at its end.
 AGAIN = 0.1
 # Steps tried for a path, or for each part of it that is as long as a step may be.
@@ -100,9 +97,8 @@ def follow(
         with np.errstate(all="ignore"):
             # In shares of what is left of the path.
             known = law(active, begun, order) * left[:, None, None] ** np.arange(order + 1.0)[:, None]
-            lacking = left[:, None] * offset[active]
             series = expand(system, local, y[active], known, system.residual(y[active]))
-            proof = prove(system, local.preconditioner, series, np.stack([lacking, -lacking]), LENGTHS)
+            proof = prove(system, local.preconditioner, series)
             length = np.minimum(proof.length, most[active] / left)
         # A step that completes a path may be as short as it likes.
         able = np.flatnonzero((length >= 1.0) | (length * left >= SMALLEST_STEP))

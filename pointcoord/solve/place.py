@@ -32,6 +32,10 @@ class Place:
     left: Array
     work: Work
 
+    def taken(self, members: NDArray[np.intp]) -> Self:
+        """Some of them, by number; one batch dimension."""
+        return replace(self, y=self.y[members], factors=self.factors.taken(members), left=self.left[members])
+
 
 @dataclass(frozen=True)
 class Path(Place):
@@ -58,14 +62,8 @@ class Path(Place):
 
     def taken(self, members: NDArray[np.intp]) -> Self:
         """The paths of some members, by number; one batch dimension."""
-        return replace(
-            self,
-            y=self.y[members],
-            factors=self.factors.taken(members),
-            left=self.left[members],
-            iterations=self.iterations[members],
-            done=self.done[members],
-        )
+        taken = super().taken(members)
+        return replace(taken, iterations=self.iterations[members], done=self.done[members])
 
 
 def starting_place(part: PartialMap, pose: Place) -> Place:

@@ -25,7 +25,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.kantorovich import smallest_radius
 from pointcoord.numerics.linear import Factors, factorise
@@ -37,7 +36,7 @@ from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import LONGEST, Pose, blocked, by_inputs, close_drawing, driven_to
 from pointcoord.solve.follower import Law, follow
 from pointcoord.solve.place import Place, starting_place, whole_place
-from pointcoord.solve.proven_step import prove
+from pointcoord.solve.proven_step import WHOLE, hidden, prove
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -246,7 +245,8 @@ def _ahead(
     here, following = poses[:-1], poses[1:]
     with np.errstate(all="ignore"):
         series = _straight(system, factors, here, following[:, n:], 1)
-        proof = prove(system, inverse, series, 0.0, np.ones(1))
+        rest = np.stack([system.residual(here), 2.0 * system.polar(here, series[:, 1])])
+        proof = prove(system, inverse, series, rest, WHOLE)
         apart = np.abs(following - series.sum(axis=1))[:, :n] + left[:, None]
         good = found & (proof.length == 1.0) & proof.within(apart)
     count = _first_false(np.asarray(good))

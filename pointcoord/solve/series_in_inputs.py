@@ -10,8 +10,8 @@ and the powers s(t)^k are the same for all designs. It must be as exact as a seg
 `taylor`): its last two degrees, summed over their powers, are to it what the last two terms are to a segment
 of length 1. At every corner of the ranges Newton's method finds the assembly, from a first step of no more
 than the tolerance and rounding; and it is proven that no other branch is met in the ranges, of which the
-middle is reached from the start by proven steps (see `branch`). Designs of which that is not so are followed
-in time.
+middle is reached from the start by proven steps (see `proven_step`). Designs of which that is not so are
+followed in time.
 """
 
 from __future__ import annotations
@@ -26,7 +26,6 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import regular_on
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.monomials import monomials
@@ -37,6 +36,7 @@ from pointcoord.numerics.power_series import expand_moving
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.follower import follow
 from pointcoord.solve.place import starting_place
+from pointcoord.solve.proven_step import prove_box
 from pointcoord.solve.step_rule import MOST, SEGMENT, Settings, degrees_lacking
 from pointcoord.solve.taylor import SOLVED, Segment, confirmed
 from pointcoord.time_functions import TimeFunction
@@ -229,36 +229,27 @@ class _Boxed:
         work += Work(
             segments=1, series_orders=order, rate_solves=solves, unknowns_solved=solves * system.unknowns
         )
-        # At a corner a series is the sum of its degrees: of all but the last two, and of each of these.
-        every = powers(self.inputs, order)
         signs = np.array(list(product((-1.0, 1.0), repeat=self.inputs)))
-        summed = (signs[:, None] ** every.exponents).prod(axis=-1)[:, None] * (
-            np.clip(every.exponents.sum(axis=-1) - order + 2, 0, 2) == np.arange(3)[:, None]
-        )
-        rays = np.moveaxis(np.tensordot(summed, series, axes=1), 2, 0)
+        corners = (signs[:, None] ** powers(self.inputs, order).exponents).prod(axis=-1)
         ends = np.empty((len(y), len(signs), system.size))
-        ends[..., : system.unknowns] = rays.sum(axis=-2)
+        ends[..., : system.unknowns] = np.tensordot(corners, series, axes=1).swapaxes(0, 1)
         for i, sign in enumerate(signs):
             ends[:, i, system.unknowns :] = self.part.known(y, self.known(sign)[..., None, :])[..., 0, :]
         reached = newton_refine(system, ends, tolerance=SOLVED * self.settings.tolerance)
-        confirmation = confirmed(system, reached, rays, 1.0, self.settings.tolerance)
-        good &= confirmation.good.all(axis=-1) & self.regular(y, moving)
-        work += reached.work + confirmation.work
+        places, edges = [*range(system.unknowns), *self.driven()[1]], powers(self.inputs, order).edges
+        sizes = np.zeros((order, *y.shape))
+        sizes[..., places] = np.add.reduceat(np.abs(moving), edges[1:-1], axis=0)
+        proof = prove_box(system, y, moving, places, sizes, system.residual(y))
+        apart = np.abs(reached.y - ends)[..., : system.unknowns].swapaxes(0, 1)
+        good &= (proof.length == 1.0) & proof.within(apart).all(axis=0)
+        good &= confirmed(system, reached, self.settings.tolerance).all(axis=-1)
+        work += reached.work
         coefficients, ranges = self.part.unknowns_back(y, np.moveaxis(series, 0, -2)), self.ranges
         box = InputSeries(
             start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order
         )
         numbers = np.flatnonzero(good)
         return numbers, box if good.all() else box.taken(numbers), work
-
-    def regular(self, start: Array, moving: Array) -> Flags:
-        """Whether designs meet no other branch anywhere in the ranges, (designs,).
-
-        Args:
-            start: the middle of the ranges. moving: series of all that moves, powers first.
-        """
-        coordinates = [*range(self.part.system.unknowns), *self.driven()[1]]
-        return regular_on(self.part.system, start, moving[1:], coordinates)
 
     def series(self, y: Array, factors: Factors) -> tuple[Array, int, Flags] | None:
         """Series of all that moves, powers first, their degree, and of which designs it is enough.

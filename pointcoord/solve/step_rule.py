@@ -30,8 +30,7 @@ Array = NDArray[np.float64]
 
 # A smaller truncation than this, relative to a derivative's size, drowns in the rounding of its sum.
 FINEST = 4.0 * EPS
-# A larger one could take a neighbouring branch for the same motion: the end of a segment shows that the
-# series left out far less than the distance to any other assembly there, but nothing looks between the ends.
+# Of a larger one what is proven of a segment (see `proven_step`) would say how long it is, and not its terms.
 COARSEST = 1e-5
 # Orders, at most: beyond 40 little is gained at any tolerance. Up to SAFE the rates of an input stay numbers
 # however fast it is, 1e12 per second and more.

@@ -1,8 +1,8 @@
 r"""A motion as a chain of short power series.
 
 A segment is as long as its last two terms allow (see `step_rule`). The end is then solved by Newton, which
-starts the next segment without inherited error and shows what the error was; a segment that missed, or that
-ended on another branch (see `branch`), is halved.
+starts the next segment without inherited error and shows what the error was; a segment that missed, or along
+which no one branch is proven to lead there (see `proven_step`), is halved.
 
 What stands still while the inputs do as their laws say is solved once, to rounding, and is a constant of
 every series (see `partial_map`).
@@ -20,9 +20,7 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange, NotFollowed
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import hidden, on_branch, regular_along
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.newton import Converged, factors_at, newton_refine, rounding_of
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand
@@ -30,6 +28,7 @@ from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
 from pointcoord.solve.place import Place, starting_place, whole_place
+from pointcoord.solve.proven_step import hidden, prove_segment
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.solve.step_rule import COARSEST, SAFE, Settings, lengths_by_sizes, log_sizes, order_for
 from pointcoord.time_functions import TimeFunction
@@ -172,10 +171,9 @@ class _Joint(Place):
         """How many poses it is."""
         return self.factors.condition.size
 
-    def taken(self, members: Numbers) -> _Joint:
+    def taken(self, members: Numbers) -> Self:
         """Some of them."""
-        factors, left = self.factors.taken(members), self.left[members]
-        return replace(self, y=self.y[members], factors=factors, left=left, known=self.known[members])
+        return replace(super().taken(members), known=self.known[members])
 
 
 @dataclass(frozen=True)
@@ -352,8 +350,8 @@ class _Course:
     def step_along(
         self, segment: Segment, length: float, joint: _Joint, leaving: bool
     ) -> tuple[_Joint | None, NDArray[np.bool_], Work]:
-        """Cut a segment where its last terms say, or shorter: until it meets no other branch on its way, and
-        Newton's method confirms its end.
+        """Cut a segment where its last terms say, or shorter: until Newton's method confirms its end, and one
+        branch is proven to lead there.
 
         Args:
             length: as its terms say, s.
@@ -362,39 +360,32 @@ class _Course:
             The end, None where not all members have one; which members have; and what that cost.
         """
         system, limit, tolerance = self.part.system, self.next_break(joint.instant), self.settings.tolerance
-        good, work = np.zeros(joint.y.shape[:-1], dtype=bool), Work()
+        order, solved, work = np.arange(segment.order + 1.0), SOLVED * tolerance, Work()
+        good = np.zeros(joint.y.shape[:-1], dtype=bool)
         while length >= self.shortest or joint.instant + length >= limit:
             end = limit if joint.instant + length >= limit else joint.instant + length
             known = self.known(end) if end < self.stop else self.known_to(end, 0)
-            reached = self.solved_end(segment, end, known[..., 0, :])
+            s = (end - segment.start) / segment.scale
+            guess = s**order @ segment.coefficients
+            guess[..., self.mechanism.map.unknowns :] = known[..., 0, :]
+            reached = newton_refine(system, guess, tolerance=solved)
+            good = confirmed(system, reached, tolerance, partial(self.law_noise, reached, end), leaving)
             work += reached.work
-            s, series = (end - segment.start) / segment.scale, segment.coefficients
-            noise = partial(self.law_noise, reached, end)
-            found = confirmed(system, reached, series, s, tolerance, noise, leaving)
-            good, ahead = found.good, found.factors
-            work += found.work
             if good.any():
-                good = good & regular_along(system, series, s)
-            if end < self.stop and ahead is not None:
-                good = good & ~hidden(system, reached.y, ahead)
-            if good.all() and ahead is not None:
-                scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
-                return _Joint(reached.y, ahead, reached.left, work, end, known, scale), good, work
-            if leaving and good.any():
-                break
+                proof = prove_segment(system, segment.coefficients, s)
+                good = good & (proof.length == 1.0)
+                good = good & proof.within(np.abs(reached.y - guess)[..., : system.unknowns])
+                ahead, factorised = factors_at(system, reached, solved)
+                work += factorised
+                if end < self.stop:
+                    good = good & ~hidden(system, reached.y, ahead)
+                if good.all():
+                    scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
+                    return _Joint(reached.y, ahead, reached.left, work, end, known, scale), good, work
+                if leaving and good.any():
+                    break
             length = 0.5 * (end - joint.instant)
         return None, good, work
-
-    def solved_end(self, segment: Segment, end: float, known: Array) -> Converged:
-        """The end of a segment, by the series and then by Newton, as exactly as the tolerance needs.
-
-        Args:
-            known: coordinates there.
-        """
-        s, series = (end - segment.start) / segment.scale, segment.coefficients
-        guess = s ** np.arange(series.shape[-2]) @ series
-        guess[..., self.mechanism.map.unknowns :] = known
-        return newton_refine(self.part.system, guess, tolerance=SOLVED * self.settings.tolerance)
 
     def law_noise(self, reached: Converged, end: float) -> Array:
         """What the rounding of the inputs' laws may move any coordinate by, shape (...,)."""
@@ -430,28 +421,16 @@ class _Course:
         return Status(error if locked else NotFollowed(instant, name=error.reduce, coarsest=coarsest))
 
 
-@dataclass(frozen=True)
-class Confirmed:
-    """Which ends are confirmed, the factors of C_u there unless none is, and what that cost."""
-
-    good: NDArray[np.bool_]
-    factors: Factors | None
-    work: Work
-
-
 def confirmed(
     system: QuadraticMap,
     reached: Converged,
-    series: Array,
-    s: float,
     tolerance: float,
     law_noise: Callable[[], Array] | None = None,
     leaving: bool = True,
-) -> Confirmed:
-    """Whether solved ends are what a series leads to, up to a tolerance, and no other assembly.
+) -> NDArray[np.bool_]:
+    """Whether solved ends are what a series leads to, up to a tolerance, shape (...,).
 
     Args:
-        series, s: as of `on_branch`.
         law_noise: what the rounding of the inputs' laws may move any coordinate by, shape (...,).
         leaving: whether it is enough that some members are confirmed.
     """
@@ -460,10 +439,7 @@ def confirmed(
     if not good.all() and (leaving or reached.converged.all()):
         noise = rounding_of(system, reached) + (law_noise() if law_noise is not None else 0.0)
         good = reached.converged & (reached.first_step <= tolerance + 2.0 * noise)
-    if not good.any():
-        return Confirmed(good, None, Work())
-    ahead, work = factors_at(system, reached, SOLVED * tolerance)
-    return Confirmed(good & on_branch(system, series, s, reached, ahead), ahead, work)
+    return np.asarray(good)
 
 
 def power_of_two(length: float) -> float:

@@ -121,6 +121,6 @@ def test_nothing_is_kept_where_no_instant_was_solved(
     make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # No trial step is good enough: the chain cannot leave its start.
-    monkeypatch.setattr("pointcoord.solve.taylor.on_branch", lambda *_: np.array(False))
+    monkeypatch.setattr("pointcoord.solve.taylor.confirmed", lambda *_: np.array(False))
     error = stopped_by(PointcoordError, make_scene(ARM, samples=2, stop=LAST), SERIES)
     assert error.partial is None

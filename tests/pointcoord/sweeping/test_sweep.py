@@ -90,7 +90,7 @@ def test_a_design_whose_end_is_not_confirmed_goes_on_without_the_others(
 ) -> None:
     """Of series in the inputs, and of chains in time."""
     monkeypatch.setattr(series_in_inputs, "INPUTS", inputs)
-    right = taylor.on_branch
+    right = taylor.confirmed
 
     def all_but_the_third(*arguments: Any) -> NDArray[np.bool_]:
         good = np.array(right(*arguments))
@@ -98,7 +98,8 @@ def test_a_design_whose_end_is_not_confirmed_goes_on_without_the_others(
             good[2] = False
         return good
 
-    monkeypatch.setattr(taylor, "on_branch", all_but_the_third)
+    for module in (taylor, series_in_inputs):
+        monkeypatch.setattr(module, "confirmed", all_but_the_third)
     found = sweep(WISHBONE, offsets={"lower_ball_joint.z": np.linspace(-20.0, 20.0, 9)})
     assert found.solved.all()
     for number in (0, 2, 8):

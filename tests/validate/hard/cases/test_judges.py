@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from stand_in import stand_in
 
-import pointcoord.solve.taylor
 from pointcoord import Scene
+from pointcoord.solve import taylor
+from pointcoord.solve.proven_step import Proof
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.answer import Answer, Trial
@@ -103,12 +104,20 @@ def test_the_searched_bound_is_all_but_met_and_never_broken() -> None:
     assert 0.99 < max(shares) <= 1.0
 
 
-def test_a_turn_leads_to_another_branch_where_the_branch_is_not_followed(
+def test_steps_too_long_lead_to_another_branch_where_that_is_not_proven(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def blind(system: Any, side: Any, series: Any, s: float, reached: Any) -> Any:
-        return np.ones(reached.y.shape[:-1], dtype=bool)
+    right, near = taylor.lengths_by_sizes, (1e-10, 1e-11, 1e-12, 1e-13, 1e-14)
 
-    monkeypatch.setattr(pointcoord.solve.taylor, "on_branch", blind)
-    near = (1e-10, 1e-11, 1e-12, 1e-13, 1e-14)
-    assert "wrong" in {answer.outcome for answer in answers("turn-at-a-coarse-tolerance", *near)}
+    def found() -> set[str]:
+        return {answer.outcome for answer in answers("turn-at-a-coarse-tolerance", *near)}
+
+    def blind(system: Any, series: Any, s: float) -> Proof:
+        return Proof(np.ones(()), np.array(np.inf), np.ones(system.unknowns))
+
+    # Whatever pose Newton's method finds from the end of a series is taken.
+    monkeypatch.setattr(taylor, "lengths_by_sizes", lambda *arguments: 4.0 * right(*arguments))
+    monkeypatch.setattr(taylor, "confirmed", lambda system, reached, *_: reached.converged)
+    assert found() <= {"right", "refused"}
+    monkeypatch.setattr(taylor, "prove_segment", blind)
+    assert "wrong" in found()

@@ -1,0 +1,65 @@
+"""What keeps a path and a series on their branch, on the parabola u^2 = w, whose branches meet at w = 0."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from parabola import AT_ONE, PARABOLA
+
+from pointcoord.solve.follower import SMALLEST_STEP, follow
+from pointcoord.solve.proven_step import PARTS, ROOM, prove_box, prove_segment
+
+Array = NDArray[np.float64]
+
+
+def along_the_parabola(u: Array) -> Array:
+    """The series of all coordinates, (order + 1, size), whose w follows u^2 up to the order of u's."""
+    series = np.zeros((len(u), 4))
+    series[:, 0], series[:, 1], series[0, 3] = u, np.convolve(u, u)[: len(u)], 1.0
+    return series
+
+
+@given(u=st.floats(1e-3, 1e3), shares=st.tuples(*[st.floats(-1.0, 1.0)] * 3))
+def test_a_box_is_proven_as_far_as_the_condition_holds(u: float, shares: tuple[float, float, float]) -> None:
+    """X = 1 / (2 u) and omega = 1 / u; one unknown, so that no estimate loses anything."""
+    series = along_the_parabola(u * np.array([1.0, *shares]))
+    a, b, c = np.abs(shares)
+    z, eta = a + b + c, (2.0 * a * c + b * b + 2.0 * b * c + c * c) / 2.0
+    condition = z + float(np.sqrt(2.0 * eta))
+    assume(abs(condition - ROOM) > 1e-9)
+    proof = prove_box(
+        PARABOLA, series[None, 0], series[:, None], slice(None), np.abs(series[1:, None]), np.zeros((1, 1))
+    )
+    assert (proof.length == 1.0).tolist() == [condition < ROOM]
+    # The other branch is twice as far as the fold, which is at least 1 - z of u away.
+    assert proof.alone[0] * proof.weights[0, 0] <= (1.0 - z) * u * (1.0 + 1e-9) or condition > ROOM
+
+
+@given(share=st.floats(0.0, 1.5), s=st.floats(1e-3, 1e3))
+def test_a_segment_is_proven_by_parts_as_far_as_the_last_one_is(share: float, s: float) -> None:
+    """u = 1 - k s, straight, so that nothing is cut off; the fold is at k s = 1."""
+    series = along_the_parabola(np.array([1.0, -share / s, 0.0]))
+    middle, half = 1.0 - 0.5 / PARTS[-1], 0.5 / PARTS[-1]
+    end = ROOM / (half + ROOM * middle)
+    assume(abs(share - end) > 1e-9)
+    proof = prove_segment(PARABOLA, series, s)
+    assert bool(proof.length == 1.0) == (share < end)
+    assert share >= end or proof.alone * proof.weights[0] <= 1.0 - share + 1e-9
+
+
+def path_to(w: float) -> tuple[float, float]:
+    """The share done of the path from w = 1, and u at its end."""
+    path = follow(PARABOLA, AT_ONE, np.array([w, 0.0, 1.0]))
+    return float(path.done), float(path.y[0])
+
+
+@pytest.mark.parametrize("beyond", [1.0, 1e-3, 1e-9])
+def test_a_path_into_a_fold_stops_where_its_steps_are_the_smallest(beyond: float) -> None:
+    done, u = path_to(-beyond)
+    # Left of the way to the fold, as a share of the path. A step is at most the way to the fold and at
+    # least a tenth of it, so the last one that is taken leaves at most ten smallest steps and at least a
+    # tenth of one. u^2 says the same as long as the path's own rounding, 1e-16 of it, is far smaller.
+    left = 1.0 / (1.0 + beyond) - done
+    assert 0.1 * SMALLEST_STEP <= left <= 10.0 * SMALLEST_STEP
+    assert abs(u * u / (1.0 + beyond) - left) <= 1e-15
