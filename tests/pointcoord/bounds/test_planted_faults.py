@@ -173,7 +173,7 @@ FAULTS: list[tuple[Callable[..., Any], str, str]] = [
     (kantorovich.smallest_radius, "least = 2.0 * eta", "least = eta"),
     (kantorovich.ball, "(z * radius + 0.5 * omega * radius**2)", "(z * radius)"),
     (kantorovich.ball, "(z * radius + 0.5 * omega * radius**2)", "(0.5 * omega * radius**2)"),
-    (kantorovich.certify, "doubt = rows.radius[0] +", "doubt = 0.5 * rows.radius[0] +"),
+    (kantorovich.certify, "uncertainty = rows.radius[0] +", "uncertainty = 0.5 * rows.radius[0] +"),
     (kantorovich.certify, "np.abs(step) + spread", "np.abs(step)"),
     (kantorovich.defect_of, "data + pose.reach", "data"),
     (kantorovich.defect_of, "data + pose.reach", "pose.reach"),

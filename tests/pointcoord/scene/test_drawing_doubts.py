@@ -68,7 +68,7 @@ def test_a_car_in_mm_in_a_scene_that_says_m_is_told_to_look_at_its_units() -> No
     (doubt,) = (doubt for doubt in scene.mechanism.doubts if "mm long" in doubt)
     # It is not: the scene says so, and is wrong.
     assert "points are in mm" not in doubt
-    assert "another unit than units says" in doubt
+    assert "another unit than the scene states" in doubt
 
 
 def test_a_point_with_the_wrong_sign_to_the_right_is_doubted_and_a_rack_near_the_middle_is_not() -> None:

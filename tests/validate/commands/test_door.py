@@ -243,7 +243,7 @@ def test_where_pinocchio_lacks_a_library_of_the_system_that_is_asked_for(tmp_pat
     lacking = "libgomp.so.1: cannot open shared object file"
     files = {"pinocchio.py": f"raise ImportError({lacking!r})\n"}
     said = with_files(tmp_path, files, "validate", "steer", "--second", "absolute").stderr
-    assert f"there and does not load ({lacking})" in said
+    assert f"installed but does not load ({lacking})" in said
     assert "install the system's package" in said
     assert "pip install" not in said
 

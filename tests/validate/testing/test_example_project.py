@@ -98,7 +98,7 @@ def test_a_project_with_a_module_validate_of_its_own_keeps_it(
     )
     done = environment.run(*PLAIN, "test_own.py", cwd=tmp_path)
     (said,) = (line for line in reported(done) if "suspension_scenes" in line)
-    assert f"({tmp_path / 'validate.py'}) is not pointcoord's" in said
+    assert f"({tmp_path / 'validate.py'}) is not part of pointcoord" in said
     assert "Traceback" not in done.stdout + done.stderr
     (tmp_path / "test_own.py").write_text("def test_fixture(plain_scene): ...\n", encoding="utf-8")
     done = environment.run(*PLAIN, "test_own.py", cwd=tmp_path)
