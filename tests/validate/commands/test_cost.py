@@ -52,7 +52,7 @@ def test_a_report_from_rows_measures_nothing_and_ends_with_0(
     assert main(["cost", "--from-rows", "--rows", store, "--csv", str(lines)]) == 0
     out, err = told(capsys)
     assert err == []
-    assert out.index("A pose to 1e-9 mm") < out.index("Time of a pose to 1e-9 mm of position")
+    assert out.index("To solve a pose to 1e-9 mm") < out.index("Time of a pose to 1e-9 mm of position")
     assert "a made machine" in out
     assert store in out
     assert Path(store).read_bytes() == before
