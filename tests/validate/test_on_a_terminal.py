@@ -120,6 +120,6 @@ def test_a_wide_table_is_shown_in_bands_that_fit_and_have_the_inputs_each() -> N
 def test_a_picture_is_no_text_on_a_terminal_but_a_file_that_is_named(tmp_path: Path) -> None:
     for name in ("steer.svg", "steer-2.svg"):
         shown = on_terminal([*PROGRAM, "draw", "steer"], folder=tmp_path)
-        assert f"the picture goes to {name}; -o FILE says another place" in shown
+        assert f"the picture goes to {name}; -o FILE names another file" in shown
         assert "<svg" not in shown
         assert "<svg" in (tmp_path / name).read_text(encoding="utf-8")

@@ -68,8 +68,8 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     if stands.closing.changes_the_car and not scene.mechanism.topology.puts_in_place:
         limit = f"{ALLOWED:.0%} of the car's size, {ALLOWED * stands.closing.size:.3g} mm"
         console.complain(
-            f"{name}: mechanism.points: {stands.closing.words}: this drawing is refused, because the closed "
-            f"car differs too much from it; allowed: {limit}; correct the points that miss"
+            f"{name}: mechanism.points: {stands.closing.words}: that is another car, and the drawing is "
+            f"refused; allowed: {limit}; correct the points that miss"
         )
         return ExitStatus.WRONG_INPUT
     for warning in (*warnings_of(scene, stands.closing), *_out_of_reach(scene, stands)):

@@ -62,7 +62,7 @@ def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
     assert "(--first pointcoord-newton); refused by pointcoord (NotFollowed); " in line
     assert line.endswith("solved by absolute and pointcoord-newton")
     assert f"0 of 1 scene agrees; not tested (refused): {path}." in out
-    assert out.splitlines()[-1].startswith(f"Next: pointcoord plan {path} says how far each input can go")
+    assert out.splitlines()[-1].startswith(f"Next: pointcoord plan {path} shows how far each input can go")
     # The hint can be followed, here and where the scene is only solved.
     assert main(["validate", path, "--first", "pointcoord-newton"]) == 0
     assert main(["simulate", path, "-o", str(tmp_path / "x.csv")]) == 3

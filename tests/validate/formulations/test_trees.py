@@ -58,7 +58,7 @@ def test_a_program_that_is_not_installed_is_told_with_its_package_and_extra(
     lacking = not_there(who, ImportError("libGL.so.1: cannot open shared object file"), "peers")
     assert lacking.libraries == (who,)
     assert "does not load (libGL.so.1" in str(lacking)
-    assert "the system's package" in str(lacking)
+    assert "the system package" in str(lacking)
 
 
 def test_a_rod_that_is_called_as_an_angle_has_no_force_from_a_tree() -> None:
