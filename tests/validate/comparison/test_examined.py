@@ -69,7 +69,7 @@ def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
     said = capsys.readouterr().err
     assert "(--method newton)" in said
     assert "closing the drawing moves wheel_centre by 16.8 mm" in said
-    assert "; what was solved, 2 instants up to t = 0.65 s, is in " in said
+    assert "solved part, 2 instants up to t = 0.65 s, is in " in said
     assert main(["simulate", path, "--method", "newton", "-o", str(tmp_path / "x.csv")]) == 0
 
 
