@@ -1,1 +1,1 @@
-"""Poses certified, and where their points exactly are."""
+"""Certified poses, and enclosures of the exact positions and rates of their points."""

@@ -1,7 +1,7 @@
 """Certifies the poses of a motion, in groups of neighbours that share an inverse.
 
-A group is as large as its poses lie close enough together for: the inverse of the middle one then costs the
-others a few per cent of their bounds (see `kantorovich`). A pose without close neighbours is a group of one.
+The poses of a group are so close together that the inverse at the middle pose makes the bounds of the others
+only a few per cent larger (see `kantorovich`). A pose without close neighbours is a group of one.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
 
-# Poses of a group at most, and what sharing an inverse may cost their bounds: this part of the error.
+# Most poses of a group, and the share by which a shared inverse may enlarge the bounds.
 LARGEST, SHARED = 256, 0.02
-# Groups below which a larger size saves no time: what is done for each array takes longer than its numbers.
+# With fewer groups larger groups save no time: the overhead of each array operation dominates.
 FEWEST = 16
 
 
@@ -36,7 +36,7 @@ class Groups:
     size: int
 
     def together(self, array: Array) -> Array:
-        """Numbers of the instants, (N, ...), by group, (G, m, ...)."""
+        """Values at the instants, (N, ...), as values by group, (G, m, ...)."""
         number = -(-self.count // self.size)
         if number * self.size == self.count:
             return array.reshape(number, self.size, *array.shape[1:])
@@ -44,7 +44,7 @@ class Groups:
         return np.moveaxis(np.moveaxis(array, 0, -1)[..., places], (-2, -1), (0, 1))
 
     def apart(self, array: Array) -> Array:
-        """Numbers by group, (G, m, ...), as those of the instants, (N, ...)."""
+        """Values by group, (G, m, ...), as values at the instants, (N, ...)."""
         return array.reshape(-1, *array.shape[2:])[: self.count]
 
 
@@ -53,8 +53,8 @@ class CertifiedPoses:
     """Poses by group, with their certificate; lengths in the mechanism's units.
 
     Attributes:
-        pose: coordinates, the known ones where they exactly are, (G, m, size).
-        factors: of the anchor of each group.
+        pose: coordinates with exact values of the known ones, (G, m, size).
+        factors: factorisation of C_u at the middle pose of each group.
     """
 
     groups: Groups
@@ -69,9 +69,9 @@ class CertifiedPoses:
         """Certify poses.
 
         Args:
-            groups, factors: as `grouped` gives them.
+            groups, factors: result of `grouped`.
             y: coordinates, (G, m, size).
-            driven: where the driven coordinates exactly are, by place in y, (G, m).
+            driven: exact values of the driven coordinates, by place in y, (G, m).
         """
         system = mechanism.map
         pose = with_known(y, system.unknowns, driven, mechanism.drawn_lacks, mechanism.drawn_doubt)
@@ -79,11 +79,11 @@ class CertifiedPoses:
 
 
 def grouped(system: QuadraticMap, y: Array, driven: Collection[int]) -> tuple[Groups, Factors]:
-    """As few groups as can share an inverse, all of one size, with the factors of their middle poses.
+    """The largest groups of one size whose poses can share an inverse, and the factors of their middle poses.
 
     Args:
         y: coordinates of consecutive instants, (N, size).
-        driven: places of those that are known and move.
+        driven: places in y of the driven coordinates.
     """
     size = _power_of_two(min(LARGEST, len(y) / FEWEST))
     while True:
@@ -103,7 +103,7 @@ def grouped(system: QuadraticMap, y: Array, driven: Collection[int]) -> tuple[Gr
 
 
 def _power_of_two(most: float) -> int:
-    """The largest power of two that is no larger, but at least 1; 1 of what is no number."""
+    """The largest power of two up to a number; 1 if the number is below 1 or NaN."""
     return int(2 ** int(np.log2(max(1.0, most))))
 
 
@@ -114,12 +114,14 @@ def with_known(
     lacks: ArrayLike = 0.0,
     doubt: ArrayLike = 0.0,
 ) -> Enclosed:
-    """Computed coordinates, or their rates, the unknown ones as they are and the known ones where they are.
+    """Coordinates, or their rates, with the unknown ones as computed and exact values of the known ones.
 
     Args:
-        state: (G, m, size).
-        driven: by place, (G, m).
-        lacks, doubt: of the others that are known, which stand still.
+        state: computed coordinates or rates, (G, m, size).
+        unknowns: number of unknown coordinates.
+        driven: exact values of the driven coordinates, by place, (G, m).
+        lacks, doubt: rounding error of the other known coordinates, which stand still, to be added to them;
+            and their uncertainty after that correction.
     """
     middle = state.shape[1] // 2
     high = state[:, middle : middle + 1].copy(order="K")
@@ -137,9 +139,9 @@ def with_known(
 
 
 def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:
-    """Proven bound on every coordinate of the solved points of poses, shape (...,), mm.
+    """Proven error bound of every coordinate of the solved points of poses, shape (...,), mm.
 
-    The shift to the user's origin rounds each coordinate once more.
+    The bound includes one rounding of each coordinate by the shift to the user's origin.
     """
     pose = Enclosed.of(*(part[..., None, :] for part in (y, *mechanism.known_data(y))))
     certificate = certify(mechanism.map, pose, factors)

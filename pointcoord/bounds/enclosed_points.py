@@ -1,32 +1,31 @@
-r"""Where every point of a pose and its rates exactly are: a correction, and two radii about it.
+r"""Enclosures of the exact positions and rates of all points of a pose: a correction with two radii.
 
-The certificate of a pose gives y* = y - e to within its spread and tail. Its rates solve
+The certificate of a pose gives y* = y - e with the error bounds spread and tail. The exact rates solve
 
     2 B(y*, v*) = 0,        2 B(y*, a*) + 2 B(v*, v*) = 0,
 
-with known rates w', w'', and so on: of the derivative d, 2 B(y*, z_d) + sum_{0<i<d} C(d, i) B(z_i, z_{d-i}).
-For a computed v with the exact w' in it, r = 2 B(y*, v), and X close to C_u^-1,
+with known rates w', w'', and so on; for derivative d, 2 B(y*, z_d) + sum_{0<i<d} C(d, i) B(z_i, z_{d-i}) = 0.
+For a computed v with the exact w' inserted, r = 2 B(y*, v), and X close to C_u^-1,
 
     C_u(y*) (v* - v) = -r,        v* - v = -X r + E (v* - v),        E = I - X C_u(y*).
 
-With q >= |X r|, rounding and doubt of r included, and z' = z + omega r_pose >= |E| of the certificate,
+With q >= |X r|, rounding and data error of r included, and z' = z + omega r_pose >= |E| of the certificate,
 
     |v* - v| <= max q / (1 - z') = d,    |v* - v| <= q + F d,    |v* - v| <= q + F (q + F d),
 
-element by element, F = |I - X C_u(y)| + |X| |C_u(y*) - C_u(y)| >= |E|; so a coordinate that does not depend
-on another does not share its error. The same for a with r = 2 B(y*, a) + 2 B(v*, v*). r is taken in twice the
-working precision of numbers that are known to twice the working precision, so nothing is left of rounding but
-what the data have; and it sees whatever a series left out.
+element by element, with F = |I - X C_u(y)| + |X| |C_u(y*) - C_u(y)| >= |E|. So the error of a coordinate does
+not spread to coordinates that do not depend on it. For a the same holds with r = 2 B(y*, a) + 2 B(v*, v*).
+r is computed in twice the working precision from numbers in twice the working precision. So the only rounding
+left in r is that of the data, and r contains the truncation error of a series.
 
-What looking at an equation rounds, the expected radius, is |X| times what a plain evaluation of r rounds,
-with the pose (and the velocity) off by as much as rounding makes them and as the solver left on purpose; and
-of a series what it leaves out on purpose, of each derivative apart, because the series of a rate is cut where
-the pose's is.
+The expected radius, `looking`, is |X| times the rounding of a plain evaluation of r, for a pose and velocity
+with rounding errors and with the error at which the solver stopped. For a series the truncation error is
+added, for each derivative separately, because the series of a rate is truncated where that of the pose is.
 
-All this is of groups of neighbours that share X, F and their radii; e, r and v are each pose's own.
+Groups of neighbouring poses share X, F and the radii; e, r and v are computed for each pose.
 
-A carried point is p = p_0 + a e1 + b e2 + c e1 x e2 with weights that are known to twice the working
-precision, and its derivatives follow by Leibniz' rule.
+A carried point is p = p_0 + a e1 + b e2 + c e1 x e2 with weights in twice the working precision. Its
+derivatives follow by the product rule of Leibniz.
 """
 
 from __future__ import annotations
@@ -54,24 +53,25 @@ Array = NDArray[np.float64]
 Points = Mapping[str, Enclosed]
 Edges = tuple[Enclosed, Enclosed]
 Numbers = Mapping[str, Mapping[str, Array]]
-"""Arrays by quantity and by name: of a point or a body (N, 3), of a car (N,)."""
+"""Arrays by quantity and name, (N, 3) of a point or a body and (N,) of the car."""
 
 
 @dataclass(frozen=True)
 class EnclosedPoses:
-    """Where the points of solved poses exactly are: what the error of every reported number is told from.
+    """Enclosures of the exact points of solved poses, from which the errors of reported numbers are computed.
 
-    Numbers are of N poses, (N, ...), or of G groups of m that share their radii, (G, m, ...). Time is in a
-    unit of its own for each, so that no rate overflows.
+    Arrays are for N poses, (N, ...), or for G groups of m poses that share their radii, (G, m, ...). Every
+    pose or group has a unit of time of its own, so that no rate overflows.
 
     Attributes:
-        points: by time derivative, every point after the turns of the chassis, (N, 3), in the mechanism's
-            units.
-        in_chassis: the same before these turns.
-        added: by time derivative, what reporting a point adds to it, (N, 3), mm and s.
-        powers: of the unit of time, s^d for d = 0, 1, and so on, each (N,).
-        slopes: by way, the derivatives of places along it, after the turns of the chassis and before, in
-            units per rad, mm or unit; of the ways that effects take.
+        points: every point after the rotations of the chassis, by time derivative, (N, 3), in the
+            mechanism's units.
+        in_chassis: every point before the rotations of the chassis, likewise.
+        added: origin plus displacement of the chassis, by time derivative, which is added to every reported
+            point, (N, 3), mm and s.
+        powers: powers of the unit of time, s^d for d = 0, 1, and so on, each (N,).
+        slopes: derivatives of positions along each way that effects use, by way, after and before the
+            rotations of the chassis, in units per rad, mm or unit.
     """
 
     mechanism: Mechanism
@@ -83,7 +83,7 @@ class EnclosedPoses:
     slopes: Mapping[Way, tuple[Points, Points]] = field(default_factory=dict)
 
     def reported(self, name: str, derivative: int) -> Enclosed:
-        """What is reported of a point, or of its time derivative, (N, 3), mm per s^d."""
+        """A point, or its time derivative, as the user reads it, (N, 3), mm per s^d."""
         unit = float(self.mechanism.unit) / self.powers[derivative]
         return self.points[derivative][name].scaled(unit[..., None]) + self.added[derivative]
 
@@ -96,14 +96,15 @@ def enclosed_coordinates(
     cut: Sequence[Array],
     opened: tuple[Array, Array] | None = None,
 ) -> list[Enclosed]:
-    """The exact coordinates y* and as many of their derivatives as were solved for, each (G, m, size).
+    """The exact coordinates y* and the derivatives that were solved for, each (G, m, size).
 
     Args:
-        rates: computed time derivatives of y, the known ones where they exactly are, (G, m, size), units per
+        rates: computed time derivatives of y, with exact values of the known ones, (G, m, size), units per
             unit of time^d.
-        unsolved: how far from its assembly a pose of each group was left on purpose, (G,).
-        cut: by derivative, what its series leaves out on purpose, (G, size); empty if there is none.
-        opened: rates at which some rows read coordinates to move beside, (size,), and 1 for these rows.
+        unsolved: distance from its assembly at which the solver stopped, largest in each group, (G,).
+        cut: truncation error of the series, by derivative, (G, size); empty if there is no series.
+        opened: rates of coordinates that only some rows read, in addition to `rates`, as a gap opens,
+            (size,); and 1 for these rows.
     """
     system, n = mechanism.map, mechanism.map.unknowns
     certificate, magnitude, pose = poses.certificate, np.abs(poses.factors.preconditioner), poses.pose
@@ -124,7 +125,7 @@ def enclosed_coordinates(
             beside = twice_polar(system, edges[0], differences(system, Enclosed.of(opened[0])))
             rest = rest + beside.scaled(opened[1])
         for i in range(1, order // 2 + 1):
-            # Twice B of two different ones is both of them, and of one with itself two of them.
+            # 2 B(z_i, z_j) is the sum of two terms for i != j, but twice the only term for i = j.
             count = comb(order, i) // (2 if 2 * i == order else 1)
             rest = rest + twice_polar(system, edges[i], edges[order - i]).times(count)
         result.append(_corrected(computed, rest, poses, spoilt))
@@ -134,13 +135,13 @@ def enclosed_coordinates(
 
 
 def _tail(system: QuadraticMap, poses: CertifiedPoses, magnitude: Array, known: Array) -> Array:
-    """What is left of the error of each coordinate beside e and its spread, (G, unknowns).
+    """Error of each coordinate in addition to e and its spread, (G, unknowns).
 
-    By the mean value form of `kantorovich`, with r the error of each coordinate instead of the largest:
-    |I - X C_u| r + |X| |C_u(y + r) - C_u(y)| r / 2, first for the largest and then for what that gives.
+    The mean value form of `kantorovich`, with the error r of each coordinate instead of the largest error:
+    |I - X C_u| r + |X| |C_u(y + r) - C_u(y)| r / 2, first for the largest error, then for the result.
 
     Args:
-        known: largest |e| and its spread, (G, unknowns).
+        known: largest |e| plus its spread, (G, unknowns).
     """
     certificate = poses.certificate
     most = certificate.tail.max(axis=1)[:, None]
@@ -154,7 +155,7 @@ def _tail(system: QuadraticMap, poses: CertifiedPoses, magnitude: Array, known: 
 
 
 def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt: Array) -> Enclosed:
-    """The rates that leave no rest, from computed ones that leave `rest` = 2 B(y*, .) + ...
+    """The exact rates, from computed rates with the residual `rest` = 2 B(y*, .) + ...
 
     Args:
         spoilt: F, (G, unknowns, unknowns).
@@ -169,14 +170,15 @@ def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt
     largest = np.where(room > 0.0, whole.max(axis=-1) / room, np.inf)[:, None]
     tail = np.matvec(spoilt, whole + np.matvec(spoilt, np.broadcast_to(largest, whole.shape)))
     rounded = np.matvec(magnitude, rest.radius[1, :, 0])
-    # A rate that does not depend on the others is solved for with them, and has a rounding of theirs left
-    # after one refinement.
+    # All rates are solved for together. So after one refinement a rate still has a rounding error of the
+    # others, also if it does not depend on them.
     shared = gamma * poses.factors.condition * rounded.max(axis=-1)
     return _moved(computed, step, proven + tail, rounded + shared[:, None])
 
 
 def _moved(computed: Enclosed, by: Array, proven: Array, expected: Array) -> Enclosed:
-    """Computed coordinates with the unknown ones moved, (G, m, unknowns), which has radii, (G, unknowns)."""
+    """Computed coordinates with the unknown ones corrected by `by`, (G, m, unknowns), and with the radii
+    `proven` and `expected`, (G, unknowns)."""
     n = by.shape[-1]
     step = anchored(by, (len(by), 1, n))
     high, low, radius, change, reach = (part.copy(order="K") for part in computed.parts)
@@ -190,7 +192,7 @@ def _moved(computed: Enclosed, by: Array, proven: Array, expected: Array) -> Enc
 
 
 def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Enclosed]) -> list[dict[str, Enclosed]]:
-    """Every point and as many of its derivatives as there are, each (N, 3), in units per s^d."""
+    """Every point and its derivatives, one for each array of coordinates, each (N, 3), in units per s^d."""
     topology, layout = mechanism.topology, mechanism.layout
     found: list[dict[str, Enclosed]] = []
     for state in coordinates:
@@ -205,25 +207,25 @@ def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Enclosed]) -> li
 
 
 def edges_of(points: Points, names: Sequence[str]) -> tuple[Enclosed, Enclosed]:
-    """From the first of a body's points to its second and to its third."""
+    """The vectors from the first point of a body to its second and its third."""
     base, first, second = (points[name] for name in names[:3])
     return first - base, second - base
 
 
 def _frame(found: Sequence[Points], carriers: Sequence[str]) -> tuple[list[Edges], list[Enclosed]]:
-    """The edges of a body and e1 x e2, with their derivatives."""
+    """The edges e1, e2 of a body and e1 x e2, with their derivatives."""
     edges = [edges_of(points, carriers) for points in found]
     return edges, _normals(edges)
 
 
 def _carried(weights: Enclosed, edges: Sequence[Edges], normals: Sequence[Enclosed]) -> list[Enclosed]:
-    """p - p_0 and its derivatives."""
+    """p - p_0 of a carried point, and its derivatives."""
     a, b, c = (weights.take([i]) for i in range(3))
     return [a * e1 + b * e2 + c * crossed for (e1, e2), crossed in zip(edges, normals, strict=True)]
 
 
 def _normals(edges: Sequence[Edges]) -> list[Enclosed]:
-    """e1 x e2 and its derivatives by Leibniz' rule."""
+    """e1 x e2 and its derivatives, by the product rule of Leibniz."""
     result = []
     for order in range(len(edges)):
         first, *others = (
@@ -234,7 +236,7 @@ def _normals(edges: Sequence[Edges]) -> list[Enclosed]:
 
 
 def exact_weights(mechanism: Mechanism, name: str) -> Enclosed:
-    """The weights that give the drawn point exactly, (3,)."""
+    """Enclosure of the weights that give the drawn position of a carried point, (3,)."""
     values, lacks, doubt = carrier_weights(mechanism.drawing, name, mechanism.topology.carried[name])
-    # The doubt is PAIRS of magnitudes that plain doubles round some four times.
+    # The doubt is PAIRS times magnitudes; in plain doubles these magnitudes are rounded about four times.
     return Enclosed.of(values, lacks, doubt, 4.0 * UNIT_ROUNDOFF / PAIRS * doubt)

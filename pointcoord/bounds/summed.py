@@ -1,4 +1,4 @@
-"""What summing a series leaves out and rounds."""
+"""Truncation and rounding error of the sum of a series."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Summed:
-    """How a derivative of the coordinates was summed from a series, (N, size), units per s^d.
+    """Magnitudes of the terms that add up to a derivative of the coordinates, (N, size), units per s^d.
 
     Attributes:
-        last, before: the magnitudes of the last two terms, and of the two before them.
-        terms: the magnitudes of all terms. Their own rounding goes with them and with the condition number,
-            also where they cancel.
+        last, before: sum of the magnitudes of the last two terms, and of the two terms before them.
+        terms: sum of the magnitudes of all terms. The rounding error of the terms is in proportion to this
+            sum and to the condition number, also where terms cancel.
     """
 
     last: Array
@@ -27,13 +27,15 @@ class Summed:
     terms: Array
 
     def expected(self, value: Array, condition: Array, time: Array) -> Array:
-        """Error of the sum by what is left out and by rounding, beside that of its value, (N, size).
+        """Truncation and rounding error of the sum, in addition to the rounding of its value, (N, size).
 
-        Terms that go on as they did, by a factor of q every two, leave out last q / (1 - q); the last two
-        are counted with it, and q as at most 0.95.
+        If each two terms are q times the two terms before, the truncated terms add up to last q / (1 - q).
+        The last two terms are added to them, which gives last / (1 - q), and q is limited to 0.95.
 
         Args:
-            value: the sum, per `time` s^d.
+            value: the sum, in the unit of time of `time`.
+            condition: condition number of C_u, (N,).
+            time: power d of the unit of time, s^d, (N,).
         """
         terms = self.terms * time[:, None]
         cancelled = np.maximum(terms - np.abs(value), 0.0).max(axis=-1)

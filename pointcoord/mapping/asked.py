@@ -1,4 +1,4 @@
-"""What a map is asked for, checked: ranges to be made over, inputs at which it is evaluated."""
+"""Checks the arguments of a kinematic map: the ranges when it is made, the inputs when it is evaluated."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pointcoord.patches.domain import Domain
 Array = NDArray[np.float64]
 Ranges = Mapping[str, tuple[float, float]]
 
-# Widths and ends between which squares and products of series are numbers; no car has others.
+# Smallest width and largest end of a range for which squares and products of series stay finite and not zero.
 NARROWEST, FARTHEST = 1e-100, 1e12
 
 STATES = ("values", "rates", "accelerations")
@@ -28,10 +28,12 @@ def columns_of(
     Args:
         given: numbers or arrays by input, and their time derivatives.
     Returns:
-        By derivative, each (N, p); what moves the chassis by input and derivative, each (N,); and the shape
-        of what is given, of N numbers.
+        The free inputs by derivative, each (N, p); the inputs that move the chassis, by input and derivative,
+        each (N,); and the common shape of the given arrays, with N numbers.
     Raises:
-        UnknownName, InputOutOfRange, WrongArgument: what is none of a map's.
+        UnknownName: an unknown input, or a free input that is missing.
+        InputOutOfRange: a held input that moves, or a chassis input that is not finite.
+        WrongArgument: values that are not numbers by input, or shapes that do not broadcast.
     """
     topology = domain.mechanism.topology
     held = {name: low for name, (low, high) in domain.ranges.items() if low == high}
@@ -57,7 +59,7 @@ def columns_of(
         np.stack([np.broadcast_to(state[name], shape).reshape(count) for name in domain.free], axis=-1)
         for state in arrays
     ]
-    # What is held moves the chassis as well, where a height over the ground is driven.
+    # A held input also moves the chassis, if a height over the ground is driven.
     arrays[0] = {**{name: np.asarray(value) for name, value in held.items()}, **arrays[0]}
     named = (name for name in topology.chassis_inputs if any(name in state for state in arrays))
     laws = {
@@ -72,7 +74,11 @@ def columns_of(
 
 
 def numbers_of(what: str, value: ArrayLike) -> Array:
-    """Numbers as doubles."""
+    """A value as an array of doubles.
+
+    Raises:
+        WrongArgument: the value cannot be read as numbers.
+    """
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError) as error:
@@ -81,22 +87,31 @@ def numbers_of(what: str, value: ArrayLike) -> Array:
 
 
 def common_shape(shapes: Sequence[tuple[int, ...]], what: str) -> tuple[int, ...]:
-    """The shape that some broadcast to."""
+    """The shape that some shapes broadcast to.
+
+    Raises:
+        WrongArgument: they do not broadcast.
+    """
     try:
         return np.broadcast_shapes(*shapes)
     except ValueError as error:
-        told = ", ".join(map(str, dict.fromkeys(shapes)))
-        raise WrongArgument(what, f"have the shapes {told}", "shapes that broadcast to one") from error
+        found = ", ".join(map(str, dict.fromkeys(shapes)))
+        raise WrongArgument(what, f"have the shapes {found}", "shapes that broadcast to one") from error
 
 
 def checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[float, float]]:
-    """The range of each driving input, in their order."""
+    """The ranges of the driving inputs, checked and in the mechanism's order.
+
+    Raises:
+        UnknownName: a range that is missing, or of an unknown input.
+        WrongArgument: a range of a chassis input, or ends that are not a range.
+    """
     topology = mechanism.topology
     if not isinstance(ranges, Mapping):
         raise WrongArgument("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
     for name in ranges:
         if name in topology.chassis_inputs and name not in topology.required_inputs:
-            allowed = "no range: it moves the whole chassis, whatever it is"
+            allowed = "no range: this input moves the whole chassis and may have any value"
             raise WrongArgument(f"ranges[{name!r}]", "is given", allowed)
         if name not in topology.required_inputs:
             raise UnknownName("driving input", name, topology.required_inputs)
@@ -108,14 +123,14 @@ def checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[floa
             low, high = (float(end) for end in ranges[name])
         except (TypeError, ValueError):
             low, high = np.nan, np.nan
-        # Comparisons are false of what is not a number.
+        # Comparisons with NaN are false.
         within = max(abs(low), abs(high)) <= FARTHEST
         if not (within and (low == high or high - low >= NARROWEST)):
             raise WrongArgument(
                 f"ranges[{name!r}]",
                 f"is {ranges[name]!r}",
-                f"two finite numbers within {FARTHEST:g}, the lower first and {NARROWEST:g} apart at least, "
-                "or the same to hold it",
+                f"two finite numbers within {FARTHEST:g}, the lower first, at least {NARROWEST:g} apart; or "
+                "two equal numbers to hold the input",
             )
         found[name] = (low + 0.0, high + 0.0)
     return found

@@ -1,13 +1,13 @@
-r"""How far the numbers that a map gives are off, each at its own pose, whatever effect it is of.
+r"""Error bounds of the numbers of all effects that a kinematic map gives, for each pose.
 
-A patch bounds the error e of its series and of their derivatives by the inputs, e_i and e_ij, everywhere on
-it, the rounding of the sums included. So the states of a point, composed with the inputs' rates, are off by
+A patch bounds the error e of its series and the errors e_i and e_ij of their derivatives by the inputs
+everywhere on the patch, rounding of the sums included. So the errors of position, velocity and acceleration
+of a point, for given rates of the inputs, are at most
 
-    |e|,    sum_i |e_i| |x_i'|,    sum_i |e_i| |x_i''| + sum_ij |e_ij| |x_i'| |x_j'|,
+    |e|,    sum_i |e_i| |x_i'|,    sum_i |e_i| |x_i''| + sum_ij |e_ij| |x_i'| |x_j'|.
 
-and with these as the radii of where the points are, each effect tells how far its own numbers may be off, as
-it does for a motion (see `results.proof`). The inputs and what moves the chassis count as they are
-given.
+With these as radii of the points, each effect computes the error bounds of its numbers, as for a motion (see
+`results.proof`). The given inputs and chassis inputs count as exact.
 """
 
 from __future__ import annotations
@@ -28,20 +28,22 @@ from pointcoord.results.readout import Readout
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-# Poses at a time: some hundred arrays of each point stay in a cache.
+# Poses of a block: a hundred arrays for each point stay in a cache.
 BLOCK = 1024
 
 
 @dataclass(frozen=True)
 class Evaluated:
-    """Poses that a map gave.
+    """Poses that a map was evaluated at.
 
     Attributes:
-        readout: by which they were read. patch: of each pose, (N,).
-        inputs: rates and accelerations of the map's inputs as far as they were given, each (N, p).
-        moving: by derivative the sums of the patches' series, each (3 points, N), mm per s^d.
-        laws: what moves the chassis as far as it was given, by input and by derivative, each (N,).
-        numbers: what was reported, by quantity and name, each (N, 3) or (N,).
+        patches: the patches of the map.
+        readout: computed the numbers from states.
+        patch: number of the patch of each pose, (N,).
+        inputs: rates and accelerations of the map's inputs, if given, each (N, p).
+        moving: sums of the patches' series, by derivative, each (3 points, N), mm per s^d.
+        laws: given values and rates of chassis inputs, by input and derivative, each (N,).
+        numbers: the reported numbers, by quantity and name, each (N, 3) or (N,).
     """
 
     patches: Patches
@@ -53,14 +55,14 @@ class Evaluated:
     numbers: Numbers
 
     def bounds(self, shape: tuple[int, ...]) -> dict[str, dict[str, Array]]:
-        """Proven error of every number for poses of a shape; infinite where none is known."""
+        """Proven error bound of every number, for poses of a shape; infinite where nothing is proven."""
         found = {
             q: {n: np.empty_like(a) for n, a in part.items()} for q, part in self.numbers.items() if part
         }
-        # With no pose at all there is one block, of none.
+        # Without poses there is one empty block, so that the arrays still get their names.
         for low in range(0, max(len(self.patch), 1), BLOCK):
             here = slice(low, low + BLOCK)
-            with np.errstate(all="ignore"):  # what overflows comes out infinite, which bounds nothing
+            with np.errstate(all="ignore"):  # an overflow gives an infinite bound
                 numbers = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in self.numbers.items()}
                 proven, _ = bounds_of_numbers(self._enclosed(here), self.readout.plan.computed, numbers)
             for quantity, bounds in proven.items():
@@ -71,7 +73,7 @@ class Evaluated:
         }
 
     def _enclosed(self, here: slice) -> EnclosedPoses:
-        """Where the points of some poses are."""
+        """Enclosures of the points of some poses."""
         mechanism = self.readout.mechanism
         topology, vectors, unit = mechanism.topology, mechanism.drawing.vectors, float(mechanism.unit)
         count = len(self.patch[here])
@@ -89,9 +91,9 @@ class Evaluated:
         return enclosed_poses(self.readout, found, laws, [np.ones(count)] * len(found))
 
     def _radii(self, here: slice) -> list[Array]:
-        """How far the sums are off, by derivative, each (N, 3 points)."""
+        """Error bounds of the sums, by derivative, each (N, 3 points), mm per s^d."""
         patch, off = self.patch[here], self.patches.off
-        # Products and sums of magnitudes round a few times: the inflation of bounds makes up for it.
+        # The few roundings of these products and sums are covered by the inflation of bounds.
         found = [off.value[patch]]
         rates = [np.abs(rate[here]) / self.patches.boxes[1][patch] for rate in self.inputs]
         if rates:

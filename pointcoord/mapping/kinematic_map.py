@@ -1,15 +1,15 @@
-r"""A suspension's kinematics as a function of its inputs: solved once, proven, and quick to evaluate.
+r"""A suspension's kinematics as a function of its inputs: solved once, proven, and fast to evaluate.
 
     map = kinematic_map(Scene.load("steer"), {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)})
     map({"arm_angle": angles, "rack": racks}).position["wheel_centre"]      # mm, of the inputs' shape
 
-Everything that moves depends on time through the inputs only, p(t) = Y(a(t), b(t)). The map holds Y as power
-series in the inputs, in patches, each with a proven bound; any laws are then composed with it:
+The positions depend on time through the inputs only, p(t) = Y(a(t), b(t)). The map stores Y as power series
+in the inputs, on patches with a proven error bound each. Any laws of the inputs can be composed with it:
 
     v = Y_a a' + Y_b b',    acceleration = Y_a a'' + Y_b b'' + Y_aa a'^2 + 2 Y_ab a' b' + Y_bb b'^2.
 
-What moves the chassis (heave, roll) is done to it, outside. The branch is the drawing's: patches are proven
-outwards from the closed drawing (see `flood`).
+The motion of the chassis (heave, roll) is added afterwards. The branch is that of the drawing: patches are
+proven outwards from the closed drawing (see `flood`).
 """
 
 from __future__ import annotations
@@ -56,23 +56,24 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 T = TypeVar("T")
 
-HALVINGS = 6  # 64 of the smallest boxes along a range
-MOST_HALVINGS = 10  # a table of 2^20 boxes of two inputs
-VARIABLES = 3  # of more, a series of the lowest order has too many powers
+HALVINGS = 6  # 64 smallest boxes along a range
+MOST_HALVINGS = 10  # a table of 2^20 boxes for two inputs
+VARIABLES = 3  # with more inputs even a series of the lowest order has too many powers
 
 
 @dataclass(frozen=True)
 class Bound:
-    """How far what a map gives is off, at most.
+    """Error bounds of positions, velocities and accelerations of points, for the whole map.
 
-    A velocity is off by at most the sum of velocity[i] |x_i'| and an acceleration by that of
-    velocity[i] |x_i''| and acceleration[i, j] |x_i'| |x_j'|, x the inputs, over all i and j in both orders.
+    With x the inputs, the error of a velocity is at most sum_i velocity[i] |x_i'|, and the error of an
+    acceleration at most sum_i velocity[i] |x_i''| + sum_ij acceleration[i, j] |x_i'| |x_j'|, over all pairs
+    i, j in both orders.
 
     Attributes:
-        position: of every coordinate of a point, mm; what adding the user's origin rounds is in it, and what
-            a chassis' motion rounds is not, nor that a turn of the car mixes the coordinates.
-        velocity: by input, mm per its unit (rad or mm).
-        acceleration: by two inputs, mm per the product of their units.
+        position: error bound of every coordinate of a point, mm. Includes the rounding by the user's origin,
+            but not the rounding by the chassis' motion, nor that a rotation of the car mixes coordinates.
+        velocity: error bound per rate of an input, by input, mm per rad or mm.
+        acceleration: error bound per product of two rates, by two inputs, mm per the product of their units.
     """
 
     position: float
@@ -82,7 +83,7 @@ class Bound:
 
 @dataclass(frozen=True)
 class Uncovered:
-    """A box of inputs at which nothing is proven, and why."""
+    """A box of inputs in which nothing is proven, and the reason."""
 
     ranges: Ranges
     reason: str
@@ -90,12 +91,12 @@ class Uncovered:
 
 @dataclass(frozen=True, repr=False)
 class MappedPoses(Named):
-    """What a map gives at some inputs.
+    """The numbers of a map at some inputs.
 
     Attributes:
-        numbers: by quantity and name, of points and bodies (..., 3), of the car (...), for inputs of shape
-            (...); see `effects.registry.QUANTITIES` for what there is and its units.
-        bounds: how far each of these may be off, proven, of the same shapes; empty unless asked for.
+        numbers: numbers by quantity and name, (..., 3) of points and bodies and (...) of the car, for inputs
+            of shape (...); see `effects.registry.QUANTITIES` for all quantities and their units.
+        bounds: proven error bound of each number, in arrays of the same shapes; empty unless requested.
     """
 
     numbers: Mapping[str, Channel]
@@ -106,12 +107,13 @@ class MappedPoses(Named):
 class KinematicMap(ReadOnly):
     """A scene's suspension as a function of its inputs; make one with `kinematic_map`.
 
-    It can be pickled, and saved to a file that another program reads.
+    A map can be pickled, and saved to a file that another program can read.
 
     Attributes:
-        scene: whose suspension it is, and which effects it gives.
-        tolerance: largest bound of a position on any patch, before the user's origin is added, mm.
-        series: its patches, read-only. gaps: boxes that are not covered, by their corners, and why.
+        scene: the scene with the suspension and the effects.
+        tolerance: largest error bound of a position on any patch, before the user's origin is added, mm.
+        series: the patches, read-only.
+        gaps: corners of the boxes that are not covered, each with the reason.
     """
 
     scene: Scene
@@ -121,12 +123,12 @@ class KinematicMap(ReadOnly):
 
     @property
     def ranges(self) -> Ranges:
-        """Of every input that drives the suspension, rad or mm; held where both ends are the same."""
+        """Range of every input that drives the suspension, rad or mm; a held input has two equal ends."""
         return MappingProxyType(dict(self.domain.ranges))
 
     @cached_property
     def inputs(self) -> tuple[str, ...]:
-        """The inputs that it is a function of, in the order of the columns of `evaluate`."""
+        """The free inputs, of which the map is a function, in the order of `evaluate`."""
         return self.domain.free
 
     @cached_property
@@ -136,7 +138,7 @@ class KinematicMap(ReadOnly):
 
     @property
     def order(self) -> int:
-        """Total degree of its series."""
+        """Total degree of the series."""
         return self.series.order
 
     @property
@@ -146,17 +148,17 @@ class KinematicMap(ReadOnly):
 
     @property
     def domain(self) -> Domain:
-        """Its ranges, cut into boxes."""
+        """The ranges, divided into boxes."""
         return self.series.domain
 
     @cached_property
     def bound(self) -> Bound:
-        """What is proven of all that it covers."""
+        """Error bounds that hold on all patches."""
         off, half, names = self.series.off, self.series.boxes[1], self.inputs
-        # Derivatives by parts of the half widths, as those by the inputs; the largest of all patches.
+        # Derivatives by shares of the half widths become derivatives by inputs; the largest of all patches.
         first = (off.first.max(axis=-1) / half).max(axis=0)
         second = (off.second.max(axis=-1) / (half[:, :, None] * half[:, None])).max(axis=0)
-        # A sum with the mechanism's origin is rounded; where that is zero there is none.
+        # Adding the mechanism's origin rounds once, unless the origin is zero.
         origin = float(np.abs(self.mechanism.origin).max())
         reach = float(np.abs(self.series.coefficients).sum(axis=1).max())
         return Bound(
@@ -167,7 +169,7 @@ class KinematicMap(ReadOnly):
 
     @property
     def uncovered(self) -> tuple[Uncovered, ...]:
-        """Where nothing is proven."""
+        """The boxes in which nothing is proven, with reasons."""
         found = []
         for key, reason in self.gaps:
             ends = self.domain.inputs_at(2 * np.array(key)).T.tolist()
@@ -177,7 +179,7 @@ class KinematicMap(ReadOnly):
 
     @cached_property
     def share_covered(self) -> float:
-        """Share of its range that is covered, 0 to 1."""
+        """Share of the ranges' volume that is covered, 0 to 1."""
         covered = (self.series.high - self.series.low).prod(axis=-1).sum()
         return float(covered / self.domain.parts ** len(self.inputs))
 
@@ -196,30 +198,31 @@ class KinematicMap(ReadOnly):
         accelerations: Mapping[str, ArrayLike] | None = None,
         bounds: bool = False,
     ) -> MappedPoses:
-        """Poses at some inputs, and their time derivatives where the inputs' own are given.
+        """Poses at some inputs, and their time derivatives if rates of the inputs are given.
 
         Args:
-            inputs: of each input that is not held, numbers or arrays that broadcast to one shape, rad or mm;
-                what moves the chassis may be given too, and is zero if it is not.
-            rates, accelerations: likewise, per s and per s^2.
-            bounds: whether to prove how far each number is off, at its own pose, for the inputs as they are
-                given; of 1,000 poses and more with both rates it takes some seven times as long.
+            inputs: values of every free input, numbers or arrays that broadcast to one shape, rad or mm.
+                Inputs that move the chassis may be given as well, and are zero otherwise.
+            rates, accelerations: rates and accelerations of the inputs, likewise, per s and per s^2.
+            bounds: whether to prove an error bound of each number at each pose, with the given inputs as
+                exact. For 1,000 or more poses with rates and accelerations this takes about seven times as
+                long.
         Returns:
-            Positions of all points, their velocities and accelerations where rates and accelerations are
-            given, and the scene's effects as far as these are known.
+            Positions of all points; velocities and accelerations if rates and accelerations are given; and
+            the scene's effects for which enough is given.
         Raises:
-            UnknownName: an input that is missing, or that there is not.
+            UnknownName: an input that is missing, or that does not exist.
             InputOutOfRange: a value outside the map's range, or a rate that is not finite.
             NotCovered: inputs at which nothing is proven.
             NotComputed: accelerations without rates.
-            WrongArgument: what is no number, or shapes that do not broadcast.
+            WrongArgument: a value that is not a number, or shapes that do not broadcast.
         """
         given = _states(inputs, rates, accelerations)
         states, laws, shape = columns_of(self.domain, given)
         readout, patch = self._readouts[len(states) - 1], self._patches_of(states)
         rows = readout.room(len(patch))
         found = readout.states(rows)
-        # The first rows of a table are those of the points that move, by derivative.
+        # The first rows of a table are those of the moving points, by derivative.
         height = 3 * len(self.points)
         places = [rows[d * height : (d + 1) * height] for d in range(len(states))]
         sums = self.series.sums(self.series.coefficients, states, patch, places)
@@ -238,20 +241,20 @@ class KinematicMap(ReadOnly):
         rates: Sequence[float] | Array | None = None,
         accelerations: Sequence[float] | Array | None = None,
     ) -> Array:
-        """States of the points that move at one pose, for loops that call it often; fifty times as fast.
+        """States of the moving points at one pose, for time loops; fifty times as fast as a call of the map.
 
-        The chassis stands still: nothing is added for what moves it.
+        The chassis stands still: no motion of the chassis is added.
 
         Args:
             values: inputs in the order of `inputs`, (p,), rad or mm.
-            rates, accelerations: their time derivatives, likewise.
+            rates, accelerations: rates and accelerations of the inputs, likewise.
         Returns:
-            Shape (1 to 3 derivatives, points, 3), mm from the mechanism's origin (`mechanism.origin`, zero
-            for a car that is drawn near the user's), per s^d.
+            Shape (1 to 3 derivatives, points, 3), mm per s^d, from the mechanism's origin
+            (`mechanism.origin`, zero for a car that is drawn near the user's origin).
         Raises:
             InputOutOfRange: a value outside the map's range, or a rate that is not finite.
             NotCovered: inputs at which nothing is proven.
-            WrongArgument: an array that is not a number for each input.
+            WrongArgument: an array that does not have one number for each input.
         """
         states = []
         for what, given in zip(STATES, _states(values, rates, accelerations), strict=False):
@@ -262,7 +265,7 @@ class KinematicMap(ReadOnly):
             states.append(state.tolist())
         number = self._lookup.at_one(states[0])
         if number < 0 or not all(map(isfinite, chain(*states[1:]))):
-            self._patches_of([np.array([state]) for state in states])  # says what is wrong
+            self._patches_of([np.array([state]) for state in states])  # raises the error
         ready = self._ready[number]
         if ready is None:
             boxes = np.stack(self.series.boxes, axis=-1)[number].tolist()
@@ -280,11 +283,11 @@ class KinematicMap(ReadOnly):
 
     @cached_property
     def _ready(self) -> list[tuple[list[list[float]], Array, Array] | None]:
-        """Of each patch that one pose has been on, its box and its table."""
+        """Box and table of exponents of each patch, filled when `evaluate` first uses the patch."""
         return [None] * len(self.series.low)
 
     def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
-        """Whether poses are covered, of the inputs' shape; False outside the ranges too."""
+        """Whether poses are covered, in the inputs' shape; False also outside the ranges."""
         (values,), _, shape = columns_of(self.domain, [inputs])
         low, high = self.domain.ends
         inside = np.asarray(((values >= low) & (values <= high)).all(axis=-1))
@@ -292,7 +295,7 @@ class KinematicMap(ReadOnly):
         return np.asarray(inside & (number >= 0)).reshape(shape)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write it to an npz file, which `load` and any program that reads numpy's files can read.
+        """Write the map to an npz file for `load`, or any program that reads numpy's files.
 
         Raises:
             WrongArgument: the file cannot be written.
@@ -303,10 +306,10 @@ class KinematicMap(ReadOnly):
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> KinematicMap:
-        """Read a map that was saved.
+        """Read a saved map.
 
         Raises:
-            WrongArgument: there is no such file, it is another one, of another version, or damaged.
+            WrongArgument: the file does not exist, is not a map, is of another version, or is damaged.
         """
         with _of_file(path, "read", ALLOWED), open(path, "rb") as stream:
             data = stream.read()
@@ -314,25 +317,30 @@ class KinematicMap(ReadOnly):
 
     @cached_property
     def _lookup(self) -> Lookup:
-        """The patch of each of the smallest boxes, or -1 - the place of the gap that it lies in."""
+        """Number of the patch of each smallest box, or -1 - the number of its gap."""
         table = self.series.lookup.table.copy()
         for number, ((low, high), _) in enumerate(self.gaps):
             table[part_of(low, high)] = -1 - number
         return Lookup(self.domain, table)
 
     def _patches_of(self, states: Sequence[Array]) -> Whole:
-        """The patch of each pose, from its inputs and their rates, each (N, p), to (N,)."""
+        """Number of the patch of each pose, (N,), from the inputs and their rates, each (N, p).
+
+        Raises:
+            InputOutOfRange: a value outside the map's range, or a rate that is not finite.
+            NotCovered: inputs at which nothing is proven.
+        """
         low, high = self.domain.ends
         units = self.mechanism.topology.input_units
         for d, state in enumerate(states):
-            # False for what is not a number as well.
+            # False for NaN as well.
             good = (state >= low) & (state <= high) if d == 0 else np.isfinite(state)
             if not good.all():
                 row, i = np.argwhere(~good)[0]
                 name = self.inputs[i]
                 allowed = f"{low[i]:.10g} to {high[i]:.10g} {units[name]}, the range of this map"
                 raise InputOutOfRange(
-                    name, float(state[row, i]), allowed if d == 0 else f"{STATES[d]} that are finite"
+                    name, float(state[row, i]), allowed if d == 0 else f"finite {STATES[d]}"
                 )
         number = self._lookup.at(states[0])
         if (number < 0).any():
@@ -343,7 +351,7 @@ class KinematicMap(ReadOnly):
 
     @cached_property
     def _readouts(self) -> tuple[Readout, ...]:
-        """What is read with values alone, with rates, and with accelerations."""
+        """The readouts for values alone, with rates, and with accelerations."""
         asked = plan_effects((*self.scene.effects, *POINT_STATES)).computed
         still, axes = ChassisMotion.of(self.mechanism, {}), self.scene.mechanism.axes
         return tuple(
@@ -355,7 +363,7 @@ class KinematicMap(ReadOnly):
 POINT_STATES = tuple(
     name for name, effect in EFFECTS.items() if effect.reports_states and effect.derivative < len(STATES)
 )
-"""Effects that a map gives wherever it is told the rates."""
+"""Effects that report the states of points, which a map gives whenever the rates are given."""
 
 
 def _states(values: T, rates: T | None, accelerations: T | None) -> list[T]:
@@ -370,23 +378,23 @@ def kinematic_map(
     """Solve a scene's suspension as a function of its inputs.
 
     Args:
-        scene: whose suspension; the laws of its inputs and its instants are not looked at.
-        ranges: the lower and the upper end of each input that drives it, rad or mm; one whose ends are the
-            same is held there. What moves the chassis has none, for it may be anything, unless a height over
-            the ground is driven.
-        tolerance: largest proven bound of a position, mm, on every patch, in the chassis' frame and near the
-            mechanism: what a far origin rounds comes to it.
-        halvings: how often the range of an input is halved at most, towards places where assemblies end.
+        scene: the scene with the suspension; the laws of its inputs and its instants are not used.
+        ranges: lower and upper end of the range of each input that drives the suspension, rad or mm; an input
+            with two equal ends is held. An input that moves the chassis has no range and may have any value,
+            unless a height over the ground is driven.
+        tolerance: largest proven error bound of a position, mm, on every patch, in the chassis' frame from
+            the mechanism's origin. The rounding by a far origin is added.
+        halvings: most halvings of the range of an input, towards poses where assemblies end.
     Returns:
-        A map of all that could be reached and proven; the rest is in its `uncovered`.
+        A map of all inputs that could be reached and proven; the others are in its `uncovered`.
     Raises:
-        UnknownName: a range that is missing, or of no input that drives the suspension.
-        InputOutOfRange: an end at which the input has no meaning.
-        WrongArgument: a range, tolerance or number of halvings that makes no map.
-        SceneError: the hardpoints do not make a mechanism, or closing them makes another car.
-        AssemblyError: the range cannot be reached from the drawing.
-        NotCovered: nothing of it can be proven.
-        MechanismError: a row that was left out, as it followed from others at the drawing, is violated.
+        UnknownName: a range that is missing, or of an input that does not drive the suspension.
+        InputOutOfRange: an end outside the values that the input can have.
+        WrongArgument: a range, tolerance or number of halvings that is not allowed.
+        SceneError: the hardpoints do not make a mechanism, or closing the drawing makes another car.
+        AssemblyError: the ranges cannot be reached from the drawing.
+        NotCovered: nothing in the ranges can be proven.
+        MechanismError: an equation that was left out, as it followed from others in the drawing, is violated.
 
     >>> map = kinematic_map(Scene.load("steer"), {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)})
     >>> map({"arm_angle": 1.0, "rack": [0.0, 5.0]}).position["wheel_centre"].shape
@@ -422,7 +430,7 @@ def kinematic_map(
 
 
 def mapped_instead_of(effect: Effect) -> str:
-    """What a map gives, in words, where it does not give an effect; empty if it does."""
+    """The kinds of effects that a map can give, in words, if it cannot give this one; else empty."""
     if effect.way:
         return "effects without derivatives by an input"
     if effect.derivative >= len(STATES):
@@ -431,14 +439,14 @@ def mapped_instead_of(effect: Effect) -> str:
 
 
 def _hold_rows(patches: ProvenPatches) -> None:
-    """Look at the rows that were left out, all over some patches.
+    """Check everywhere on the patches that the left-out rows hold.
 
-    A row has products of two coordinates, each a series of the map's order; so of each input it is a
-    polynomial of twice that, which between Chebyshev's nodes is nowhere larger than some four times its
-    largest value at them (Lebesgue's constant).
+    A row has products of two coordinates, and each coordinate is a series of the map's order. So the row is
+    a polynomial of twice that order in each input. Between the Chebyshev nodes it is at most about four times
+    its largest value at the nodes (Lebesgue's constant).
 
     Raises:
-        MechanismError: one is violated.
+        MechanismError: a row is violated.
     """
     domain, count = patches.domain, 2 * patches.order + 1
     nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)
@@ -453,7 +461,7 @@ def _hold_rows(patches: ProvenPatches) -> None:
 
 @contextmanager
 def _of_file(path: object, done: str, allowed: str) -> Iterator[None]:
-    """What may go wrong with a file, in words."""
+    """Turns the errors of reading or writing a file into `WrongArgument`."""
     if not isinstance(path, str | PathLike):
         raise WrongArgument(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
     try:

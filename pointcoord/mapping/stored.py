@@ -1,8 +1,9 @@
-"""The npz file that keeps a kinematic map.
+"""The npz file of a kinematic map.
 
-It holds plain arrays and texts, nothing that runs when it is read: `format` and `version`; `head`, which is
-the scene, ranges, order, halvings, tolerance and gaps (corners and reason of each) as JSON; of each patch its
-corners (in parts of the smallest box), its coefficients and its bounds; and `digest`, a SHA-256 of these.
+The file holds plain arrays and texts, and no code that runs when it is read: `format` and `version`; `head`,
+JSON with the scene, ranges, order, halvings, tolerance and gaps (corners and reason of each); the corners of
+all patches (in units of the smallest box), their coefficients and error bounds; and `digest`, a SHA-256 of
+`head` and the arrays.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ ALLOWED = "a map as KinematicMap.save writes it"
 
 
 def packed(content: Content) -> bytes:
-    """A map as the bytes of its file."""
+    """The bytes of the file of a map."""
     scene, tolerance, patches, gaps = content
     arrays = {
         "low": patches.low,
@@ -64,33 +65,33 @@ def unpacked(data: bytes, what: str) -> Content:
     """A map from the bytes of its file.
 
     Args:
-        what: the file, in words.
+        what: name of the file for messages.
     Raises:
-        WrongArgument: they are another file's, of another version, or damaged.
+        WrongArgument: the bytes are not a map, are of another version, or are damaged.
     """
     try:
         with np.load(BytesIO(data), allow_pickle=False) as archive:
             found = dict(archive)
-    except Exception as error:  # what reading other bytes ends with is numpy's affair, and zipfile's
-        raise WrongArgument(what, "is no npz file, or a damaged one", ALLOWED) from error
+    except Exception as error:  # numpy and zipfile may raise anything when they read other bytes
+        raise WrongArgument(what, "is not an npz file, or is damaged", ALLOWED) from error
     if str(found.pop("format", "")) != FORMAT:
-        raise WrongArgument(what, "is no kinematic map", ALLOWED)
+        raise WrongArgument(what, "is not a kinematic map", ALLOWED)
     version = str(found.pop("version", "none"))
     if version != str(VERSION):
         raise WrongArgument(what, f"is of version {version}", f"version {VERSION}; make it again")
     try:
         text, digest = str(found.pop("head")), str(found.pop("digest"))
         if _digest(text, found) != digest:
-            raise WrongArgument(what, "is damaged: its numbers are not those that were saved", ALLOWED)
+            raise WrongArgument(what, "is damaged: its content differs from what was saved", ALLOWED)
         return _content(json.loads(text), found, what)
     except WrongArgument:
         raise
     except (PointcoordError, LookupError, TypeError, ValueError) as error:
-        raise WrongArgument(what, f"does not hold a whole map: {error}", ALLOWED) from error
+        raise WrongArgument(what, f"does not hold a complete map: {error}", ALLOWED) from error
 
 
 def _content(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], what: str) -> Content:
-    """A map from what its file holds."""
+    """A map from the head and the arrays of its file."""
     scene = Scene.from_mapping(head["scene"], what)
     ranges = {name: (float(low), float(high)) for name, (low, high) in head["ranges"].items()}
     domain, order = Domain(scene_mechanism(scene), ranges, int(head["halvings"])), int(head["order"])
@@ -106,7 +107,7 @@ def _content(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], what: 
 
 
 def _digest(text: str, arrays: Mapping[str, NDArray[Any]]) -> str:
-    """SHA-256 of everything that a map is made of."""
+    """SHA-256 of the head and the arrays, with their names, types and shapes."""
     total = hashlib.sha256(text.encode())
     for name in sorted(arrays):
         array = np.ascontiguousarray(arrays[name])

@@ -1,1 +1,1 @@
-"""Series in several inputs, proven in patches that cover a range of these, on one branch."""
+"""Series in several inputs, proven on patches that cover a range of the inputs on one branch."""

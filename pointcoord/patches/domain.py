@@ -1,7 +1,7 @@
-"""The inputs that a map is made over, and their range cut into boxes.
+"""The ranges of the inputs of a map, divided into boxes.
 
-A box halves the range of each input some times over. Its place is kept in whole numbers, in parts of the
-smallest box, so that boxes that touch are known to, exactly.
+A box results from halving the range of each input several times. The corners of boxes are whole numbers, in
+units of the smallest box. So it is known exactly whether boxes touch.
 """
 
 from __future__ import annotations
@@ -21,9 +21,10 @@ from pointcoord.time_functions import middle_and_half
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-# Orders: fewer show nothing, a double has no more digits; of three inputs 12 are 455 powers.
+# Lowest order from which convergence can be seen; digits of a double; and highest order by number of inputs:
+# with three inputs order 12 has 455 powers.
 LEAST_ORDER, MOST_DIGITS, MOST_ORDER = 6, 16, {1: 20, 2: 20, 3: 12}
-# Least width of a range, in parts of its size or of 1, of an input that hardly moves.
+# Smallest width of the range of an input that hardly moves, relative to its largest value or to 1.
 NARROWEST = 2.0**-20
 
 
@@ -32,8 +33,8 @@ class Domain:
     """Ranges of the inputs of a mechanism of one car.
 
     Attributes:
-        ranges: of every input that drives it, rad or mm; one whose ends are the same is held there.
-        halvings: how often the range of an input is halved at most.
+        ranges: range of every input that drives the mechanism, rad or mm; an input with equal ends is held.
+        halvings: most halvings of the range of an input.
     """
 
     mechanism: Mechanism
@@ -48,7 +49,7 @@ class Domain:
 
     @property
     def parts(self) -> int:
-        """How many of the smallest boxes lie along a range."""
+        """Number of smallest boxes along a range."""
         return 1 << self.halvings
 
     @cached_property
@@ -58,13 +59,13 @@ class Domain:
         return low, high
 
     def inputs_at(self, twice: Whole) -> Array:
-        """Values of the free inputs at places given in halves of the smallest box, shape (..., p)."""
+        """Values of the free inputs at places in units of half the smallest box, shape (..., p)."""
         low, high = self.ends
         share = twice / (2.0 * self.parts)
         return np.asarray(np.where(share >= 1.0, high, low + (high - low) * share))
 
     def middle_and_half(self, low: Whole, high: Whole) -> tuple[Array, Array]:
-        """Middles of boxes, and half widths that reach both ends whatever is rounded, each (..., p)."""
+        """Middles of boxes, and half widths that include both ends in spite of rounding, each (..., p)."""
         return middle_and_half(self.inputs_at(2 * low), self.inputs_at(2 * high))
 
     def known_at(self, values: Array) -> Array:
@@ -78,36 +79,40 @@ class Domain:
         return self.mechanism.known_series(series)[..., 0, :]
 
     def in_boxes(self, values: Array) -> Array:
-        """How many of the smallest boxes values of the free inputs lie above the lower ends, (..., p)."""
+        """Distance of values from the lower ends, in smallest boxes, for the free inputs, (..., p)."""
         low, high = self.ends
         return np.asarray((values - low) * (self.parts / (high - low)))
 
     def nearest_place(self, values: Array) -> Whole:
-        """The place that is nearest to values of the free inputs, in halves of the smallest box, (p,)."""
+        """The place nearest to values of the free inputs, in units of half the smallest box, (p,)."""
         low, high = self.ends
         share = (values - low) / (high - low)
         return np.clip(np.round(share * 2 * self.parts), 0, 2 * self.parts).astype(np.int64)
 
     def order_for(self, tolerance: float, derivative: int = 0) -> int:
-        """Total degree of the series: one for each digit of a tolerance, relative to the mechanism's size.
+        """Total degree of the series: the digits of the tolerance, relative to the mechanism's size.
 
-        A pose costs in proportion to the number of powers, order^p, and the number of patches falls with the
-        order; between half and twice this order both together change little. A derivative loses as many
-        digits as two orders gain; of more inputs fewer orders are as many powers.
+        The cost of a pose is in proportion to the number of powers, order^p, and the number of patches falls
+        with the order. Between half and twice this order the total cost changes little. A derivative loses as
+        many digits as two more orders gain. With more inputs an order has more powers, so the order is
+        limited.
 
         Args:
-            tolerance: mm. derivative: highest that the limits hold.
+            tolerance: mm.
+            derivative: highest derivative that the limits hold.
         """
         digits = round(-np.log10(tolerance / float(self.mechanism.unit)))
         kept = int(np.clip(digits, LEAST_ORDER, MOST_DIGITS))
         return min(kept + 2 * derivative, MOST_ORDER.get(len(self.free), LEAST_ORDER))
 
     def known_over(self, middle: Array, half: Array, order: int) -> tuple[Array, Array, Jet]:
-        """Series of the known coordinates over boxes, shapes (P, p).
+        """Series of the known coordinates over boxes.
 
+        Args:
+            middle, half: middles and half widths of the boxes, (P, p).
         Returns:
-            Coefficients, (P, powers, known coordinates); what those of the middle lack, (P, size); and how
-            far the series are off beside that, (P, size).
+            Coefficients, (P, powers, known coordinates); rounding errors of those of the middle, to be added
+            to them, (P, size); and error bounds of the series after that correction, (P, size).
         """
         mechanism, count = self.mechanism, len(self.free)
         layout, every = mechanism.layout, powers(count, order)
@@ -135,6 +140,6 @@ class Domain:
 
 
 def widened(low: float, high: float) -> tuple[float, float]:
-    """A range that is no narrower than can be divided."""
+    """A range, widened if it is too narrow to be divided."""
     room = NARROWEST * max(abs(low), abs(high), 1.0) - (high - low)
     return (low - 0.5 * room, high + 0.5 * room) if room > 0.0 else (low, high)

@@ -1,14 +1,14 @@
-r"""Sums of series in several inputs at many values, and their time derivatives along any laws.
+r"""Sums of series in several inputs for many poses, and their time derivatives for any laws of the inputs.
 
 With the powers of a pose's inputs and their time derivatives (see `numerics.monomials`),
 
     p = Y(a, b),    v = Y_a a' + Y_b b',
     acceleration = Y_a a'' + Y_b b'' + Y_aa a'^2 + 2 Y_ab a' b' + Y_bb b'^2
 
-are three products with one and the same matrix of coefficients.
+are three products with the same matrix of coefficients.
 
-One pose alone, as another program's time loop asks for it, is summed variable by variable instead: nearly all
-of its time goes into calls, and these are a tenth as many.
+A single pose, as in the time loop of another program, is summed variable by variable instead: nearly all of
+the time is the overhead of calls, and this needs only a tenth of the calls.
 """
 
 from __future__ import annotations
@@ -37,19 +37,20 @@ def sum_series(
     states: Sequence[Array],
     out: Sequence[Array] | None = None,
 ) -> Sequence[Array]:
-    """Sum each pose's series, and its time derivatives; poses lie side by side in memory.
+    """Sum the series of each pose's patch, and its time derivatives. Poses are contiguous in memory.
 
     Args:
-        table: coefficients of what is wanted, (P, powers, m).
+        table: coefficients of the wanted numbers, (P, powers, m).
         boxes: middles and half widths of the patches, each (P, p).
-        patch: which one each pose lies on, shape (N,).
+        order: total degree of the series.
+        patch: number of the patch of each pose, shape (N,).
         states: inputs and their time derivatives, each (N, p).
-        out: where the sums go; new arrays if not given.
+        out: arrays to write the sums into; new arrays unless given.
     Returns:
-        By derivative, each (m, N), per s^d.
+        One array for each derivative, (m, N), per s^d.
     """
     found = [np.empty((table.shape[-1], len(patch))) for _ in states] if out is None else out
-    # Memory that the system has to map takes longer than filling it does.
+    # One array for all blocks: getting new memory from the system takes longer than filling it.
     room = np.empty((len(states) + 1, table.shape[1], min(len(patch), BLOCK)))
     for number, members in _by_patch(patch, len(table)):
         middle, scale = boxes[0][number], 1.0 / boxes[1][number]
@@ -68,7 +69,7 @@ def sum_series(
 
 
 def _by_patch(patch: Whole, patches: int) -> Iterator[tuple[int, NDArray[np.intp]]]:
-    """Each patch that poses lie on with the places of these."""
+    """Each patch that has poses, with the places of its poses."""
     by_patch = np.argsort(patch, kind="stable")
     counts = np.bincount(patch, minlength=patches)
     last = np.cumsum(counts)
@@ -77,10 +78,10 @@ def _by_patch(patch: Whole, patches: int) -> Iterator[tuple[int, NDArray[np.intp
 
 
 def table_of_exponents(coefficients: Array, inputs: int, order: int) -> tuple[Array, Array]:
-    """The first coefficient of each sum, (m,), and a table of the others by exponents, (order + 1, .., m).
+    """The constant coefficients, (m,), and a table of the others by exponents, (order + 1, .., m).
 
     Args:
-        coefficients: of one patch, (powers, m).
+        coefficients: coefficients of one patch, (powers, m).
     """
     table = np.zeros(((order + 1,) * inputs) + coefficients.shape[1:])
     exponents = powers(inputs, order).exponents[1:]
@@ -92,7 +93,7 @@ def sum_one(first: Array, table: Array, states: Sequence[Sequence[float]]) -> Ar
     """One pose's sums and their time derivatives, (derivatives + 1, m).
 
     Args:
-        first, table: as `table_of_exponents` gives them.
+        first, table: result of `table_of_exponents`.
         states: inputs in half widths from the middle, and their time derivatives, each (p,).
     """
     count, width = len(states), len(table)
@@ -103,7 +104,7 @@ def sum_one(first: Array, table: Array, states: Sequence[Sequence[float]]) -> Ar
             row = x**each if x >= 0.0 else (-x) ** each * signs[0]
             table = row.dot(table.reshape(width, -1))
         return (table + first).reshape(1, -1)
-    # By each variable the derivatives up to the highest: all mixed ones, of which some are not wanted.
+    # For each variable the derivatives up to the highest. This gives all mixed derivatives, also unused ones.
     for i, x in enumerate(states[0]):
         rows = abs(x) ** lowered[:count] * (factors[:count] if x >= 0.0 else (factors * signs)[:count])
         table = rows @ table.reshape(count**i, width, -1)
@@ -124,8 +125,8 @@ def sum_one(first: Array, table: Array, states: Sequence[Sequence[float]]) -> Ar
 
 @lru_cache(maxsize=32)
 def _powers_of_one(width: int) -> tuple[Array, Array, Array, Array]:
-    """Exponents 0 .. width - 1; and of x^k and its two derivatives, each (3, width), the exponents, the signs
-    for negative x, and the factors."""
+    """Exponents k = 0 .. width - 1; then exponents, signs for negative x, and factors of x^k and its two
+    derivatives, each (3, width)."""
     each = np.arange(float(width))
     lowered = np.maximum(each - np.arange(3.0)[:, None], 0.0)
     factors = np.stack([np.ones(width), each, each * (each - 1.0)])

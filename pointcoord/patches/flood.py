@@ -1,15 +1,17 @@
-r"""Covering a range of inputs with proven patches, outwards from a pose, on one branch.
+r"""Covers a range of inputs with proven patches, outwards from a pose, on one branch.
 
-A box is entered at a pose that is known to be on the branch. From there a path goes straight to its middle
-that cannot change branch (see `solve.assembly`), where the series starts. A patch that is proven, and near
-enough, is kept, and its neighbours are entered where they touch it. A box that fails is halved in the input
-that its failure depends on most, and its parts are entered at its middle, or where it was entered itself.
-So boxes shrink towards folds, and beyond the smallest they are given up, with the reason.
+A box is entered at a pose that is known to be on the branch. From this pose a straight path that cannot
+change branch (see `solve.assembly`) leads to the middle of the box, where the series is expanded. A patch is
+kept if it is proven and exact enough. Its neighbours are then entered where they touch the patch. A box that
+fails is halved in the input that contributes most to the failure. Its two parts are entered at the middle of
+the box. If the middle was not reached, the part with the pose where the box was entered is entered there, and
+the other part waits for a neighbour. So boxes become smaller towards folds. A smallest box that fails is
+given up, with the reason.
 
-In the end neighbours are compared: each is alone within a proven distance, so where they touch they are the
-same assembly or are seen not to be. Two ways around a point where folds meet can lead to two assemblies at
-the same inputs; the one that came later is then given up, so that nothing crosses from the one to the
-other.
+At the end neighbours are compared. The assembly of each patch is the only one within a proven distance. So it
+is known whether two neighbours are the same assembly where they touch. Two paths around a point where folds
+meet can lead to two assemblies at the same inputs. Then the patch that was reached later is given up, so that
+no motion passes from one assembly to the other.
 """
 
 from __future__ import annotations
@@ -39,36 +41,36 @@ Whole = NDArray[np.int64]
 Corner = tuple[int, ...]
 Key = tuple[Corner, Corner]
 Start = tuple[Whole, Array]
-"""A place in halves of the smallest box, (p,), and the pose near there, (size,)."""
+"""A place in units of half the smallest box, (p,), and the pose near this place, (size,)."""
 
-# Boxes that are expanded and proven at once: their matrices stay below some 100 MB in two inputs.
+# Boxes that are expanded and proven at once: their matrices take less than about 100 MB with two inputs.
 BATCH = 32
-# Steps of a path to the middle of a box: those that arrive take some ten, and one that takes more leads to a
-# fold or through what no patch will cover at once.
+# Most steps of a path to the middle of a box. Paths that arrive take about ten steps; a path that takes more
+# leads to a fold, or through a region that no single patch covers.
 STEPS = 32
-# A part that uses no less than this share of what the whole did is as exact as rounding lets it be. One that
-# uses less may be so too, as what rounding makes is half or twice as much by chance in another box: its parts
-# are tried, and the smallest box, which has none, is asked what it is off by (see `PatchProof.rounded`).
+# A part that uses at least this share of what the whole used is limited by rounding. A part that uses less
+# may be limited by rounding too, because rounding errors of another box are half or twice as large by chance.
+# Then its parts are tried, and for a smallest box `PatchProof.rounded` decides.
 NO_BETTER = 0.9
-# Terms of the last order that are so many tolerances large leave out more than one: no need to prove it.
+# If the terms of the last order are this many tolerances large, the truncation error surely exceeds the
+# tolerance, and no proof is tried.
 COARSE = 1e3
 
-FOLD = "no patch can be proven here down to the smallest: a fold, where assemblies meet or end, is near"
+FOLD = "no patch can be proven here, not even the smallest: a fold, where assemblies meet or end, is near"
 ROUNDING = "rounding alone exceeds the tolerance here, near a fold or because the tolerance is too fine"
-UNREACHED = "not reached from the drawing without crossing what is not covered"
-SEAM = "two ways from the drawing around a place that is not covered lead to different assemblies here"
-TOO_MANY = "the most patches that are allowed, or tries at them, were used before this place was reached"
+UNREACHED = "cannot be reached from the drawing without crossing a region that is not covered"
+SEAM = "two paths from the drawing around a region that is not covered lead to different assemblies here"
+TOO_MANY = "the limit of patches, or of attempts to prove them, was reached before this box"
 
 
 @dataclass(frozen=True)
 class Entry:
-    """Where a box is entered.
+    """The pose at which a box is entered.
 
     Attributes:
-        twice: the place, in halves of the smallest box, (p,).
-        y: the pose there, (size,).
-        used: of what is allowed by the patch that this box is a part of, where that was proven but not near
-            enough.
+        twice: place of the pose, in units of half the smallest box, (p,).
+        y: coordinates of the pose, (size,).
+        used: share of the tolerance that the halved box used, if it was proven but not exact enough.
     """
 
     twice: Whole
@@ -78,12 +80,13 @@ class Entry:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a box that was expanded is not kept.
+    """Why an expanded box is not kept.
 
     Attributes:
-        y: the pose at its middle, (size,).
-        weights: how much each input takes part, (p,).
-        used: of what is allowed, where it is proven. rounded: whether rounding alone makes that too much.
+        y: pose at the middle of the box, (size,).
+        weights: contribution of each input to the failure, (p,).
+        used: share of the tolerance that the box uses, if proven.
+        rounded: whether rounding alone exceeds the tolerance.
     """
 
     y: Array
@@ -94,19 +97,20 @@ class Failure:
 
 @dataclass(frozen=True)
 class Limits:
-    """How near to the assembly a patch must be proven to be, to be kept, and what covering may take.
+    """Limits of the error bound of a patch that is kept, and of the work of covering.
 
-    With S_i = max |dY/ds_i| over all points in its middle, s the inputs from there in half widths, and L the
-    mechanism's size, a rate is a sum of S_i s_i' and an acceleration one of S_i s_i'' and of S_i S_j / L s_i'
-    s_j', as of what turns about an arm of that length. Errors of the derivatives by the inputs are held to
-    the same part of these as a position's is of L.
+    Let s be the inputs from the middle of a patch in half widths, S_i = max |dY/ds_i| over all points in the
+    middle, and L the mechanism's size. The size of a velocity is a sum of S_i s_i'. The size of an
+    acceleration is a sum of S_i s_i'' and of S_i S_j / L s_i' s_j', as for a rotation with an arm of length
+    L. The errors of the derivatives by the inputs may be the same share of these sizes as the error of a
+    position of L.
 
     Attributes:
-        tolerance: largest bound of a reported point, mm.
-        derivative: highest time derivative that will be evaluated; 0 holds positions only.
-        keep_rounded: whether a patch is kept that rounding alone keeps from being nearer.
-        most: patches; 4,096 take a few hundred MB while they are made.
-        effort: factorisations after which nothing more is tried.
+        tolerance: largest error bound of a reported point, mm.
+        derivative: highest time derivative that will be evaluated; with 0 only positions are limited.
+        keep_rounded: whether a patch is kept whose error bound exceeds the limit by rounding alone.
+        most: most patches; 4,096 take a few hundred MB while they are made.
+        effort: number of factorisations after which no further box is tried.
     """
 
     tolerance: float
@@ -116,10 +120,11 @@ class Limits:
     effort: float = np.inf
 
     def used(self, coefficients: Array, off: Jet, size: float) -> Array:
-        """What patches take of what is allowed, (P,); up to 1 they are kept.
+        """Share of the limits that the error bounds of patches use, (P,); a patch up to 1 is kept.
 
         Args:
-            coefficients: of the reported points, shape (P, powers, 3 points), mm. off: errors of their sums.
+            coefficients: coefficients of the reported points, shape (P, powers, 3 points), mm.
+            off: error bounds of their sums.
             size: L, mm.
         """
         found = off.value.max(axis=-1) / self.tolerance
@@ -135,10 +140,12 @@ class Limits:
 
 @dataclass(frozen=True)
 class Cover:
-    """What was covered, and what not: boxes by their corners, with the reason.
+    """The patches that cover a domain, and the boxes that are not covered.
 
     Attributes:
-        work: what it took.
+        patches: the kept patches.
+        given_up: corners of each box that is not covered, with the reason.
+        work: work of covering.
     """
 
     patches: ProvenPatches
@@ -147,18 +154,22 @@ class Cover:
 
     @property
     def reasons(self) -> tuple[str, ...]:
-        """Why something is not covered, each once."""
+        """The reasons why boxes are not covered, each once."""
         return tuple(dict.fromkeys(reason for _, reason in self.given_up))
 
 
 @dataclasses.dataclass
 class _Flood:
-    """Boxes on their way to being covered.
+    """The state of covering a domain.
 
     Attributes:
-        waiting: boxes that nothing has entered yet. entered: those that are to be tried.
-        given_up: with reasons. kept: batches of proven patches, in the order in which they were reached.
-        wanted: which of the smallest boxes are wanted; all if not given.
+        domain, order, limits: the domain, the order of the series and the limits of a patch.
+        wanted: smallest boxes that are to be covered; all unless given.
+        work: work so far.
+        waiting: boxes for which no pose to enter is known yet.
+        entered: boxes that are to be tried, each with the pose at which it is entered.
+        given_up: boxes that failed, with the reason.
+        kept: batches of proven patches, in the order in which they were reached.
     """
 
     domain: Domain
@@ -173,11 +184,11 @@ class _Flood:
 
     @property
     def count(self) -> int:
-        """How many patches are kept."""
+        """Number of kept patches."""
         return sum(len(part.low) for part in self.kept)
 
     def try_boxes(self, boxes: list[tuple[Key, Entry]]) -> None:
-        """Prove boxes, keep those that can be, and halve the others."""
+        """Try to prove boxes: keep those that succeed and halve the others."""
         domain, mechanism = self.domain, self.domain.mechanism
         system = mechanism.map
         low, high = (np.array([key[end] for key, _ in boxes], dtype=np.int64) for end in (0, 1))
@@ -223,7 +234,7 @@ class _Flood:
         lacking: Array,
         data: Jet,
     ) -> None:
-        """Prove series about the middles of boxes, and keep what is near enough."""
+        """Prove series about the middles of boxes, and keep those that are exact enough."""
         system, mechanism = self.domain.mechanism.map, self.domain.mechanism
         proof = prove_patches(system, factors, series, self.order, lacking, data)
         proven = np.flatnonzero(proof.proven)
@@ -259,10 +270,11 @@ class _Flood:
             self._enter_neighbours(self.kept[-1], list(self.waiting))
 
     def _halve(self, key: Key, entry: Entry, failure: Failure | None) -> None:
-        """Cut a box that failed in two.
+        """Halve a box that failed, or give it up.
 
         Args:
-            failure: if its middle was reached.
+            entry: the pose at which the box was entered.
+            failure: why the box failed; None if the pose at its middle was not reached.
         """
         low, high = np.array(key)
         sizes = high - low
@@ -295,7 +307,7 @@ class _Flood:
                         self._enter_neighbours(kept, [part])
 
     def _enter_neighbours(self, patches: ProvenPatches, keys: list[Key]) -> None:
-        """Enter boxes where they touch patches."""
+        """Enter those of some waiting boxes that touch patches, at the middle of the shared face."""
         if not keys:
             return
         low, high = (np.array([key[end] for key in keys], dtype=np.int64) for end in (0, 1))
@@ -314,10 +326,10 @@ class _Flood:
 
 
 def flood(domain: Domain, limits: Limits, start: Start, wanted: Marked | None = None) -> Cover:
-    """Cover a domain from a pose on.
+    """Cover a domain, starting at a pose.
 
     Args:
-        wanted: of the smallest boxes those that are to be covered; what has none of them is passed over.
+        wanted: smallest boxes that are to be covered; parts of boxes without any of them are skipped.
     """
     order = domain.order_for(limits.tolerance, limits.derivative)
     whole: Key = ((0,) * len(domain.free), (domain.parts,) * len(domain.free))
@@ -341,11 +353,11 @@ def flood(domain: Domain, limits: Limits, start: Start, wanted: Marked | None = 
 
 
 def start_at_drawing(domain: Domain, closed: Path) -> Start:
-    """The place of a domain that is nearest to the closed drawing, and the pose there.
+    """The place in a domain nearest to the closed drawing, and the pose at this place.
 
     Raises:
-        InputOutOfRange: an end of a range at which an input has no meaning.
-        AssemblyError: that place cannot be reached from the drawing.
+        InputOutOfRange: an end of a range is outside the values that the input can have.
+        AssemblyError: the place cannot be reached from the drawing.
     """
     domain.known_at(np.stack(domain.ends))
     drawn = domain.mechanism.input_values(closed.y[domain.mechanism.map.unknowns :])
@@ -356,7 +368,7 @@ def start_at_drawing(domain: Domain, closed: Path) -> Start:
 
 
 def last_terms(series: Array, inputs: int, order: int) -> tuple[Array, Array]:
-    """Largest sum of terms of the highest total degree, (P,), and how much of it is by each input, (P, p)."""
+    """Largest sum of the terms of highest total degree, (P,), and its derivative by each input, (P, p)."""
     every = powers(inputs, order)
     first = every.first_of(order)
     sizes = Jet.of(series[:, first:], every.exponents[first:])
@@ -364,25 +376,25 @@ def last_terms(series: Array, inputs: int, order: int) -> tuple[Array, Array]:
 
 
 def touching(low: Whole, high: Whole, other_low: Whole, other_high: Whole) -> NDArray[np.bool_]:
-    """Which boxes (A, p) and (B, p) that do not overlap share a part of a face, shape (A, B)."""
+    """Which boxes (A, p) share a part of a face with which boxes (B, p), shape (A, B); none overlap."""
     first = np.maximum(low[:, None], other_low[None])
     last = np.minimum(high[:, None], other_high[None])
     return np.asarray(((first == last).sum(axis=-1) == 1) & (first <= last).all(axis=-1))
 
 
 def shared_place(low: Whole, high: Whole, other_low: Whole, other_high: Whole) -> Whole:
-    """Middles of what boxes share, in halves of the smallest, shape (..., p)."""
+    """Middle of the face that two boxes share, in units of half the smallest box, shape (..., p)."""
     return np.asarray(np.maximum(low, other_low) + np.minimum(high, other_high))
 
 
 def _seams(patches: ProvenPatches) -> NDArray[np.bool_]:
-    """Patches that are another assembly than a neighbour that was reached before them, shape (P,)."""
+    """Marks patches with another assembly than a neighbour that was reached earlier, shape (P,)."""
     dropped = np.zeros(len(patches.low), dtype=bool)
     one, other = np.nonzero(np.triu(touching(patches.low, patches.high, patches.low, patches.high)))
     twice = shared_place(patches.low[one], patches.high[one], patches.low[other], patches.high[other])
     values = patches.domain.inputs_at(twice)
     apart = np.abs(patches.unknowns_at(one, values) - patches.unknowns_at(other, values))
-    # The one's assembly is in the ball of the other's within which there is only one.
+    # They agree if the assembly of one patch lies in the ball in which that of the other is the only one.
     alike = (apart + patches.error[one] < patches.unique_within[other]).all(axis=-1)
     alike |= (apart + patches.error[other] < patches.unique_within[one]).all(axis=-1)
     for first, second in zip(one[~alike], other[~alike], strict=True):

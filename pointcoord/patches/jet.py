@@ -1,7 +1,8 @@
-r"""Bounds of a function and of its first and second derivatives, anywhere on a patch.
+r"""Bounds of the magnitudes of a function and of its first and second derivatives, everywhere on a patch.
 
-A series f(s) = sum_k c_k s^k on |s_i| <= 1 has  |f| <= sum |c_k|,  |f_i| <= sum k_i |c_k|  and
-|f_ij| <= sum k_i k_j |c_k|  (k_i (k_i - 1) where i = j); so have sums and, by Leibniz' rule, products.
+For a series f(s) = sum_k c_k s^k on |s_i| <= 1:  |f| <= sum |c_k|,  |f_i| <= sum k_i |c_k|  and
+|f_ij| <= sum k_i k_j |c_k|  (k_i (k_i - 1) for i = j). Bounds of sums and products follow by addition and by
+the product rule.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ Indices = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Jet:
-    """Bounds of functions in p variables, for P patches; none of them negative.
+    """Bounds of functions of p variables, for P patches; no bound is negative.
 
     Attributes:
-        value: shape (P, ...).
-        first: by each variable, shape (P, p, ...).
-        second: by each two, shape (P, p, p, ...).
+        value: bounds of the functions, shape (P, ...).
+        first: bounds of the first derivatives, shape (P, p, ...).
+        second: bounds of the second derivatives, shape (P, p, p, ...).
     """
 
     value: Array
@@ -49,7 +50,7 @@ class Jet:
 
     @classmethod
     def constant(cls, value: Array, variables: int) -> Jet:
-        """Of functions that do not depend on the variables."""
+        """Bounds of constants of given values, shape (P, ...)."""
         head, tail = value.shape[:1], value.shape[1:]
         zero = np.zeros((*head, variables, variables, *tail))
         return cls(np.abs(value), zero[:, 0], zero)
@@ -58,7 +59,7 @@ class Jet:
         return Jet(self.value + other.value, self.first + other.first, self.second + other.second)
 
     def __mul__(self, other: Jet) -> Jet:
-        """Of products, element by element."""
+        """Bounds of products, element by element."""
         a, b = self, other
         crossed = a.first[:, :, None] * b.first[:, None]
         return Jet(
@@ -71,15 +72,15 @@ class Jet:
         )
 
     def scaled(self, factor: float | Array) -> Jet:
-        """Times a number, or an array that broadcasts against the functions from the last axis on."""
+        """The bounds times a number, or times an array that broadcasts against the last axes."""
         return Jet(self.value * factor, self.first * factor, self.second * factor)
 
     def each(self, operation: Callable[[Array], Array]) -> Jet:
-        """The same linear operation, which makes nothing negative, on all bounds, along their last axes."""
+        """A linear operation without negative factors, applied to all bounds along their last axes."""
         return Jet(operation(self.value), operation(self.first), operation(self.second))
 
     def where(self, proven: NDArray[np.bool_]) -> Jet:
-        """The same on some of the patches, and no bound at all on others, shape (P,)."""
+        """The bounds on the patches marked by `proven`, (P,); infinite on the others."""
 
         def only(part: Array) -> Array:
             return np.where(proven.reshape(-1, *[1] * (part.ndim - 1)), part, np.inf)
@@ -87,16 +88,16 @@ class Jet:
         return self.each(only)
 
     def taken(self, places: Indices | list[int]) -> Jet:
-        """Some of the functions, by their places along the last axis."""
+        """The bounds of some functions, by their places along the last axis."""
         return self.each(lambda part: part[..., places])
 
     @classmethod
     def joined(cls, jets: Sequence[Jet], axis: int) -> Jet:
-        """Those of some patches after those of others, along axis 0; or of some functions, along axis -1."""
+        """Bounds joined along axis 0, of several sets of patches, or along axis -1, of several functions."""
         parts = zip(*(jet.parts for jet in jets), strict=True)
         return cls(*(np.concatenate(part, axis=axis) for part in parts))
 
     @property
     def parts(self) -> tuple[Array, Array, Array]:
-        """Value, first and second."""
+        """The arrays `value`, `first` and `second`."""
         return self.value, self.first, self.second

@@ -1,4 +1,4 @@
-"""Which patch values of the inputs lie on, and whether a whole box of values lies on patches."""
+"""Finds the patch of given inputs, and tells whether a whole box of inputs is covered by patches."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ from pointcoord.patches.domain import Domain
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-# A value this near to the edge of a smallest box, in boxes, is taken to touch both.
+# A value this near to the edge of a smallest box, in widths of the box, touches both boxes.
 TOUCHING = 1e-3
 
 
 @dataclass(frozen=True)
 class Lookup:
-    """The smallest boxes of a domain, each with the number of what it lies in.
+    """The smallest boxes of a domain, each with the number of its patch.
 
     Attributes:
-        table: of each of the smallest boxes a number, negative where there is no patch, (parts, ..., parts).
+        domain: the domain that is divided into boxes.
+        table: number of each smallest box, negative where there is no patch, (parts, ..., parts).
     """
 
     domain: Domain
@@ -31,22 +32,22 @@ class Lookup:
 
     @classmethod
     def of(cls, domain: Domain, low: Whole, high: Whole) -> Lookup:
-        """Of patches by their corners, (P, p); -1 where there is none."""
+        """The lookup of patches with given corners, (P, p); -1 where there is no patch."""
         table = np.full((domain.parts,) * len(domain.free), -1, dtype=np.int64)
         for number, (first, last) in enumerate(zip(low, high, strict=True)):
             table[part_of(first, last)] = number
         return cls(domain, table)
 
     def at(self, values: Array) -> Whole:
-        """The number at values inside the domain, shape (..., p) to (...)."""
+        """The numbers at values inside the domain, shape (..., p) to (...)."""
         places = self.domain.in_boxes(values).astype(np.int64)
         return np.asarray(self.table[tuple(np.moveaxis(np.minimum(places, self.domain.parts - 1), -1, 0))])
 
     def at_one(self, values: Sequence[float]) -> int:
-        """The number at one place, and -1 outside the domain; in a tenth of the time."""
+        """The number at one set of values, -1 outside the domain; takes a tenth of the time of `at`."""
         box, parts = 0, self.domain.parts
         for value, (low, high, along) in zip(values, self._ends, strict=True):
-            if not low <= value <= high:  # what is not a number is outside too
+            if not low <= value <= high:  # NaN is outside too
                 return -1
             box = box * parts + min(int((value - low) * along), parts - 1)
         number: int = self.table.item(box)
@@ -54,13 +55,13 @@ class Lookup:
 
     @cached_property
     def _ends(self) -> list[tuple[float, float, float]]:
-        """Ends of each input, with the smallest boxes per unit."""
+        """Lower end, upper end and number of smallest boxes per unit, for each input."""
         low, high = self.domain.ends
         columns = (low.tolist(), high.tolist(), (self.domain.parts / (high - low)).tolist())
         return list(zip(*columns, strict=True))
 
     def everywhere(self, low: Array, high: Array) -> NDArray[np.bool_]:
-        """Whether boxes of values, (N, p), touch nothing that no patch covers, (N,)."""
+        """Whether boxes of values, (N, p), touch only smallest boxes that patches cover, (N,)."""
         return ~self._gaps.any_in(*touched(self.domain, low, high))
 
     @cached_property
@@ -70,17 +71,17 @@ class Lookup:
 
 @dataclass(frozen=True)
 class Marked:
-    """Some of the smallest boxes of a domain.
+    """A set of smallest boxes of a domain.
 
     Attributes:
-        sums: how many lie before each corner in all inputs, (parts + 1, ..., parts + 1).
+        sums: number of boxes of the set below each corner in all inputs, (parts + 1, ..., parts + 1).
     """
 
     sums: Whole
 
     @classmethod
     def of(cls, marks: NDArray[np.bool_]) -> Marked:
-        """By whether each of the smallest boxes is one."""
+        """The set of boxes that are marked, from a mark for each smallest box."""
         sums = np.zeros(tuple(count + 1 for count in marks.shape), dtype=np.int64)
         inner = marks.astype(np.int64)
         for axis in range(marks.ndim):
@@ -90,7 +91,7 @@ class Marked:
 
     @classmethod
     def touched_by(cls, domain: Domain, low: Array, high: Array) -> Marked:
-        """Those that boxes of values touch, (N, p)."""
+        """The set of smallest boxes that boxes of values, (N, p), touch."""
         first, last = touched(domain, low, high)
         inputs = first.shape[1]
         steps = np.zeros((domain.parts + 1,) * inputs, dtype=np.int64)
@@ -102,7 +103,7 @@ class Marked:
         return cls.of(steps[(slice(0, -1),) * inputs] > 0)
 
     def any_in(self, low: Whole, high: Whole) -> NDArray[np.bool_]:
-        """Whether there are any between corners, in smallest boxes, (N, p) each, to (N,)."""
+        """Whether the set has a box between two corners, in smallest boxes, each (N, p), to (N,)."""
         inputs = low.shape[1]
         found = np.zeros(len(low), dtype=np.int64)
         for corner in np.ndindex(*(2,) * inputs):
@@ -112,7 +113,7 @@ class Marked:
 
 
 def touched(domain: Domain, low: Array, high: Array) -> tuple[Whole, Whole]:
-    """Corners of the smallest boxes that boxes of values touch, in these, each (N, p)."""
+    """Corners of the region of smallest boxes that boxes of values touch, in smallest boxes, each (N, p)."""
     last = domain.parts
     first = np.clip(np.floor(domain.in_boxes(low) - TOUCHING), 0, last - 1).astype(np.int64)
     final = np.clip(np.ceil(domain.in_boxes(high) + TOUCHING), 1, last).astype(np.int64)
@@ -120,5 +121,5 @@ def touched(domain: Domain, low: Array, high: Array) -> tuple[Whole, Whole]:
 
 
 def part_of(low: Iterable[int], high: Iterable[int]) -> tuple[slice, ...]:
-    """A box's part of a table of the smallest ones."""
+    """The slices of a box in a table of smallest boxes."""
     return tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))

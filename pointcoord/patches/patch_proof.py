@@ -1,9 +1,9 @@
-r"""A proof that a truncated series is near an assembly everywhere on its patch, with its derivatives.
+r"""Proof that a truncated series and its derivatives are near an assembly everywhere on a patch.
 
 For a series y(s) about an assembled pose, s in the box |s_i| <= 1, the residual C(y(s)) is a polynomial of
-twice its order. Up to the order its coefficients are rounding; beyond it they are what the series leaves out.
-With X close to C_u(y_0)^-1, the map T(u) = u - X C(u, w(s)) takes the ball of radius r about u(s) into itself
-and contracts there, for every s at once, if
+twice the order of the series. Its coefficients up to that order are rounding errors; those above are
+truncation errors. With X close to C_u(y_0)^-1, the map T(u) = u - X C(u, w(s)) takes the ball of radius r
+about u(s) into itself and is a contraction there, for every s at once, if
 
     eta + z r + omega r^2 / 2 <= r   and   z + omega r < 1,
 
@@ -11,24 +11,24 @@ and contracts there, for every s at once, if
     z     >= |I - X C_u(y_0)| + sum_{k > 0} |X C_u(y_k)|,       C_u is linear in y,
     omega  = Lipschitz constant of X C_u,
 
-as for a pose (see `numerics.kantorovich`), because a polynomial is at most the sum of the magnitudes of its
-coefficients on the box (radii polynomials: Day, Lessard and Mischaikow, SIAM J. Numer. Anal. 45 (2007),
-1398). Then there is exactly one assembly u*(s) in the ball at each s; it is analytic in s, as C_u is
-regular there. The norm is max_i |u_i| / g_i with g near the Perron vector of z's matrix Z, where z is
-least.
+as for a pose (see `numerics.kantorovich`), because a polynomial on the box is at most the sum of the
+magnitudes of its coefficients (radii polynomials: Day, Lessard and Mischaikow, SIAM J. Numer. Anal. 45
+(2007), 1398). Then there is exactly one assembly u*(s) in the ball at each s. It is analytic in s, because
+C_u is regular there. The norm is max_i |u_i| / g_i with g near the Perron vector of the matrix Z of z, for
+which z is smallest.
 
-Differentiating C(y*(s)) = 0, with e = u* - u, Q(a, b) = |2 X B(a, b)|, G = sum_k |X C_u(y_k)| of the
-derivatives and q the same sums as eta of the residual and of its derivatives:
+Differentiating C(y*(s)) = 0 gives, with e = u* - u, Q(a, b) = |2 X B(a, b)|, G the sum_k |X C_u(y_k)| of the
+derivatives of C_u, and q the sums of eta for the residual and its derivatives:
 
     |e|    <= q    + Z |e|    + Q(e, e) / 2,
     |e_i|  <= q_i  + Z |e_i|  + G_i |e| + Q(e, e_i),
     |e_ij| <= q_ij + Z |e_ij| + G_i |e_j| + G_j |e_i| + G_ij |e| + Q(e, e_ij) + Q(e_i, e_j),
 
-which bounds the errors of the derivatives, coordinate by coordinate.
+These bound the errors of the derivatives, coordinate by coordinate.
 
-Floating point: the residual of the centre is taken in twice the working precision, its other coefficients
-carry gamma_n of their sums (Higham, ch. 3), and the known coordinates what their drives say of their series.
-The rounding of the bound's own last operations is made up for by a factor, as for a pose.
+Floating point: the residual at the centre is computed in twice the working precision. Its other coefficients
+have an error gamma_n of their sums (Higham, ch. 3). The known coordinates have the error bounds of their
+drives. A factor covers the rounding of the last operations of the bound, as for a pose.
 """
 
 from __future__ import annotations
@@ -50,28 +50,28 @@ from pointcoord.patches.jet import Jet
 
 Array = NDArray[np.float64]
 
-# Power iterations towards the Perron vector: any positive vector proves, so these need not converge.
+# Power iterations towards the Perron vector. Any positive vector gives a proof, so they need not converge.
 ITERATIONS = 40
-# Least weight of a coordinate: what hardly changes still may be off.
+# Smallest weight of a coordinate: a coordinate that hardly changes may still have an error.
 LEAST = 1e-3
-# Times that a bound is put into its own right side, each of which takes a factor of Z off what is too much.
+# Times that a bound is inserted into its own right side; each time reduces the excess by a factor of Z.
 REFINEMENTS = 4
-# Of what is left over, what cutting the series may make where it is mostly rounding.
+# Largest share of the truncation error in a residual that counts as mostly rounding.
 MOSTLY = 0.5
 
 
 @dataclass(frozen=True)
 class PatchProof:
-    """What is proven of each of P patches; lengths in the mechanism's units, derivatives by s.
+    """Proofs of P patches; lengths in the mechanism's units, derivatives by s.
 
     Attributes:
         proven: whether there is exactly one assembly near the series everywhere on the patch, (P,).
-        error: how far the unknown coordinates and their derivatives are off, at most, (P, unknowns).
-        unique_within: no other assembly lies within this of the series, (P, unknowns).
-        change: z by input: how much each input changes the Jacobian, (P, p).
-        left_out: eta by input: how much each takes part in what the series leaves out, (P, p).
-        rounded: whether that is mostly rounding and doubt of the data, in every derivative, so that no
-            smaller patch is much nearer, (P,).
+        error: error bounds of the unknown coordinates and of their derivatives, (P, unknowns).
+        unique_within: distance from the series within which there is no other assembly, (P, unknowns).
+        change: z by input: the change of the Jacobian by each input, (P, p).
+        left_out: eta by input: the contribution of each input to the truncation error, (P, p).
+        rounded: whether the residual is mostly rounding and error of the data, in every derivative, so that a
+            smaller patch would not be much more exact, (P,).
     """
 
     proven: NDArray[np.bool_]
@@ -93,10 +93,11 @@ def prove_patches(
     """Prove patches.
 
     Args:
-        factors: of C_u at the centres.
-        series: of all coordinates, shape (P, powers, size).
-        low: what the known coordinates of the centre lack, shape (P, size).
-        data: how far the known coordinates' series are off beside that, (P, size).
+        factors: factorisation of C_u at the centres.
+        series: series of all coordinates, shape (P, powers, size).
+        order: total degree of the series.
+        low: rounding errors of the known coordinates at the centre, to be added to them, shape (P, size).
+        data: error bounds of the series of the known coordinates after that correction, (P, size).
     """
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
         remaining, cut = _remaining(system, factors, series, order, low, data)
@@ -124,10 +125,10 @@ def prove_patches(
 def _remaining(
     system: QuadraticMap, factors: Factors, series: Array, order: int, low: Array, data: Jet
 ) -> tuple[Jet, Jet]:
-    """q: bounds of X C(y) and of its derivatives, rounding and doubt of the data included, (P, unknowns).
+    """q: bounds of X C(y) and of its derivatives, with rounding and error of the data, (P, unknowns).
 
     Returns:
-        All of them, and what of them is by powers above the order, which a series leaves out.
+        The bounds, and their part from powers above the order, which is the truncation error.
     """
     inputs = data.first.shape[1]
     inverse = factors.preconditioner
@@ -147,15 +148,15 @@ def _remaining(
     kept, cut = (
         Jet.of(stepped[:, part], exponents[part]) for part in (slice(own.count), slice(own.count, None))
     )
-    # Each coefficient is a sum of products of rounded differences: two terms and what its row sums at order
-    # zero, and as many terms as there are powers elsewhere.
+    # Each coefficient is a sum of products of rounded differences, over the terms of its row. Products with
+    # the constant coefficient have two terms, all others up to as many terms as there are powers.
     terms = max(len(row) for row in system.rows)
     few, many = ((count + terms + 6) * UNIT_ROUNDOFF for count in (2, own.count))
     first, later = (
         [Jet.constant(f[:, 0], inputs), Jet.of(f[:, 1:], own.exponents[1:])] for f in (left, right)
     )
     rounded = (first[0] * later[1] + first[1] * later[0]).scaled(few) + (first[1] * later[1]).scaled(many)
-    # What the known coordinates are off: the centre's residual has seen what they lack.
+    # Errors of the known coordinates. The residual at the centre already has their rounding errors `low`.
     off = _of_factors(system, data + Jet.constant(low, inputs))
     moved = off[0] * later[1] + first[1] * off[1] + off[0] * off[1]
     doubted = _of_factors(system, data)
@@ -172,17 +173,17 @@ def _remaining(
 
 
 def _mostly_rounded(remaining: Jet, cut: Jet, weights: Array) -> NDArray[np.bool_]:
-    """Whether what cutting the series leaves is the smaller part of all that remains, (P,)."""
+    """Whether the truncation error is the smaller part of the residual, in every derivative, (P,)."""
     found = np.ones(len(weights), dtype=bool)
     for part, whole in zip(cut.parts, remaining.parts, strict=True):
-        beside = weights.reshape(len(weights), *[1] * (part.ndim - 2), -1)
-        few = (part / beside).max(axis=-1) <= MOSTLY * (whole / beside).max(axis=-1)
+        scale = weights.reshape(len(weights), *[1] * (part.ndim - 2), -1)
+        few = (part / scale).max(axis=-1) <= MOSTLY * (whole / scale).max(axis=-1)
         found &= few.reshape(len(weights), -1).all(axis=-1)
     return found
 
 
 def _of_factors(system: QuadraticMap, off: Jet) -> tuple[Jet, Jet]:
-    """How far the two factors of each term are off where the coordinates are, (P, terms)."""
+    """Error bounds of the two factors of each term, from those of the coordinates, (P, terms)."""
     (first, second), (left, right) = system.differences
     each = off.taken(first) + off.taken(second)
     return each.taken(left), each.taken(right)
@@ -206,7 +207,7 @@ def _change(system: QuadraticMap, factors: Factors, series: Array, order: int, l
 
 
 def _perron(matrix: Array) -> Array:
-    """Weights for which the norm of a matrix of no negative elements is near its spectral radius, (P, n)."""
+    """Weights for which the norm of a non-negative matrix is near its spectral radius, (P, n)."""
     usable, weights = np.where(np.isfinite(matrix), matrix, 0.0), np.ones(matrix.shape[:-1])
     for _ in range(ITERATIONS):
         weights, _ = nearer_perron(usable, weights)
@@ -216,7 +217,7 @@ def _perron(matrix: Array) -> Array:
 def _errors(
     remaining: Jet, change: Jet, weights: Array, omega: Array, radius: Array, contraction: Array
 ) -> Jet:
-    """Errors of the coordinates and of their derivatives, (P, unknowns)."""
+    """Error bounds of the coordinates and of their derivatives, (P, unknowns)."""
     z, g = change.value, weights
 
     def norm(vector: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Proven patches: boxes of inputs with their series, and what is proven of these."""
+"""Proven patches: boxes of inputs with series of the coordinates and proven error bounds."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ Whole = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Patches:
-    """What proven patches say of the reported points.
+    """Series and error bounds of the reported points on proven patches.
 
     Attributes:
-        domain: of which they are boxes. order: total degree of the series.
-        low, high: corners of the boxes, in the smallest ones, (P, p).
-        coefficients: of the reported points, (P, powers, 3 points), mm from the mechanism's origin.
-        off: errors of their sums and of the derivatives of these by parts of the half widths, (P, 3 points),
-            mm.
+        domain: the domain that is divided into boxes.
+        order: total degree of the series.
+        low, high: corners of the patches, in smallest boxes, (P, p).
+        coefficients: series of the reported points, (P, powers, 3 points), mm from the mechanism's origin.
+        off: error bounds of the sums and of their derivatives by inputs in half widths, (P, 3 points), mm.
     """
 
     domain: Domain
@@ -42,7 +42,7 @@ class Patches:
     off: Jet
 
     def taken(self, places: NDArray[np.intp]) -> Self:
-        """Some of them."""
+        """Some of the patches, by number."""
 
         def some(value: Any) -> Any:
             if isinstance(value, Jet):
@@ -52,7 +52,7 @@ class Patches:
         return type(self)(*(some(getattr(self, part.name)) for part in fields(self)))
 
     def joined(self, others: Sequence[Self]) -> Self:
-        """These and others of the same domain after them."""
+        """These patches, followed by other patches of the same domain."""
 
         def together(parts: Sequence[Any]) -> Any:
             if isinstance(parts[0], Jet):
@@ -64,12 +64,12 @@ class Patches:
 
     @cached_property
     def boxes(self) -> tuple[Array, Array]:
-        """Middles and half widths, each (P, p)."""
+        """Middles and half widths of the patches, each (P, p)."""
         return self.domain.middle_and_half(self.low, self.high)
 
     @cached_property
     def lookup(self) -> Lookup:
-        """Which patch each of the smallest boxes lies in."""
+        """The patch of each smallest box."""
         return Lookup.of(self.domain, self.low, self.high)
 
     def sums(
@@ -79,14 +79,15 @@ class Patches:
         patch: Whole | None = None,
         out: Sequence[Array] | None = None,
     ) -> Sequence[Array]:
-        """Series of the patches that poses lie on, summed, and their time derivatives.
+        """Sums of the series of each pose's patch, and their time derivatives.
 
         Args:
-            table: coefficients of what is wanted, (P, powers, m).
-            states: inputs and their time derivatives, each (N, p). patch: of each pose, where it is known.
-            out: where the sums go; new arrays if not given.
+            table: coefficients of the wanted numbers, (P, powers, m).
+            states: inputs and their time derivatives, each (N, p).
+            patch: number of the patch of each pose, (N,), if known.
+            out: arrays to write the sums into; new arrays unless given.
         Returns:
-            By derivative, each (m, N), per s^d.
+            One array for each derivative, (m, N), per s^d.
         """
         number = self.lookup.at(states[0]) if patch is None else patch
         return sum_series(table, self.boxes, self.order, number, states, out)
@@ -94,11 +95,12 @@ class Patches:
 
 @dataclass(frozen=True)
 class ProvenPatches(Patches):
-    """Patches with the assembly that they are proven of.
+    """Patches with the series of the unknown coordinates and the proof of their assembly.
 
     Attributes:
-        series: of the unknown coordinates, (P, powers, unknowns), in the mechanism's units.
-        error: of these on each patch, (P, unknowns). unique_within: no other assembly is nearer, likewise.
+        series: series of the unknown coordinates, (P, powers, unknowns), in the mechanism's units.
+        error: error bound of these series on each patch, (P, unknowns).
+        unique_within: distance within which there is no other assembly, (P, unknowns).
     """
 
     series: Array
@@ -107,7 +109,7 @@ class ProvenPatches(Patches):
 
     @classmethod
     def none(cls, domain: Domain, order: int) -> ProvenPatches:
-        """Of a domain of which nothing is proven."""
+        """The empty set of patches of a domain."""
         inputs, points = len(domain.free), 3 * len(moving_points(domain.mechanism.topology))
         count, unknowns = powers(inputs, order).count, domain.mechanism.map.unknowns
         corners = np.zeros((0, inputs), dtype=np.int64)
@@ -125,20 +127,21 @@ class ProvenPatches(Patches):
 
     @property
     def reported(self) -> Patches:
-        """What they say of the reported points alone."""
+        """The same patches with the reported points only."""
         return Patches(*(getattr(self, part.name) for part in fields(Patches)))
 
     def unknowns_at(self, which: NDArray[np.intp], values: Array) -> Array:
-        """Unknown coordinates of some patches at one place each, shapes (N,) and (N, p) to (N, unknowns)."""
+        """Unknown coordinates on patches `which`, (N,), at inputs `values`, (N, p), shape (N, unknowns)."""
         middle, half = (part[which] for part in self.boxes)
         (row,) = monomials([((values - middle) / half).T], self.order)
         return np.asarray(np.einsum("kn,nku->nu", row, self.series[which]))
 
     def holds(self, values: Array, y: Array) -> bool:
-        """Whether a pose is the assembly of the patch that its inputs lie on.
+        """Whether a pose is the assembly of the patch at its inputs.
 
         Args:
-            values: of the free inputs, (p,). y: the pose's coordinates, (size,).
+            values: free inputs of the pose, (p,).
+            y: coordinates of the pose, (size,).
         """
         number = self.lookup.at(values[None])
         if number[0] < 0:

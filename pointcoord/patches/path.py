@@ -1,9 +1,8 @@
-r"""The way of the inputs over time: between which values they lie, over every span of it.
+r"""The path of the inputs over time, enclosed: boxes that contain the inputs over spans of time.
 
-Poses at instants do not tell what lies between: an input that leaves its reach and comes back between two
-of them would not be seen. So a law says between which values it lies over a span of time (`values_over`),
-and the boxes of all spans together hold the whole way. They are cut in time where they are too coarse to
-tell.
+Poses at instants do not show what happens between them: an input could leave its range and come back between
+two instants. So every law gives the smallest and largest value over a span of time (`values_over`). The boxes
+of all spans together contain the whole path. Spans whose boxes are too large to decide a question are cut.
 """
 
 from __future__ import annotations
@@ -20,28 +19,29 @@ from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 
-# Spans to begin with, of a second or a year.
+# Number of spans to begin with, whatever the duration.
 SPANS = 1024
-# Spans are cut until they are no wider than the values that they are made of by more than this share of all.
+# A span is cut if its box exceeds the range of all computed values by more than this share of the range.
 LOOSE = 1e-3
-# How often, at most: a span of 1,000 s is cut to a fraction of a nanosecond.
+# Most rounds of cutting: a span of 1,000 s is cut to a fraction of a nanosecond.
 ROUNDS = 16
-# What rounding makes of a value, at most, in parts of the largest: no cut takes it away.
+# Largest rounding error of a value, relative to the largest value: cutting does not reduce it.
 ROUNDED = 1e-12
-# Of more spans that are too wide it is not the length that makes them so; wider boxes cover no less.
+# If more spans are too wide, their length is not the reason. They are left wide, which is still safe.
 MOST_WIDE = 2**16
-# Spans looked at once, and parts that one is cut into.
+# Spans that are checked at once, and parts into which a span is cut.
 AT_ONCE, PARTS = 2**16, 4
-# A span's box this small, in parts of the smallest box of a domain, tells all that can be told.
+# A span whose box is this small, relative to the smallest box of a domain, is not cut further.
 SMALL = 0.25
 
 
 @dataclass(frozen=True)
 class Spans:
-    """Spans of time in their order, with boxes that hold the inputs.
+    """Spans of time in order, with boxes that contain the inputs.
 
     Attributes:
-        first, last: ends of each, (N,), s. low, high: of the inputs over it, (N, p), rad or mm.
+        first, last: first and last instant of each span, (N,), s.
+        low, high: lower and upper bound of the inputs over each span, (N, p), rad or mm.
     """
 
     first: Array
@@ -51,23 +51,23 @@ class Spans:
 
     @classmethod
     def of(cls, laws: Sequence[TimeFunction], first: Array, last: Array) -> Spans:
-        """Spans between which no law has a break."""
+        """Spans with given ends, inside which no law has a break."""
         bounds = [law.values_over(first, last) for law in laws]
         low, high = (np.stack([bound[end] for bound in bounds], axis=-1) for end in (0, 1))
-        # What is not a number is anything.
+        # A bound that is not finite says nothing: the input may have any value.
         unknown = ~(np.isfinite(low) & np.isfinite(high))
         return cls(first, last, np.where(unknown, -np.inf, low), np.where(unknown, np.inf, high))
 
     def taken(self, places: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Spans:
-        """Some of them."""
+        """Some of the spans."""
         return Spans(self.first[places], self.last[places], self.low[places], self.high[places])
 
     def along(self, columns: list[int]) -> Spans:
-        """The same with some of the inputs."""
+        """The spans with some of the inputs only."""
         return Spans(self.first, self.last, self.low[:, columns], self.high[:, columns])
 
     def cut(self, laws: Sequence[TimeFunction], parts: int) -> Spans:
-        """Each cut into parts of one length."""
+        """The spans, each cut into parts of equal length."""
         shares = np.arange(parts + 1) / parts
         edges = self.first[:, None] + (self.last - self.first)[:, None] * shares
         edges[:, -1] = self.last
@@ -75,16 +75,16 @@ class Spans:
 
     @property
     def divisible(self) -> NDArray[np.bool_]:
-        """Whether time can be told apart inside each, (N,)."""
+        """Whether each span is long enough to be cut, above the rounding of its instants, (N,)."""
         size = np.maximum(np.abs(self.first), np.abs(self.last))
         return np.asarray(self.last - self.first > 4.0 * PARTS * EPS * size)
 
 
 def way_of(functions: Mapping[str, TimeFunction], start: float, stop: float) -> Spans:
-    """Spans from start to stop, s, that together are hardly wider than the inputs are.
+    """Spans from start to stop, s, whose boxes together hardly exceed the range of the inputs.
 
     Returns:
-        Boxes with a column for each of the laws, in their order.
+        Spans with a column for each law, in the order of the laws.
     """
     laws = list(functions.values())
     breaks = [b for law in laws for b in law.breaks if start < b < stop]
@@ -94,7 +94,7 @@ def way_of(functions: Mapping[str, TimeFunction], start: float, stop: float) -> 
     spans = Spans.of(laws, edges[:-1], edges[1:])
     values = np.stack([law.series(edges, 0)[..., 0] for law in laws], axis=-1)
     for _ in range(ROUNDS):
-        # What lies beyond all values at hand is either there, or comes from a span that is too long.
+        # A bound beyond all computed values is either reached by the input or due to a span that is too long.
         least, most = values.min(axis=0), values.max(axis=0)
         room = LOOSE * (most - least) + ROUNDED * np.maximum(np.abs(least), np.abs(most))
         wide = ((spans.low < least - room) | (spans.high > most + room)).any(axis=-1) & spans.divisible
@@ -115,20 +115,20 @@ def _in_order(one: Spans, other: Spans) -> Spans:
 
 
 def covered_until(laws: Sequence[TimeFunction], spans: Spans, lookup: Lookup) -> float:
-    """Up to when the whole way of the inputs lies on patches, s; minus infinity if its start does not.
+    """Instant up to which the path of the inputs lies on patches, s; minus infinity if its start does not.
 
-    A span that touches what is not covered is cut until it does not, or until it is so small that the
-    input itself does, or is nearer to that than can be told.
+    A span whose box touches a region that is not covered is cut, until no part touches the region or until
+    the part is so small that the path touches it or comes too near to distinguish.
 
     Args:
-        laws: of the free inputs of the lookup's domain, in their order.
+        laws: laws of the free inputs of the lookup's domain, in their order.
     """
     low, high = lookup.domain.ends
     smallest = SMALL * (high - low) / lookup.domain.parts
     waiting = spans.taken(~lookup.everywhere(spans.low, spans.high))
     end = np.inf
     while len(waiting.first):
-        # The earliest ones first: what comes after the end does not count.
+        # The earliest spans first: spans after the end do not matter.
         here, waiting = waiting.taken(slice(0, AT_ONCE)), waiting.taken(slice(AT_ONCE, None))
         final = ((here.high - here.low) <= smallest).all(axis=-1) | ~here.divisible
         if final.any():

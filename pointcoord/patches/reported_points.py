@@ -1,11 +1,13 @@
-r"""Series of every reported point in mm, and how far what is summed from them may be off.
+r"""Series of every reported point in mm, and error bounds of their sums.
 
-A point that is solved for is three of the coordinates. One that rides on a body is p_0 + a e1 + b e2 + c e1
-x e2 (see `linkage.carried_points`): a product of series, cut at their order; what is cut, what its carriers
-are off and what the weights are off of the drawing is added to its bound. So is the rounding of the sum at
-any inputs: with M powers of a degree up to N in p inputs, each product of powers is rounded some 4 N times,
-the variables 3 times for each of their powers, and the sum M times, relative to the sum of magnitudes; the
-first term, which is the largest, is added last and once.
+A solved point is three of the coordinates. A carried point is p_0 + a e1 + b e2 + c e1 x e2 (see
+`linkage.carried_points`), a product of series that is truncated at their order. Its error bound includes the
+truncation error, the errors of its carriers and the errors of the weights.
+
+The error bound of every point includes the rounding of the sum at any inputs. With M powers of degree up to N
+in p inputs, each product of powers is rounded about 4 N times, each variable 3 times for each of its powers,
+and the sum M times, relative to the sum of magnitudes. The constant term, the largest, is added last and
+rounded once.
 """
 
 from __future__ import annotations
@@ -27,19 +29,21 @@ Array = NDArray[np.float64]
 
 
 def moving_points(topology: Topology) -> tuple[str, ...]:
-    """The points that a map gives: all but those of the chassis."""
+    """The points that a map reports: all except those of the chassis."""
     return (*topology.moving, *topology.carried)
 
 
 def reported_points(mechanism: Mechanism, series: Array, error: Jet, order: int) -> tuple[Array, Jet]:
-    """Series of the points that move, in the order of `moving_points`, three coordinates each.
+    """Series of the moving points, in the order of `moving_points`, three coordinates each.
 
     Args:
-        series: of all coordinates, shape (P, powers, size).
-        error: of the unknown coordinates and of their derivatives, (P, unknowns), in the mechanism's units.
+        series: series of all coordinates, shape (P, powers, size).
+        error: error bounds of the unknown coordinates and of their derivatives, (P, unknowns), in the
+            mechanism's units.
+        order: total degree of the series.
     Returns:
-        Coefficients, shape (P, powers, 3 points), mm from the mechanism's origin, and how far a sum of them
-        is off at most anywhere on its patch, (P, 3 points), mm.
+        Coefficients, shape (P, powers, 3 points), mm from the mechanism's origin, and error bounds of their
+        sums everywhere on the patch, (P, 3 points), mm.
     """
     topology, layout, inputs = mechanism.topology, mechanism.layout, error.first.shape[1]
     every = powers(inputs, order)
@@ -57,7 +61,7 @@ def reported_points(mechanism: Mechanism, series: Array, error: Jet, order: int)
     later = Jet.of(coefficients[:, 1:], every.exponents[1:])
     count = every.count + 8 * order + 2 * inputs + 8
     summed = later.scaled(count * UNIT_ROUNDOFF)
-    # One more sum, with the first term.
+    # One more rounding, by adding the constant term.
     last = Jet.constant(UNIT_ROUNDOFF * (np.abs(coefficients[:, 0]) + later.value), inputs)
     return coefficients, (off.scaled(unit) + summed + last).scaled(INFLATION)
 
@@ -68,7 +72,7 @@ Place = tuple[Array, Jet]
 def _carried(
     mechanism: Mechanism, name: str, carriers: tuple[Place, Place, Place], order: int
 ) -> tuple[Array, Jet]:
-    """Series of a carried point, in units, and its error."""
+    """Series of a carried point, in the mechanism's units, and its error bound."""
     (base, base_error), (first, first_error), (second, second_error) = carriers
     inputs = base_error.first.shape[1]
     weights, exact = mechanism.carrier_weights[name], exact_weights(mechanism, name)
@@ -93,5 +97,5 @@ def _carried(
 
 
 def _cross_sizes(a: Jet, b: Jet) -> Jet:
-    """Bounds of a x b from those of the components."""
+    """Bounds of the components of a x b from bounds of those of a and b."""
     return a.taken(NEXT) * b.taken(LAST) + a.taken(LAST) * b.taken(NEXT)

@@ -1,15 +1,16 @@
-r"""A map of the inputs along the way that they take over some time: a motion without a series in time.
+r"""A map along the path of the inputs over some time: a motion without series in time.
 
-What moves depends on time through the inputs only, so patches that cover the way of the inputs (see `path`)
-hold the whole motion, however long or rough it is. They are grown from the pose at the start of the motion,
-and only where the way leads. Where the way meets what no patch covers, the motion ends:
+Positions depend on time through the inputs only. So patches that cover the path of the inputs (see `path`)
+describe the whole motion, however long or rough it is. The patches are proven outwards from the pose at the
+start of the motion, and only along the path. The motion ends where the path meets a region that is not
+covered. Up to this instant:
 
-- the start lies on a patch, and the pose there is the one at hand: it is nearer to the patch's assembly than
-  any other is;
-- every box that the way touches until then is covered, and patches that share a part of a face are the same
-  assembly there (see `flood`). A way through a corner touches the boxes on both sides of it.
+- the start lies on a patch, and the pose at the start is the assembly of this patch: any other assembly is
+  farther away;
+- every box that the path touches is covered, and patches that share a part of a face are the same assembly
+  there (see `flood`). A path through a corner touches the boxes on both sides of the corner.
 
-So every pose until then is on the branch of the start, as a path in time would have found.
+So every pose up to this instant is on the branch of the start, as if it had been followed in time.
 """
 
 from __future__ import annotations
@@ -33,23 +34,25 @@ from pointcoord.time_functions import TimeFunction
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-# How often a range is halved at most, by how many inputs move: 65,536 to 262,144 of the smallest boxes.
+# Most halvings of a range, by number of inputs that move: 65,536 to 262,144 smallest boxes.
 HALVINGS = {1: 16, 2: 9, 3: 6}
-# Patches of one motion, and factorisations that are spent on them: some seconds.
+# Most patches of one motion, and most factorisations for them: some seconds.
 MOST, ENOUGH = 1024, 40000
 
-NOWHERE = "the pose at the start cannot be proven to be the patch's"
+NOWHERE = "the pose at the start cannot be proven to be the assembly of a patch"
 MANY = "more than three inputs move at once"
 
 
 @dataclass(frozen=True)
 class WayMap:
-    """Patches along the way of the inputs.
+    """Patches along the path of the inputs.
 
     Attributes:
-        until: the way is covered up to here, s; minus infinity where its start is not.
-        reason: why not further; empty where all of it is covered.
-        work: what making it took.
+        patches: the patches.
+        limits: the limits of a patch.
+        until: instant up to which the path is covered, s; minus infinity if its start is not covered.
+        reason: why the path is not covered further; empty if all of it is covered.
+        work: work of making the patches.
     """
 
     patches: ProvenPatches
@@ -60,14 +63,14 @@ class WayMap:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Where rounding alone keeps a patch from being as near as was asked."""
+        """A note if rounding prevents the proof of the tolerance on some patches."""
         bounds = self.patches.off.value.max(axis=-1)
         count = int(np.count_nonzero(bounds > self.limits.tolerance))
         if not count:
             return ()
         return (
-            f"rounding keeps {count} of {len(bounds)} patches of the map from being proven to the tolerance "
-            f"everywhere: positions to {bounds.max():.2g} mm",
+            f"rounding keeps {count} of {len(bounds)} patches of the map from the tolerance: positions are "
+            f"proven to {bounds.max():.2g} mm only",
         )
 
 
@@ -80,24 +83,25 @@ def map_way(
     limits: Limits,
     effort: int | None = None,
 ) -> WayMap:
-    """Cover the way of the inputs from an assembled pose on.
+    """Cover the path of the inputs, starting at an assembled pose.
 
     Args:
-        functions: of the inputs that drive the mechanism.
-        pose: assembled at `start`.
-        effort: factorisations after which nothing more is tried; `ENOUGH` if not given.
+        functions: laws of the inputs that drive the mechanism.
+        pose: the pose at `start`.
+        start, stop: first and last instant, s.
+        effort: number of factorisations after which no further box is tried; `ENOUGH` unless given.
     Raises:
-        InputOutOfRange: an input that on its way leaves the values for which it has a meaning.
+        InputOutOfRange: an input leaves the values that it can have.
     """
     spans = way_of(functions, start, stop)
     ranges: dict[str, tuple[float, float]] = {}
     for i, (name, law) in enumerate(functions.items()):
         low, high = float(spans.low[:, i].min()), float(spans.high[:, i].max())
-        # At a single instant an input has one value, and may have rates.
+        # At a single instant a moving input has one value but may have rates.
         still = low == high and not law.series(spans.first, 2)[..., 1:].any()
         ranges[name] = (low, high) if still else widened(low, high)
     if all(low == high for low, high in ranges.values()):
-        # A map has an input.
+        # A map needs at least one input.
         name = next(iter(ranges))
         ranges[name] = widened(*ranges[name])
     moving = sum(low < high for low, high in ranges.values())

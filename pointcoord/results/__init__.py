@@ -1,1 +1,1 @@
-"""What a solved scene is, how it is made of states, and what is proven of it."""
+"""Solved scenes: how their numbers are computed from states, read and proven."""

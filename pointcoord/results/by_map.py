@@ -26,10 +26,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ByMap(SolvedScene):
-    """Patches along the way of the inputs composed with their laws (see `patches.evaluation`).
+    """Patches along the path of the inputs, composed with the inputs' laws (see `patches.evaluation`).
 
     Attributes:
-        way: the patches; `stop` is the end of the part of it that they cover.
+        way: the patches along the path; `stop` is the instant up to which they cover the path.
     """
 
     way: WayMap
@@ -43,7 +43,7 @@ class ByMap(SolvedScene):
         start: float,
         notes: tuple[str, ...],
     ) -> ByMap:
-        """A motion from `start`, s, which is complete unless it is said what stopped it."""
+        """The solved scene from `start`, s, with the status complete."""
         orders = (way.patches.order,) * len(way.patches.low)
         work = way.work + Work(segments=len(orders), series_orders=sum(orders))
         return cls(readout, functions, COMPLETE, work, start, way.until, orders, way, notes=notes)
@@ -53,7 +53,7 @@ class ByMap(SolvedScene):
         return self.way.patches
 
     def solved(self, instants: Array, derivatives: int) -> Sequence[Array]:
-        """The series of the patches composed with the laws."""
+        """Sums of the patches' series, composed with the laws (see `SolvedScene.solved`)."""
         inputs = self._inputs(instants)[: derivatives + 1]
         return self.patches.sums(self.patches.series, inputs)
 
@@ -78,7 +78,7 @@ class ByMap(SolvedScene):
         known = len(self.readout.mechanism.drawn) - terms.shape[-1]
 
         def sums(least: int, most: int) -> list[Array]:
-            """Of the terms of some degrees."""
+            """Sums of the magnitudes of all terms of the degrees from `least` to `most`."""
             kept = terms * ((degree >= least) & (degree <= most))[:, None]
             found = sum_series(kept, unit_boxes, order, patch, sizes)
             return [np.pad(state.T, ((0, 0), (0, known))) for state in found]
@@ -90,10 +90,10 @@ class ByMap(SolvedScene):
         return self.patches.lookup.at(self._inputs(instants)[0])
 
     def _inputs(self, instants: Array) -> list[Array]:
-        """The free inputs and as many derivatives as are wanted, each (N, p).
+        """The free inputs and their derivatives up to the plan's highest, each (N, p).
 
         Raises:
-            InputOutOfRange: one of them overflows.
+            InputOutOfRange: a value or a derivative overflows.
         """
         highest = self.readout.plan.derivative
         laws = [self.functions[name].series(instants, highest) for name in self.patches.domain.free]

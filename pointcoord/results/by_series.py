@@ -1,4 +1,4 @@
-"""A scene that is solved at each of its instants, or by a chain of series in time (by a map: `by_map`)."""
+"""Scenes solved at each of their instants, or by a chain of series in time (by a map: see `by_map`)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,11 @@ Numbers = NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class AtInstants(SolvedScene):
-    """Solved at each instant by itself."""
+    """A scene solved at each of its instants; nothing is known between them.
+
+    Attributes:
+        poses: the solved states.
+    """
 
     poses: Solved
     dense: ClassVar[bool] = False
@@ -51,7 +55,11 @@ class AtInstants(SolvedScene):
 
 @dataclass(frozen=True, eq=False)
 class ByChain(SolvedScene):
-    """Summed from a chain of series, which many designs may share, at any instants inside it."""
+    """A scene, or many designs of it, summed from a chain of series at any instants inside the chain.
+
+    Attributes:
+        chain: the chain of series.
+    """
 
     chain: Chain
 
@@ -87,7 +95,7 @@ class ByChain(SolvedScene):
         return self.readout.mechanism.map.unknowns
 
     def fill(self, times: Array, rows: Array) -> None:
-        """By cells where instants of one car lie close together, unless it turns, and by blocks elsewhere."""
+        """Fill by cells where instants are close and one car's chassis does not rotate; else by blocks."""
         left, one = [(0, len(times))], self.readout.mechanism.drawn.ndim == 1
         if one and len(times) >= ENOUGH and not self.readout.chassis.turning:
             left = self._close.fill(times, rows)
@@ -96,13 +104,13 @@ class ByChain(SolvedScene):
 
     @cached_property
     def _close(self) -> CloseInstants:
-        # Imported here: few motions are read at so many instants.
+        # Imported here: few motions are read at many instants close together.
         from pointcoord.results.cells import CloseInstants
 
         return CloseInstants(self, self.chain)
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """Sums of their series, of designs (designs, N, size); the instants lie side by side in memory."""
+        """Sums of the series; (designs, N, size) for many designs. The instants are contiguous in memory."""
         mechanism, segments = self.readout.mechanism, self.chain.segments
         wanted = min(derivatives, self.readout.plan.derivative)
         unknowns, known = mechanism.map.unknowns, self._known(instants)
@@ -121,7 +129,7 @@ class ByChain(SolvedScene):
         laws = {name: law.series(instants, 0) for name, law in self.functions.items()}
         if mechanism.drawn.ndim == 1:
             return mechanism.known_series(laws)[:, 0]
-        # A car for each pose: all have the same laws.
+        # One car for each pose: all designs have the same laws.
         cars, count = len(mechanism.drawn), len(instants)
         each = mechanism.taken(np.repeat(np.arange(cars), count))
         known = each.known_series({name: np.tile(law, (cars, 1)) for name, law in laws.items()})
@@ -129,18 +137,18 @@ class ByChain(SolvedScene):
 
     def summed(self, instants: Array) -> list[Summed]:
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
-        # Terms that are missing by chance tell nothing of what is left out.
+        # Last terms that are missing by chance say nothing about the truncation error: they are extrapolated.
         lasts = [
             last_magnitudes(segment.coefficients, (segment.stop - segment.start) / segment.scale)
             for segment in self.chain.segments
         ]
         for segment, last in zip(self.chain.segments, lasts, strict=True):
-            # Where a series starts is none of what it goes on by, as all of one that stands would be.
+            # The constant term is none of the last two, also in a series of order 0 or 1.
             last[: max(2 - segment.order, 0)] = 0.0
         derivative = self.readout.plan.derivative
 
         def sums(first: int, last: int | None, sizes: Sequence[Array]) -> Array:
-            """Of the terms from one to another, counted from the end."""
+            """Sums of the terms from number `first` to before `last`; negative numbers count from the end."""
             kept = [np.zeros_like(t) for t in terms]
             for part, whole in zip(kept, sizes, strict=True):
                 part[first:last] = whole[first:last]

@@ -1,17 +1,17 @@
 r"""Many instants close together: the rows of a table as polynomials in cells, by one matrix product.
 
-A cell is a stretch of consecutive instants inside one series, so short that every number is a polynomial of
-degree `DEGREE` there, to rounding. Its numbers are computed by the plain formulas (series, effects) at that
-many and one more Chebyshev points, and all instants of the cell take
+A cell is a set of consecutive instants inside one series, so short that every number is a polynomial of
+degree `DEGREE` in the cell, to rounding. The numbers are computed by the plain formulas (series, effects) at
+DEGREE + 1 Chebyshev points. All instants of the cell then follow from one product,
 
     rows = [coefficients, directions] [s^n .. s^0, laws of the chassis],
 
-a product whose result is written where it belongs. What is made of states, an angle or a turn, costs there
-what a coordinate costs. A law of the chassis is taken at the instants themselves. Numbers are analytic in
-a cell: where the second half of their coefficients is below `HALFWAY`, what lies beyond them is below the
-square of that and more. A cell that is too long for that, or in which a rate grows from nothing, is halved;
-where one of few instants still is, the plain formulas are left to do. How far a number is off is proven from
-it (see `bounds`), however it was found.
+which is written directly into the table. So an angle or another number computed from states costs no more
+than a coordinate. The laws of the chassis are evaluated at the instants themselves. Numbers are analytic in
+a cell: if the second half of their coefficients is below `HALFWAY`, the truncated terms are below the square
+of `HALFWAY`. A cell that is too long for that, or in which a rate grows from zero, is halved. If a cell of
+few instants still fails, the plain formulas are used. The error bound of a number is proven from the number
+itself (see `bounds`), however the number was computed.
 """
 
 from __future__ import annotations
@@ -34,46 +34,48 @@ from pointcoord.solve.taylor import Chain
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
 Stretch = tuple[int, int]
-"""Instants from a number to before another."""
+"""The first instant, by number, and the one after the last."""
 
-# Three products make the powers up to it.
+# Degree of the polynomials; three products make all powers up to 8.
 DEGREE = 8
-# Instants of a cell: at most what keeps its powers in a second-level cache, at least what pays its points.
+# Most instants of a cell, so that the powers stay in a second-level cache; and fewest instants for which the
+# Chebyshev points pay.
 MOST, FEWEST = 4096, 128
-# Of the largest number of its kind, what is none at all: rates that are solved for together share that much
-# of each other's rounding.
+# A number below this share of the largest number of its kind counts as zero: rates that are solved for
+# together share that much of each other's rounding error.
 SHARED = 8.0 * EPS
-# Where a series starts, a number is off by a part of what it is there, be it small or nothing. A cell that
-# lies nearer to the start than so many times half its length is good only if each of its numbers has so much
-# of its largest size at the first instant already.
+# At the start of a series the error of a number is a share of its size there, and the number may be zero. So
+# a cell nearer to the start than NEAR times half its length is good only if every number has, at the first
+# instant of the cell, BEGUN times its largest size in the cell.
 NEAR, BEGUN = 16.0, 0.5
-# By how much of half a cell an instant may be rounded (see `Interpolation.chebyshev`).
+# Largest rounding of an instant, as a share of half a cell (see `Interpolation.chebyshev`).
 ROUNDED = 2.0**-24
-# Largest coefficient of the second half, of a number's size.
+# Limit of the coefficients of the second half, relative to the size of the number.
 HALFWAY = 2.0**-30
-# Instants whose cells are worked out together: their tables take some 4 MB at most.
+# Instants whose cells are computed together: their tables take about 4 MB at most.
 TOGETHER = 2**16
 
 
 @dataclass(frozen=True, eq=False)
 class CloseInstants:
-    """A way to fill a table where many instants lie close together.
+    """Fills a table where many instants lie close together.
 
     Attributes:
-        solved: of one car, by a chain.
+        solved: scene of one car, solved by a chain.
+        chain: the chain of series.
     """
 
     solved: SolvedScene
     chain: Chain
 
     def fill(self, times: Array, rows: Array) -> list[Stretch]:
-        """Fill the columns of a table where it pays.
+        """Fill the columns of a table in cells, where cells pay.
 
         Args:
             times: instants that do not decrease, (N,), s.
-            rows: shape (height, N).
+            rows: the table, shape (height, N).
         Returns:
-            The columns that are left, in order.
+            The columns that are not filled, in order.
         """
         left: list[Stretch] = []
         for low in range(0, len(times), TOGETHER):
@@ -103,13 +105,13 @@ class CloseInstants:
                     middle = (low + high) // 2
                     cells = np.stack([low, middle, middle, high], axis=-1).reshape(-1, 2)
             except (InputOutOfRange, SingularConfiguration):
-                # At a point of a cell that may be no instant that was asked for.
+                # A Chebyshev point failed, which may be no requested instant: the plain formulas decide.
                 filled[:] = False
         edges = np.flatnonzero(np.diff(filled, prepend=True, append=True))
         return [(first, last) for first, last in edges.reshape(-1, 2).tolist()]
 
     def _longest(self, times: Array) -> Whole:
-        """The longest cells, by their first instant and the one after the last, (cells, 2)."""
+        """The longest cells, by number of the first instant and of the one after the last, (cells, 2)."""
         edges = [0, *np.searchsorted(times, self._starts[1:], side="left").tolist(), len(times)]
         cells = [
             (low, min(low + MOST, last))
@@ -124,23 +126,24 @@ class CloseInstants:
         return np.array([segment.start for segment in self.chain.segments])
 
     def _apart(self, cells: Whole, times: Array) -> NDArray[np.bool_]:
-        """Whether rounding tells the instants of a cell apart."""
+        """Whether the instants of each cell differ by more than rounding, (cells,)."""
         middle, half = middle_and_half(cells, times)
         return np.asarray((half > 0.0) & (EPS * np.abs(middle) <= ROUNDED * half))
 
     def _near(self, cells: Whole, times: Array) -> NDArray[np.bool_]:
-        """Whether a cell lies so near to the start of its series that a number may begin there."""
+        """Whether each cell is near the start of its series, where a number may begin at zero, (cells,)."""
         middle, half = middle_and_half(cells, times)
         start = self._starts[np.searchsorted(self._starts, times[cells[:, 0]], side="right") - 1]
         return np.asarray(middle - start < NEAR * half)
 
     def _coefficients(self, cells: Whole, times: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Of powers, highest first, of the rows that are solved for or computed; and in which cells they fit.
+        """Coefficients of the rows that are solved for or computed, and in which cells the polynomials fit.
 
-        The largest comes last, so that a sum is rounded by the smaller ones' size until then.
+        The highest power is first and the largest coefficient, the constant, last. So the partial sums are
+        rounded by the size of the smaller terms.
 
         Returns:
-            Shape (cells, rows, DEGREE + 1), and (cells,).
+            Coefficients, shape (cells, rows, DEGREE + 1); and whether all rows fit, (cells,).
         """
         own, (middle, half) = interpolation(DEGREE), (each[:, None] for each in middle_and_half(cells, times))
         first, last = times[cells[:, :1]], times[cells[:, 1:] - 1]
@@ -162,7 +165,7 @@ class CloseInstants:
         return np.ascontiguousarray(powers), fits & ~(grown & self._near(cells, times))
 
     def _sum(self, cells: Whole, coefficients: Array, times: Array, laws: Array, rows: Array) -> None:
-        """Fill the columns of cells, but for the chassis' points, by their coefficients and the laws."""
+        """Fill the columns of cells from coefficients and laws, except for the points of the chassis."""
         matrices = np.concatenate([coefficients, np.empty((*coefficients.shape[:-1], len(laws)))], axis=-1)
         matrices[..., DEGREE] += self._added[: matrices.shape[1], -1]
         matrices[..., DEGREE + 1 :] = self._added[: matrices.shape[1], :-1]
@@ -179,17 +182,17 @@ class CloseInstants:
             narrow_product(matrix, basis, rows[: len(matrix), low:high])
 
     def _laws(self, times: Array) -> Array:
-        """The laws of the chassis at instants, a row for each derivative of each.
+        """The laws of the chassis at instants, one row for each reported derivative of each law.
 
         Raises:
-            InputOutOfRange: as `ChassisMotion.law`.
+            InputOutOfRange: see `ChassisMotion.law`.
         """
         chassis, reported = self.solved.readout.chassis, self.solved.readout.table.reported
         laws = [chassis.law(name, times, reported[-1])[list(reported)] for name in chassis.functions]
         return np.concatenate(laws) if laws else np.empty((0, len(times)))
 
     def _at_points(self, points: Array) -> Array:
-        """The rows that are solved for or computed, by the plain formulas, without what reporting adds."""
+        """The rows that are solved for or computed, by the plain formulas, without the rows of `_added`."""
         table = self.solved.readout.table
         values = np.empty((table.height, len(points)))
         self.solved.fill_plainly(points, values, add=False)
@@ -197,10 +200,10 @@ class CloseInstants:
 
     @cached_property
     def _numbers(self) -> tuple[Whole, Array, Whole]:
-        """The first row of each number, a size below which it is small, and its kind, counted from 0.
+        """The first row of each number, the smallest size with which it is compared, and its kind, from 0.
 
-        A vector is large or small as a whole, and an angle by the side of a radian; states are of a kind with
-        others of their derivative.
+        The size of a vector is the size of its largest component, and that of an angle is at least 1 rad.
+        States of the same derivative are of one kind; every other number is a kind of its own.
         """
         table = self.solved.readout.table
         found = {row: (0.0, order) for (order, _), row in table.states.items() if row < table.first_still}
@@ -216,9 +219,10 @@ class CloseInstants:
 
     @cached_property
     def _added(self) -> Array:
-        """What reporting adds to each row along each derivative of each law, and what stands.
+        """Factors of each reported derivative of each chassis law in each row, and a constant as last column.
 
-        Shape (height, laws x derivatives + 1); zero in the rows that are computed.
+        Shape (height, laws x derivatives + 1). The constant is the origin, with the drawn position for points
+        of the chassis. Rows that are computed from states have zeros.
         """
         readout, table = self.solved.readout, self.solved.readout.table
         count = len(table.reported)
@@ -234,7 +238,7 @@ class CloseInstants:
 
 
 def middle_and_half(cells: Whole, times: Array) -> tuple[Array, Array]:
-    """Of cells: the middle, and half the length, s."""
+    """Middle and half length of cells, s, each (cells,)."""
     first, last = times[cells[:, 0]], times[cells[:, 1] - 1]
     middle = first + 0.5 * (last - first)
     return middle, np.maximum(middle - first, last - middle)

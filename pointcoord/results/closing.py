@@ -1,7 +1,8 @@
 """Closing a drawing: how far its points move when it is solved at its own inputs.
 
-A drawing that closes stays where it is, to rounding. One that does not is another car than the one that is
-solved, by as much as its points move: the user is told how far, which point, and what in the drawing misses.
+If the drawn points satisfy all constraints, no point moves, up to rounding. Otherwise the solved car differs
+from the drawn car by the movement of its points. The user reads how far they move, which point moves most,
+and which constraints the drawing violates.
 """
 
 from __future__ import annotations
@@ -20,19 +21,20 @@ from pointcoord.results.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
-NOTICED = 0.1  # mm: hardpoints are drawn to a tenth of a millimetre, so more than that is no rounding
-NOTICED_SHARE = 2e-4  # of the size: that tenth of a car of half a metre, for cars in other units than mm
-ROUNDING = 1e-11  # of the size: a hundred roundings, 500 times as far where the pose is badly conditioned
-ALLOWED = 0.01  # of the car's size: more than that is another car
+NOTICED = 0.1  # mm: hardpoints are drawn to a tenth of a millimetre, so a larger movement is not rounding
+NOTICED_SHARE = 2e-4  # of the size: that tenth for a size of half a metre, for cars in other units than mm
+ROUNDING = 1e-11  # of the size: a hundred roundings, enlarged 500 times where the pose is badly conditioned
+ALLOWED = 0.01  # of the car's size: beyond this the closed drawing is another car
 
 
 @dataclass(frozen=True)
 class Closing(ReadOnly):
-    """What closing a drawing moves.
+    """Movements of the points as a drawing closes.
 
     Attributes:
-        movements: how far each point moves that is solved for or rides on a body, mm.
-        misses: how far the drawing misses each constraint that is a length, mm; only those above rounding.
+        movements: distance that each solved or carried point moves, by name, mm.
+        misses: distance by which the drawing violates each constraint that is a length, mm; only those above
+            rounding.
         size: longest side of the box around the points, mm.
     """
 
@@ -47,7 +49,7 @@ class Closing(ReadOnly):
 
     @property
     def largest(self) -> float:
-        """How far it moves, mm."""
+        """Largest movement of a point, mm."""
         return self.movements[self.point]
 
     @property
@@ -62,21 +64,21 @@ class Closing(ReadOnly):
 
     @property
     def changes_the_car(self) -> bool:
-        """Whether the closed car is another one than was drawn."""
+        """Whether the closed car counts as another car than the drawn one."""
         return self.largest > ALLOWED * self.size
 
     @property
     def words(self) -> str:
-        """Largest movement and point, and what the drawing misses, in a line."""
+        """Largest movement, its point, and the constraints that the drawing violates, in one line."""
         if not self.moves:
             return f"the drawing closes: no point moves by more than {self.largest:.1g} mm"
-        why = ", ".join(f"{name} by {miss:.3g} mm" for name, miss in self.misses.items())
-        missed = f"; the drawing misses {why}" if why else ""
+        why = ", ".join(f"{name} is off by {miss:.3g} mm" for name, miss in self.misses.items())
+        missed = f"; as drawn, {why}" if why else ""
         return f"closing the drawing moves {self.point} by {self.largest:.3g} mm{missed}"
 
 
 def closing(mechanism: Mechanism, closed: Array) -> Closing:
-    """How far the points of a mechanism of one car are from where they are drawn.
+    """How far the points of one car's closed drawing are from where they are drawn.
 
     Args:
         closed: coordinates of the closed drawing, shape (size,).
@@ -86,7 +88,8 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
     misses = {}
     for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True):
         miss = hypot(*(residual[row] for row in rows))
-        # Rows are sums of a few products of coordinates below 1. Of a distance each component must be there.
+        # Rows are sums of a few products of coordinates below 1, hence the limit of rounding. The rows of a
+        # slide are a distance only if no component is left out.
         if constraint.slide and len(rows) == len(constraint.labels) and miss > 64 * EPS:
             misses[constraint.name] = unit * miss
     moved = {name: float(far) for name, far in movements(mechanism, closed).items()}
@@ -94,7 +97,7 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
 
 
 def movements(mechanism: Mechanism, closed: Array) -> dict[str, Array]:
-    """How far each point of one car or of many moves that is solved for or rides on a body, (...,), mm.
+    """Distance that each solved or carried point of one car or of many cars moves, by name, (...,), mm.
 
     Args:
         closed: coordinates of the closed drawings, shape (..., size).
@@ -107,6 +110,6 @@ def movements(mechanism: Mechanism, closed: Array) -> dict[str, Array]:
 
 
 def car_size(mechanism: Mechanism) -> Array:
-    """Longest side of the box around the points as they are drawn, (...,), mm."""
+    """Longest side of the box around the drawn points, (...,), mm."""
     stack = mechanism.drawing.stacked(mechanism.topology.points)
     return np.asarray(mechanism.unit * np.ptp(stack, axis=-2).max(axis=-1))

@@ -1,4 +1,4 @@
-"""A solved scene, read by name."""
+"""A motion: the numbers of a solved scene at its instants, read by name."""
 
 from __future__ import annotations
 
@@ -26,25 +26,25 @@ Array = NDArray[np.float64]
 
 # Rows of a table in a notebook.
 SHOWN = 11
-# Of instants in any order, how many are computed before they are put where they belong: 9 MB of them.
+# Instants in any order are computed in sorted blocks of this size: 9 MB.
 ORDERED = 2**13
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion(Samples):
-    """A solved scene at its own instants, or at those before something stopped it.
+    """A solved scene at its own instants, up to the instant at which something stopped the motion.
 
-    It can be pickled, with all that it can still be asked for.
+    A motion can be pickled. The copy can do all that the motion can.
 
     Attributes:
-        method: how it was solved: series, map, newton or another method's name.
-        status: whether it covers the whole scene, and if not, what stopped it.
+        method: name of the method that solved the scene: series, map, newton or another.
+        status: whether the motion covers the whole scene, and if not, what stopped it.
         start: the assembled pose at the first instant, with its condition number and proven bound.
-        closing: how far the drawing's points moved to close.
-        work: what it cost.
-        notes: numbers that have no meaning, and why, and where it was not solved as the scene asks; empty
-            if there is nothing to note.
-        solved: what it is read from.
+        closing: how far the points moved as the drawing closed.
+        work: work of solving and reading.
+        notes: numbers that are not defined, with the reason, and where the scene was not solved as
+            requested; empty if there is nothing to note.
+        solved: the solved scene that the numbers are read from.
     """
 
     method: str
@@ -62,8 +62,8 @@ class Motion(Samples):
         return f"<{part}Motion by {self.method}: {self._span}; {self._quantities}{noted}>"
 
     def _repr_html_(self) -> str:
-        """Numbers of the car, or places of points where it has none, at some of the instants."""
-        # Imported here: only notebooks ask for it.
+        """A table of the numbers of the car, or positions of points if there are none, at some instants."""
+        # Imported here: only notebooks use it.
         from pointcoord.results.named_columns import columns, html_table
 
         picked = np.unique(
@@ -81,43 +81,44 @@ class Motion(Samples):
 
     @property
     def unit(self) -> float:
-        """The mechanism's size as a power of two, mm; scales of its coordinates."""
+        """The mechanism's size as a power of two, mm: the unit of its coordinates."""
         return float(self.solved.readout.mechanism.unit)
 
     def proof(self, rates: bool = False) -> Proof:
         """Proven error bound and condition number of the pose at each of the times.
 
         Args:
-            rates: prove every reported number by itself, rates and angles too (`Proof.proven`), and say what
-                the method loses at most where nothing is wrong (`Proof.expected`); takes some times as long.
+            rates: also prove an error bound of every reported number, rates and angles included
+                (`Proof.proven`), and compute the largest error that the method makes if nothing is wrong
+                (`Proof.expected`). This takes a few times as long.
         """
         return self.proof_of(self, rates)
 
     def proof_of(self, samples: Samples, rates: bool = False) -> Proof:
-        """The same of samples at other instants, as `at` gives them for instants of shape (N,)."""
-        # What proves is imported where it is asked for, as most motions are read only.
+        """Proven error bounds of samples at other instants, from `at` with instants of shape (N,)."""
+        # Imported here: most motions are only read, not proven.
         from pointcoord.results.proof import prove
 
         return prove(self.solved, samples, rates=rates)
 
     @property
     def height(self) -> int:
-        """How many numbers there are at an instant: rows of an array that `at` can write into."""
+        """Count of numbers at an instant: the rows of an array that `at` can write into."""
         return self.solved.readout.table.height
 
     def at(self, instants: ArrayLike, out: Array | None = None) -> Samples:
-        """The same results at any instants inside the motion, without a new solve.
+        """The numbers of the motion at any instants inside it, without a new solve.
 
         Args:
-            instants: a number or an array of them, s.
-            out: an array of floats of shape (height, number of instants) that the numbers are written into;
-                the results are views of it, and change when it is written again.
+            instants: a number or an array of numbers, s.
+            out: array of floats of shape (height, number of instants) to write the numbers into. The results
+                are views of `out` and change when `out` is written again.
         Returns:
-            Arrays of the instants' shape, vectors with a last dimension of 3.
+            Arrays of the instants' shape; vectors have a last dimension of 3.
         Raises:
             WrongArgument: an instant before the start, after the stop, or not a number.
             NotComputed: the method knows the motion at the scene's instants only.
-            ValueError: `out` is no such array.
+            ValueError: `out` has a wrong shape or type, or is read-only.
 
         >>> from pointcoord import Scene, simulate
         >>> motion = simulate(Scene.load("steer"))
@@ -132,16 +133,15 @@ class Motion(Samples):
         return samples if asked.ndim == 1 else samples.shaped(asked.shape)
 
     def blocks(self, instants: ArrayLike | int | None = None, size: int = 16384) -> Iterator[Samples]:
-        """The same results in blocks of consecutive instants: any number of them, in a block's memory.
+        """The numbers at any number of instants, block by block, with the memory of one block.
 
         Args:
-            instants: a number n for n instants evenly from the first of the motion to its last, as a scene
-                has them; or the instants themselves, shape (N,), s, in any order; the motion's own if not
-                given.
-            size: how many instants a block has; the last may have fewer.
+            instants: a number n for n evenly spaced instants from the first of the motion to its last; or the
+                instants themselves, shape (N,), s, in any order; the motion's own unless given.
+            size: number of consecutive instants of a block; the last block may have fewer.
         Raises:
-            WrongArgument: as `at`, at the block that has the instant.
-            NotComputed: instants are given, and the method knows the motion at the scene's only.
+            WrongArgument: see `at`; raised at the block that contains the instant.
+            NotComputed: instants are given, but the method knows the motion at the scene's instants only.
             ValueError: a number below 1, or instants of another shape.
 
         >>> from pointcoord import Scene, simulate
@@ -164,21 +164,21 @@ class Motion(Samples):
             )
         asked = np.asarray(instants, dtype=float)
         if asked.ndim != 1:
-            raise ValueError(f"instants of shape {asked.shape}; allowed: (N,), or how many")
+            raise ValueError(f"instants of shape {asked.shape}; allowed: (N,), or a number of instants")
         return (self.at(asked[low : low + size]) for low in range(0, len(asked), size))
 
     def to_dataframe(self, library: str | None = None) -> Any:
         """The motion as a data frame: a row for each instant, columns with the names and units of the CSV.
 
-        Angles are in degrees there, as in every file; vectors have a column for each component.
+        Angles are in degrees, as in every file. Vectors have a column for each component.
 
         Args:
-            library: "pandas" or "polars"; the one that is installed if not given, pandas before polars.
+            library: "pandas" or "polars"; the first that is installed, in this order, unless given.
         Returns:
-            A `pandas.DataFrame` or a `polars.DataFrame` that shares nothing with the motion.
+            A `pandas.DataFrame` or a `polars.DataFrame` that shares no memory with the motion.
         Raises:
-            MissingLibrary: it is not installed; the message names the extra that brings it.
-            UnknownName: there is no such library.
+            MissingLibrary: the library is not installed; the message names the extra that installs it.
+            UnknownName: the library is not one of the two.
         """
         # Imported here: the solver needs no data frames.
         from pointcoord.results.named_columns import data_frame
@@ -203,13 +203,13 @@ class Motion(Samples):
 
 
 def read(solved: SolvedScene, times: Array, out: Array | None = None) -> Samples:
-    """What a solved scene asks for at instants of shape (N,), in any order.
+    """The requested numbers of a solved scene at instants of shape (N,), in any order.
 
     Args:
-        out: where the numbers go, shape (rows, N); a new array if not given.
+        out: array to write the numbers into, shape (rows, N); a new array unless given.
     Raises:
         WrongArgument: an instant that was not solved for, or not a number.
-        MechanismError: a row that was left out, as it followed from others at the drawing, is violated.
+        MechanismError: an equation that was left out, as it followed from others in the drawing, is violated.
     """
     readout = solved.readout
     rows = readout.room(len(times)) if out is None else out

@@ -1,4 +1,4 @@
-"""The numbers of samples as named columns with their units, as tables, files and data frames have them."""
+"""The numbers of samples as columns with names and units, for tables, files and data frames."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pointcoord.results.samples import Samples
 
 Array = NDArray[np.float64]
 
-# The first that is installed is taken; each is an extra of the same name.
+# The first installed one is used; each is an extra of the same name.
 LIBRARIES = ("pandas", "polars")
 
 
@@ -46,7 +46,7 @@ def data_frame(samples: Samples, library: str | None = None) -> Any:
     if library is not None and library not in LIBRARIES:
         raise UnknownName("library of data frames", library, LIBRARIES)
     module = _imported(LIBRARIES if library is None else (library,))
-    # A frame of its own: what is written into it does not change the samples.
+    # The frame has copies: writing into the frame does not change the samples.
     return module.DataFrame({name: np.array(column) for name, column in columns(samples)})
 
 
@@ -54,7 +54,7 @@ def _imported(libraries: tuple[str, ...]) -> Any:
     """The first of some libraries that is installed.
 
     Raises:
-        MissingLibrary: none is, or one that is installed does not load.
+        MissingLibrary: none is installed, or an installed one does not load.
     """
     for name in libraries:
         try:
@@ -68,7 +68,7 @@ def _imported(libraries: tuple[str, ...]) -> Any:
 
 
 def html_table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A table of HTML under its caption, as a notebook shows it, in which no text acts.
+    """An HTML table with a caption, for a notebook; all text is escaped.
 
     >>> html_table("<a>", ["x"], [["1"]])
     '<table><caption>&lt;a&gt;</caption><tr><th>x</th></tr><tr><td>1</td></tr></table>'

@@ -1,4 +1,4 @@
-"""Proven error bounds of every number that a motion reports, computed when asked for."""
+"""Proven error bounds of every number that a motion reports, computed on request."""
 
 from __future__ import annotations
 
@@ -33,34 +33,35 @@ Indices = NDArray[np.intp]
 Laws = Mapping[str, Sequence[Enclosed]]
 
 POSITION = "position"
-# Instants at a time: the arrays of a coordinate stay in a cache, and all of them below 50 MB.
+# Instants of a block: the arrays of a coordinate stay in a cache, and all arrays take less than 50 MB.
 BLOCK = 4096
-# Solving rounds a few times as often as looking at an equation does: a factorisation, its use, a refinement;
-# and a series leaves out less than the last two terms that its expected error counts.
+# Factor of the expected error. Solving rounds a few times as often as evaluating an equation: factorisation,
+# solution and refinement. The truncation error is less than the last two terms, which the expected error has.
 ROUNDINGS = 3.0
-# Powers of two by which a unit of time is chosen: its square still is a number.
+# Largest exponent of a unit of time as a power of two: the square of the unit is still finite.
 LONGEST = 400
 
 
 @dataclass(frozen=True)
 class Proof:
-    """What is proven of each pose.
+    """Proven error bounds and condition of each pose.
 
     Attributes:
-        times: shape (N,), s.
-        pose_bound: distance from every coordinate of a solved point, in the chassis' frame and near the
-            mechanism, to the exact assembly, at most, (N,), mm; infinite where nothing is proven.
-        bound: distance from every reported coordinate of a point to the exact assembly, at most, (N,), mm:
-            with what adding the user's origin and the chassis' motion rounds. See `kantorovich` for what it
-            covers.
-        carried_bound: the same for carried points, (N,), mm.
-        carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).
-        condition: condition number of the Jacobian, (N,); between neighbours that share an inverse it is
-            interpolated, to a few per cent, and to a third where the power of two that scales a row changes.
-        residual: largest row of C(y) about what the user's numbers mean, (N,), in the mechanism's units.
-        proven: by quantity and name, the error of every reported number, rates and angles too, at most; empty
-            unless asked for.
-        expected: the error that the method makes of each at most where nothing is wrong; likewise.
+        times: instants, shape (N,), s.
+        pose_bound: error bound of the coordinates of the solved points against the exact assembly, in the
+            chassis' frame from the mechanism's origin, (N,), mm; infinite where nothing is proven.
+        bound: error bound of the reported coordinates of the solved points, (N,), mm: includes the rounding
+            by the user's origin and the chassis' motion. See `kantorovich` for the errors that it covers.
+        carried_bound: error bound of the reported coordinates of the carried points, (N,), mm.
+        carried_gain: largest ratio of the movement of a carried point to that of its carriers, (N,).
+        condition: condition number of the Jacobian, (N,). Between the middle poses of groups that share an
+            inverse it is interpolated, to a few per cent, and to a third where the power of two that scales
+            a row changes.
+        residual: largest row of C(y), for the exact values of the user's numbers, (N,), in the mechanism's
+            units.
+        proven: error bound of every reported number, rates and angles included, by quantity and name; empty
+            unless requested.
+        expected: largest error of every number that the method makes if nothing is wrong; likewise.
     """
 
     times: Array
@@ -74,7 +75,7 @@ class Proof:
     expected: Numbers = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        """In a line: how many instants, and the largest bounds."""
+        """One line with the number of instants and the largest bounds."""
         largest = (float(np.max(each, initial=0.0)) for each in (self.bound, self.carried_bound))
         solved, carried = (f"{bound:.2g} mm" for bound in largest)
         count = len(self.times)
@@ -91,15 +92,16 @@ def prove(
 ) -> Proof:
     """Prove poses, in blocks of instants.
 
-    What is reported was summed, and shifted to the user's origin and by the chassis' motion, apart from
-    the coordinates y that are proven. So it is compared with where the points exactly are.
+    The reported numbers were summed, and moved by the user's origin and the chassis' motion, separately from
+    the coordinates y that are proven. So the bounds compare the reported numbers with the exact points.
 
     Args:
-        samples: what is reported, at instants of shape (N,).
-        rates: bound each number by itself.
-        certain: take the values of the laws as they are computed for exact; of positions alone.
-        left: how far each pose was left because no more was asked, (N,), in units; what `solved` says of it
-            unless given.
+        solved: the scene whose poses are proven.
+        samples: the reported numbers, at instants of shape (N,).
+        rates: whether to bound each number separately.
+        certain: whether the computed values of the laws count as exact; used for positions only.
+        left: distance of each pose to its assembly at which the solver stopped, (N,), in units; from
+            `solved.unsolved` unless given.
     """
     times, effects = samples.times, solved.readout.plan.computed
     order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
@@ -108,7 +110,7 @@ def prove(
     for low in range(0, len(times), BLOCK):
         here = slice(low, low + BLOCK) if order is None else order[low : low + BLOCK]
         numbers = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in samples.numbers.items()}
-        with np.errstate(all="ignore"):  # what overflows comes out infinite, which proves nothing
+        with np.errstate(all="ignore"):  # an overflow gives an infinite bound
             if rates:
                 unsolved = solved.unsolved(times[here]) if left is None else left[here]
                 poses, exact = _with_rates(solved, times[here], unsolved)
@@ -123,16 +125,16 @@ def prove(
 
 
 def _positions(solved: SolvedScene, times: Array, certain: bool) -> tuple[CertifiedPoses, EnclosedPoses]:
-    """Poses at some instants that are certified, and where their points exactly are."""
+    """Certified poses at some instants, and enclosures of their exact points."""
     mechanism, (y,) = solved.readout.mechanism, solved.coordinates(times, 0)
     drives = _drives(mechanism)
     groups, factors = grouped(mechanism.map, y, drives)
     together, driven = groups.together, {}
     for place, drive in drives.items():
         law = solved.functions[drive.input]
-        doubt = np.zeros_like(times) if certain else law.rounding(times)
-        lacking, uncertainty = drive.rounding(y[:, place], mechanism.drawing, doubt)
-        driven[place] = Enclosed.of(y[:, place], lacking, uncertainty, uncertainty).together(together)
+        of_law = np.zeros_like(times) if certain else law.rounding(times)
+        low, uncertainty = drive.rounding(y[:, place], mechanism.drawing, of_law)
+        driven[place] = Enclosed.of(y[:, place], low, uncertainty, uncertainty).together(together)
     poses = CertifiedPoses.of(mechanism, groups, factors, together(y), driven)
     functions = solved.readout.chassis.functions
     laws = {name: [law.enclosed(times)[0].together(together)] for name, law in functions.items()}
@@ -143,7 +145,7 @@ def _positions(solved: SolvedScene, times: Array, certain: bool) -> tuple[Certif
 
 
 def _with_rates(solved: SolvedScene, times: Array, unsolved: Array) -> tuple[CertifiedPoses, EnclosedPoses]:
-    """The same with the rates of the points, as many as were solved for."""
+    """Certified poses at some instants, and enclosures of their exact points and of all solved rates."""
     readout, mechanism = solved.readout, solved.readout.mechanism
     y, *rates = solved.coordinates(times, max(readout.plan.derivative, 2))
     groups, factors = grouped(mechanism.map, y, _drives(mechanism))
@@ -179,10 +181,12 @@ def _with_rates(solved: SolvedScene, times: Array, unsolved: Array) -> tuple[Cer
 def _slopes(
     readout: Readout, poses: CertifiedPoses, slopes: Array, laws: Laws, unsolved: Array, way: Way
 ) -> tuple[Points, Points]:
-    """The derivatives of places along a way: as rates where it alone moves, by 1 a unit of time.
+    """Enclosures of the derivatives of positions along a way, after and before the chassis' rotations.
+
+    They are rates of a motion in which only the input, or the gap, of the way moves, by 1 per unit of time.
 
     Args:
-        slopes: the computed ones of y, (N, size).
+        slopes: computed derivatives of y along the way, (N, size).
     """
     mechanism, chassis = readout.mechanism, readout.chassis
     known, driven = {}, way.input if isinstance(way, ByInput) else ""
@@ -213,13 +217,14 @@ def _left_out(
     states: Sequence[Array],
     powers: Sequence[Array],
 ) -> list[Array]:
-    """By derivative, what summing a series leaves out and rounds, at most in each group, (G, size).
+    """Largest truncation and rounding error of the series in each group, by derivative, (G, size).
 
-    Terms grow with the distance from where their series starts, so that they are largest at an end, of the
-    group or of a series.
+    Terms grow with the distance from the start of their series. So they are largest at an end of the group
+    or of a series, and only these instants are evaluated.
 
     Args:
         states: coordinates and their derivatives, (N, size), units per s^d.
+        powers: powers of the unit of time of each group, s^d, each (G,).
     """
     groups, found = poses.groups, []
     pieces = groups.together(solved.pieces(times).astype(float))
@@ -241,12 +246,12 @@ def _left_out(
 def enclosed_poses(
     readout: Readout, points: Sequence[Points], laws: Laws, powers: Sequence[Array]
 ) -> EnclosedPoses:
-    """Where the points of poses are after what the chassis does.
+    """Enclosures of points with the motion of the chassis added.
 
     Args:
-        points: by time derivative, before that, in units per unit of time^d.
-        laws: of what moves the chassis, mm or rad and s.
-        powers: of the unit of time of each group, s^d, (G, 1).
+        points: points in the chassis' frame, by time derivative, in units per unit of time^d.
+        laws: laws of the inputs that move the chassis, mm or rad and s.
+        powers: powers of the unit of time of each group, s^d, each (G, 1).
     """
     mechanism, chassis = readout.mechanism, readout.chassis
     scaled = {
@@ -262,11 +267,12 @@ def enclosed_poses(
 def _of_poses(
     times: Array, poses: CertifiedPoses, exact: EnclosedPoses, positions: Mapping[str, Array]
 ) -> tuple[Array, ...]:
-    """The arrays of a `Proof` at some instants, of positions that are reported there."""
+    """The arrays of a `Proof` at some instants, for the reported positions."""
     mechanism, groups, certificate = exact.mechanism, poses.groups, poses.certificate
     topology = mechanism.topology
     own = certificate.coordinates[..., : 3 * len(topology.moving)].max(axis=-1)
-    # Of carried points alone there is nothing here; a pose that is not proven is not proven for them either.
+    # The bound of solved points starts at 0, as the mechanism may report carried points only. If the pose is
+    # not proven, both bounds are infinite.
     bound, carried = np.where(np.isfinite(own), 0.0, np.inf), np.zeros_like(own)
     gain = np.ones_like(own)
     for name, place in positions.items():
@@ -287,9 +293,9 @@ def _of_poses(
 
 
 def _gain(exact: EnclosedPoses, name: str) -> Array:
-    """How many times as far as its carriers a carried point moves at most, (G, m).
+    """Largest ratio of the movement of a carried point to that of its carriers, (G, m).
 
-    By its carriers it has the derivatives K1 = a I - c [e2]x, K2 = b I + c [e1]x and
+    The derivatives of the carried point by its carriers are K1 = a I - c [e2]x, K2 = b I + c [e1]x and
     K0 = (1 - a - b) I + c [e2 - e1]x.
     """
     mechanism = exact.mechanism
@@ -306,7 +312,7 @@ def _gain(exact: EnclosedPoses, name: str) -> Array:
 def bounds_of_numbers(
     poses: EnclosedPoses, effects: Sequence[Effect], numbers: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """Proven error of every number, and the error that the method makes at most where nothing is wrong."""
+    """Proven error bound of every number, and the largest error that the method makes if nothing is wrong."""
     found: dict[str, dict[str, Array]] = {quantity: {} for quantity in numbers}
     for effect in effects:
         for quantity, errors in effect.errors(poses, numbers).items():
@@ -315,7 +321,7 @@ def bounds_of_numbers(
 
 
 def _inflated(found: Numbers, which: int, factor: float) -> dict[str, dict[str, Array]]:
-    """One of two bounds of each number, times a factor, in place; what cannot be told is not bounded."""
+    """One of the two bounds of each number, times a factor, in place; NaN becomes infinite."""
     inflated = {q: {n: e[which] for n, e in part.items()} for q, part in found.items()}
     for part in inflated.values():
         for bound in part.values():
@@ -325,7 +331,7 @@ def _inflated(found: Numbers, which: int, factor: float) -> dict[str, dict[str, 
 
 
 def driven_coordinates(mechanism: Mechanism, laws: Laws) -> dict[int, list[Enclosed]]:
-    """By place in y, where each driven coordinate and its time derivatives are, each (N,)."""
+    """Enclosures of each driven coordinate and its time derivatives, by place in y, each (N,)."""
     return {
         place: drive.enclosed(laws[drive.input], mechanism.drawing)
         for place, drive in _drives(mechanism).items()
@@ -338,10 +344,10 @@ def _drives(mechanism: Mechanism) -> dict[int, Drive]:
 
 
 def unit_of_time(states: Sequence[Array]) -> Array:
-    """Powers of two that make rates and the roots of accelerations about 1 per unit of time, (G,), s.
+    """Units of time, powers of two, in which the largest rate or root of an acceleration is about 1, (G,), s.
 
     Args:
-        states: coordinates and their derivatives, (G, ...), each over all that share the unit.
+        states: coordinates and their derivatives, each (G, ...); the values of a row share a unit.
     """
     fastest = np.zeros(len(states[0]))
     for d, state in enumerate(states[1:], 1):
@@ -353,10 +359,10 @@ def unit_of_time(states: Sequence[Array]) -> Array:
 
 @dataclasses.dataclass
 class _Bounds:
-    """Bounds of every number at some instants, written block by block.
+    """Bounds of every number at all instants, written block by block.
 
     Attributes:
-        count: of the instants.
+        count: number of instants.
     """
 
     count: int
@@ -364,12 +370,12 @@ class _Bounds:
     expected: dict[str, dict[str, Array]] = field(default_factory=dict)
 
     def put(self, here: slice | Indices, groups: Groups, *parts: Numbers) -> None:
-        """Write proven and expected bounds at some of them, by group."""
+        """Write proven and expected bounds, by group, at the instants `here`."""
         for whole, part in zip((self.proven, self.expected), parts, strict=True):
             for quantity, arrays in part.items():
-                found = whole.setdefault(quantity, {})  # one that nothing is asked of is one all the same
+                found = whole.setdefault(quantity, {})  # also for a quantity without numbers
                 for name, array in arrays.items():
                     if name not in found:
-                        # By components, so that instants lie side by side where they are read and written.
+                        # Components first in memory, so that reads and writes run over contiguous instants.
                         found[name] = np.empty((*array.shape[2:], self.count)).T
                     found[name][here] = groups.apart(array)

@@ -1,4 +1,4 @@
-"""Frozen data classes whose mappings and arrays nobody can write into, also behind a pickle."""
+"""Frozen data classes whose mappings and arrays are read-only, also after pickling."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 
 class ReadOnly:
-    """A data class that makes what it holds read-only, and is made again from its fields by a pickle."""
+    """A data class that makes its mappings and arrays read-only; a pickle makes it again from its fields."""
 
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
@@ -25,6 +25,6 @@ class ReadOnly:
                     array.setflags(write=False)
 
     def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
-        # A read-only view of a dictionary does not pickle, and arrays come back as ones that can be written.
+        # A read-only view of a dictionary cannot be pickled, and arrays come back writeable.
         values = (getattr(self, field.name) for field in fields(self))
         return type(self), tuple(dict(v) if isinstance(v, MappingProxyType) else v for v in values)

@@ -1,4 +1,4 @@
-"""Turns the states of points into a table of the numbers that a scene asks for."""
+"""Computes the table of numbers that a scene requests from the states of its points."""
 
 from __future__ import annotations
 
@@ -20,25 +20,27 @@ from pointcoord.results.table import Table, vectors
 Array = NDArray[np.float64]
 Slopes = Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]]
 Laws = Mapping[str, Sequence[Array]]
-"""Of inputs that move the chassis the values and their time derivatives, each (N,), mm or rad."""
+"""Values and time derivatives of the inputs that move the chassis, each (N,), mm or rad."""
 States = Sequence[Mapping[str, Array]]
-"""For each time derivative, the points' states of shape (..., N, 3), mm, in the chassis' frame, from the
+"""For each time derivative, the states of points, (..., N, 3), mm, in the chassis' frame, from the
 mechanism's origin."""
 
-# Instants at a time: what is made on the way stays in a second-level cache, and is long enough for numpy.
+# Instants of a block: intermediate results stay in a second-level cache, and arrays are long enough for
+# numpy.
 BLOCK = 4096
-# Instants of one series from which on looking for cells pays (see `cells`).
+# Fewest instants of one series for which cells pay (see `cells`).
 ENOUGH = 1024
 
 
 @dataclass(frozen=True, eq=False)
 class Readout:
-    """How states become results: of a motion, of many designs, or of a map.
+    """Computes results from states, for a motion, many designs or a map.
 
     Attributes:
+        mechanism: the mechanism, of one car or of many designs.
         plan: the effects to compute.
-        chassis: what it does, which is added to the points' states.
-        axes: the car's, along which angles are measured.
+        chassis: the motion of the chassis, which is added to the states of the points.
+        axes: the axes of the car, along which angles are measured.
     """
 
     mechanism: Mechanism
@@ -51,14 +53,14 @@ class Readout:
         return Table.of(self.plan, self.mechanism.topology)
 
     def room(self, count: int) -> Array:
-        """Room for a table at so many instants, (..., height, N)."""
+        """An empty table for `count` instants, (..., height, N)."""
         return np.empty((*self.mechanism.drawn.shape[:-1], self.table.height, count))
 
     def laws(self, times: Array) -> Laws:
-        """What moves the chassis at instants.
+        """The laws of the inputs that move the chassis, at instants.
 
         Raises:
-            InputOutOfRange: a value, a rate or an acceleration that is too large to be added to anything.
+            InputOutOfRange: a value, a rate or an acceleration is too large to be added to a position.
         """
         chassis, reported = self.chassis, max(self.table.reported, default=0)
         return {
@@ -69,18 +71,18 @@ class Readout:
         }
 
     def states(self, rows: Array) -> list[dict[str, Array]]:
-        """By time derivative, the states that are reported or needed, to be filled: views of a table.
+        """The states that are reported or needed, by time derivative, to be filled in.
 
-        Those that are only needed are beside it. Those of the chassis' points, which stand in its frame, are
-        filled in.
+        Reported states are views of the table, the others are in an array of their own. The states of chassis
+        points, which are constant in the chassis' frame, are already filled in.
         """
         table, drawn = self.table, self.mechanism.drawn_places
-        beside = np.empty((*rows.shape[:-2], 3 * len(table.spare), rows.shape[-1]))
+        spare = np.empty((*rows.shape[:-2], 3 * len(table.spare), rows.shape[-1]))
         found: list[dict[str, Array]] = [{} for _ in range(self.plan.derivative + 1)]
         for (order, name), first in table.states.items():
             found[order][name] = vectors(rows, first)
         for i, (order, name) in enumerate(table.spare):
-            found[order][name] = vectors(beside, 3 * i)
+            found[order][name] = vectors(spare, 3 * i)
         for order, states in enumerate(found):
             for name in states.keys() & self.mechanism.topology.chassis:
                 states[name][...] = drawn[name][..., None, :] if order == 0 else 0.0
@@ -89,17 +91,18 @@ class Readout:
     def complete(
         self, laws: Laws, states: States, rows: Array, y: Array | None = None, *, add: bool = True
     ) -> None:
-        """Compute the numbers that are made of states, and add to those what reporting adds.
+        """Compute the numbers of the effects from states, then add origin and displacement to the states.
 
         Args:
-            states: those that are reported have their places in the table too, and may be views of it.
+            laws: laws of the inputs that move the chassis.
+            states: states of the points. Reported states also have rows in the table and may be views of it.
             rows: a table or some columns of one, shape (..., height, N).
-            y: the coordinates, (..., N, size), where an effect takes derivatives by an input.
-            add: whether to add it.
+            y: the coordinates, (..., N, size), if an effect takes derivatives by an input.
+            add: whether to add the origin and the displacement of the chassis.
         """
         in_chassis, slopes = states, {} if y is None else self.slopes(laws, y)
         if not self.chassis.centres.keys().isdisjoint(laws):
-            # The states may be views of the table, which those of the turned car are written into.
+            # The states may be views of the table, and the states of the rotated car overwrite the table.
             in_chassis = [{name: state.copy() for name, state in of.items()} for of in states[:2]]
             states = self.chassis.turned_by(laws, states)
             for (derivative, point), first in self.table.states.items():
@@ -117,7 +120,7 @@ class Readout:
                 self.table.add(rows, derivative, more)
 
     def slopes(self, laws: Laws, y: Array) -> Slopes:
-        """By way, the derivatives of positions along it, after the turns of the chassis and before."""
+        """Derivatives of positions along each way, by way, after and before the rotations of the chassis."""
         ways = self.plan.ways(self.mechanism.topology)
         places, every = moved_along(self.mechanism, y, ways)
         return {
@@ -126,7 +129,7 @@ class Readout:
         }
 
     def added(self, laws: Laws) -> list[Array | None]:
-        """By time derivative, what reporting adds to every point; None where that is zero."""
+        """Origin plus displacement of the chassis, by time derivative, added to every point; None if zero."""
         found: list[Array | None] = [*self.chassis.shifts(laws)] or [None] * (self.plan.derivative + 1)
         origin = self.mechanism.origin[..., None, :]
         if found[0] is not None:
@@ -137,6 +140,6 @@ class Readout:
 
 
 def alone(laws: Laws, way: Way) -> dict[str, list[Array]]:
-    """Laws by which one input goes at unit rate and the others are held."""
+    """Laws in which the input of a way moves at unit rate and the other inputs are held."""
     driven = way.input if isinstance(way, ByInput) else ""
     return {name: [law[0], np.full_like(law[0], float(name == driven))] for name, law in laws.items()}

@@ -1,4 +1,4 @@
-"""What a scene asked for, at some instants, read by name."""
+"""The numbers that a scene requests, at some instants, read by name."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 class Channel(Mapping[str, Array]):
     """The numbers of one quantity by name, read-only.
 
-    It can tell which effects give what is missing, because the scene did not ask for them.
+    If a number is missing because the scene does not request its effect, the error names the effect.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class Channel(Mapping[str, Array]):
 
     @property
     def computed(self) -> bool:
-        """Whether the scene asked for any of it."""
+        """Whether the scene requests any number of the quantity."""
         return bool(self._arrays)
 
     def with_arrays(self, arrays: Mapping[str, Array]) -> Channel:
@@ -65,7 +65,7 @@ class Channel(Mapping[str, Array]):
         return f"<{self.quantity.words}: {', '.join(self) if self.computed else 'not computed'}>"
 
     def __reduce__(self) -> tuple[type[Channel], tuple[object, ...]]:
-        # Arrays come back from a pickle as arrays that can be written.
+        # Arrays come back from a pickle writeable.
         return type(self), (self.quantity, self._arrays, self.plan, self.topology)
 
 
@@ -87,7 +87,7 @@ class Named(ReadOnly):
         return f"<{type(self).__name__}: {self._quantities}>"
 
     def each(self, change: Callable[[Array, int], Array]) -> dict[str, Channel]:
-        """The numbers with every array changed, and told how many dimensions follow its instants', 0 or 1."""
+        """The numbers with every array changed; `change` also gets the count of dimensions after instants."""
         return {
             quantity: channel.with_arrays(
                 {name: change(array, channel.quantity.of != "car") for name, array in channel.items()}
@@ -102,12 +102,12 @@ class Named(ReadOnly):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Samples(Named):
-    """What a scene asked for, at some instants.
+    """The numbers that a scene requests, at some instants.
 
     Attributes:
-        times: shape (N,), s.
-        numbers: by quantity and name, of points and bodies (N, 3), of the car (N,); see
-            `effects.registry.QUANTITIES` for what there is and its units.
+        times: instants, shape (N,), s.
+        numbers: numbers by quantity and name, (N, 3) of points and bodies and (N,) of the car; see
+            `effects.registry.QUANTITIES` for all quantities and their units.
     """
 
     times: Array
@@ -135,7 +135,7 @@ class Samples(Named):
         return Samples(self.times.reshape(shape), self.each(reshaped))
 
     def part(self, first: int, last: int) -> Samples:
-        """Some of the instants of samples at instants of shape (N,), from number `first` to before `last`."""
+        """The samples at the instants from number `first` to before `last`; instants of shape (N,)."""
         some = slice(first, last)
         numbers = self.each(lambda array, after: array[..., some, :] if after else array[..., some])
         return Samples(self.times[some], numbers)

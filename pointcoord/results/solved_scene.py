@@ -1,6 +1,6 @@
-r"""A scene whose linkage is solved, in whichever way: what is read at instants, and proven.
+r"""A scene whose linkage is solved by any method: the interface for reading and proving numbers at instants.
 
-Of the points that are solved for, each way knows the states. What rides on a body is put together of these,
+Every method gives the states of the solved points. The states of a point carried by a body follow from them,
 
     p = p_0 + a e1 + b e2 + c e1 x e2,
     p'' = p_0'' + a e1'' + b e2'' + c (e1'' x e2 + 2 e1' x e2' + e1 x e2'').
@@ -29,15 +29,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class SolvedScene(ABC):
-    """What a motion is read from.
+    """The solution from which a motion is read.
 
     Attributes:
+        readout: computes results from states.
         functions: the laws of the inputs that drive the linkage.
-        status: whether it covers all that was asked for, and if not, what stopped the solver.
-        solving: what solving took.
-        start, stop: from when on and up to when it is known, s; infinite where it is not at all.
-        orders: of every series that it is summed from.
-        notes: where it was not solved as the scene asks.
+        status: whether the whole scene is solved, and if not, what stopped the solver.
+        solving: work of solving.
+        start, stop: first and last instant that is solved, s; inf and -inf if there is none.
+        orders: order of every series of the solution.
+        notes: where the scene was not solved as requested.
     """
 
     readout: Readout
@@ -50,55 +51,56 @@ class SolvedScene(ABC):
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 
     dense: ClassVar[bool] = True
-    """Whether it is known between the scene's instants too."""
+    """Whether the solution is also known between the scene's instants."""
 
     @abstractmethod
     def solved(self, instants: Array, derivatives: int) -> Sequence[Array]:
-        """The coordinates that are solved for, maybe with others after them, and their derivatives.
+        """The unknown coordinates, possibly followed by others, and their derivatives.
 
         Args:
-            instants: shape (N,), s; they do not decrease.
+            instants: instants that do not decrease, shape (N,), s.
         Returns:
-            By derivative, each (..., coordinates, N), units per s^d.
+            One array for each derivative, (..., coordinates, N), units per s^d.
         """
 
     @abstractmethod
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """y and its derivatives up to one, or as many as were solved for, each (..., N, size), units per s^d.
+        """y and its derivatives, each (..., N, size), units per s^d.
 
         Args:
             instants: shape (N,), s, in any order.
+            derivatives: highest derivative; fewer are returned if fewer were solved for.
         """
 
     def summed(self, instants: Array) -> Sequence[Summed]:
-        """How `coordinates` sums each derivative; empty if they were solved for at the instants."""
+        """Magnitudes of the terms that `coordinates` sums for each derivative; empty if nothing is summed."""
         return ()
 
     def pieces(self, instants: Array) -> NDArray[np.intp]:
-        """Number of the series that each instant is summed from, (N,); of those that were solved for any."""
+        """Number of the series from which each instant is summed, (N,); all 0 if nothing is summed."""
         return np.zeros(len(instants), dtype=np.intp)
 
     def unsolved(self, instants: Array) -> Array:
-        """How far each pose was left because no more was asked, proven, in units, (N,)."""
+        """Proven distance of each pose to its assembly at which the solver stopped, in units, (N,)."""
         return np.zeros(len(instants))
 
     @property
     def work(self) -> Work:
-        """What solving took, and what reading takes of each instant."""
+        """Work of solving, and work of reading for each instant."""
         table, chassis = self.readout.table, self.readout.mechanism.topology.chassis
         moving = [name for _, name in (*table.states, *table.spare) if name not in chassis]
         derivatives = self.readout.plan.derivative + 1
         return self.solving + Work(derivatives_evaluated=derivatives, coordinates_evaluated=3 * len(moving))
 
     def states(self, instants: Array, rows: Array) -> list[dict[str, Array]]:
-        """By time derivative, the states of the points that the plan asks for (see `readout.States`).
+        """The states of the points that the plan needs, by time derivative (see `readout.States`).
 
         Args:
-            instants: shape (N,), s; they do not decrease.
-            rows: a table of results or some columns of one, shape (..., height, N). The states that are
-                reported are put into their places, and those that are returned may be views of them.
+            instants: instants that do not decrease, shape (N,), s.
+            rows: a table of results or some columns of one, shape (..., height, N). Reported states are
+                written into it, and the returned states may be views of it.
         Raises:
-            WrongArgument: an instant that is not covered, or not a number.
+            WrongArgument: an instant outside the motion, or not a number.
         """
         outside = ~((instants >= self.start) & (instants <= self.stop))
         if outside.any():
@@ -127,7 +129,11 @@ class SolvedScene(ABC):
         self.fill_plainly(times, rows)
 
     def fill_plainly(self, times: Array, rows: Array, *, add: bool = True) -> None:
-        """The same by the plain formulas; with what reporting adds or without."""
+        """Fill a table by evaluating the formulas at every instant.
+
+        Args:
+            add: whether to add the origin and the displacement of the chassis.
+        """
         for low in range(0, len(times), BLOCK):
             here, block = times[low : low + BLOCK], rows[..., low : low + BLOCK]
             y = self.coordinates(here, 0)[0] if self.readout.plan.along_ways else None

@@ -1,7 +1,8 @@
-"""Where the numbers of a motion are in a table: a row for each number, a column for each instant.
+"""The layout of the table of a motion's numbers: one row for each number, one column for each instant.
 
-The numbers of a row lie side by side in memory. So series are summed right into their place, what is added to
-all points is one sum for each derivative, and a block of columns stays in a cache until it is whole.
+The numbers of a row are contiguous in memory. So series are summed directly into their rows, one sum for each
+derivative adds the chassis' displacement to all points, and a block of columns stays in a cache until it is
+complete.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from pointcoord.results.samples import Channel, Samples
 
 Array = NDArray[np.float64]
 State = tuple[int, str]
-"""A time derivative, and the point that it is of."""
+"""A time derivative, and the name of the point."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +29,15 @@ class Table:
     """The rows of a table.
 
     Attributes:
-        plan: the effects whose numbers it has. topology: of the mechanism that they are of.
-        states: the first of the three rows of every state that is reported: from row 0 on those of points
-            that move, in the last rows the chassis'; of each by derivative.
-        spare: states that are only needed; they are in no table.
-        places: by quantity and name the rows of every number, in the order of results.
-        computed: the effects that compute their numbers from states.
-        first_still: the row from which on the chassis' points are. height: how many rows there are.
+        plan: the effects whose numbers are in the table.
+        topology: topology of the mechanism.
+        states: first of the three rows of every reported state. The rows of moving points begin at row 0,
+            those of chassis points at `first_still`; each group is in the order of derivatives.
+        spare: states that effects need but that are not reported; they have no rows.
+        places: rows of every number, by quantity and name, in the order of results.
+        computed: effects that compute their numbers from states.
+        first_still: first row of the chassis points.
+        height: number of rows.
         reported: the derivatives of points that are reported.
     """
 
@@ -66,7 +69,7 @@ class Table:
                 every = points if quantity.of == "point" else tuple(topology.bodies)
                 rows, names = 1 if quantity.of == "car" else 3, gives[quantity.name]
                 those = every if names is None else names
-                # A number that two effects give is there once.
+                # A number that two effects give has one row only.
                 for name in (name for name in those if name not in places[quantity.name]):
                     places[quantity.name][name] = slice(height, height + rows)
                     height += rows
@@ -80,7 +83,7 @@ class Table:
         return cls(plan, topology, states, spare, places, computed, first_still, height, reported)
 
     def add(self, rows: Array, derivative: int, more: Array) -> None:
-        """Add the same, (..., N, 3), to a reported derivative of all points in a table."""
+        """Add a vector at each instant, (..., N, 3), to a reported derivative of all points in a table."""
         place = self.reported.index(derivative)
         moving = 3 * sum(first < self.first_still for first in self.states.values())
         for low, high in ((0, moving), (self.first_still, self.height)):
@@ -90,10 +93,10 @@ class Table:
             points += more.swapaxes(-1, -2)[..., None, :, :]
 
     def named(self, times: Array, rows: Array) -> Samples:
-        """A table's numbers by name.
+        """The numbers of a table by name.
 
         Args:
-            rows: the table, shape (..., height, N); the numbers are views of it.
+            rows: the table, shape (..., height, N); the numbers are views of the table.
         """
         numbers = {}
         for name, quantity in QUANTITIES.items():
@@ -102,7 +105,7 @@ class Table:
         return Samples(times.copy(), numbers)
 
     def put(self, rows: Array, quantity: str, name: str, array: Array) -> None:
-        """Write one number at all instants, as an effect gives it, into a table."""
+        """Write the values of one number at all instants, as an effect returns them, into a table."""
         _seen(rows, self.places[quantity][name])[...] = array
 
 

@@ -1,7 +1,8 @@
 r"""Assembly: from the drawing to a pose, along a path that cannot change branch (see `follower`).
 
-The drawing is first assembled at its own inputs, then the inputs are taken from there to the wanted ones.
-What stops a path is told by the forces in the links that hold each other in balance there.
+The drawing is first assembled at its own inputs. Then the inputs move from there to the wanted inputs. Where
+a path stops, a set of forces in the links is in balance with itself: the links that carry these forces are
+reported as the limit.
 """
 
 from __future__ import annotations
@@ -22,16 +23,16 @@ from pointcoord.solve.place import Path
 
 Array = NDArray[np.float64]
 
-# Turn in one step, rad, at most: of more than half a turn the ends do not tell the way round.
+# Largest rotation in one step, rad: above pi the two ends do not show which way round the input goes.
 LONGEST = 1.0
 
 
 @dataclass(frozen=True)
 class Pose(Path):
-    """One assembled configuration or a batch of them.
+    """One assembled pose or a batch of assembled poses.
 
     Attributes:
-        mechanism: what is assembled; lengths of the path are in its units.
+        mechanism: the assembled mechanism; lengths are in its units.
     """
 
     mechanism: Mechanism
@@ -54,9 +55,9 @@ class Pose(Path):
     def bound(self) -> Array:
         """Proven distance of every coordinate of the solved points to the exact assembly, shape (...,), mm.
 
-        Infinite where nothing is proven. See `kantorovich` for what it covers; computed when it is read.
+        Infinite where nothing is proven. See `kantorovich` for the errors that it covers. Computed when read.
         """
-        # Imported here, like all that proves: most poses are never asked for it.
+        # Imported here, like all modules that prove: most runs read no bound of a pose.
         from pointcoord.bounds.certified_poses import pose_bound
 
         return pose_bound(self.mechanism, self.y, self.factors)
@@ -66,9 +67,9 @@ def close_drawing(mechanism: Mechanism, instant: float | None = None, tolerance:
     """The drawing assembled at its own inputs.
 
     Args:
-        tolerance: as of `follow`.
+        tolerance: see `follow`.
     Raises:
-        AssemblyError: it cannot be, or two pieces of a line turn over against each other on the way.
+        AssemblyError: the drawing cannot be assembled, or two pieces of a line turn over on the way.
     """
     path, stopped = closed_drawings(mechanism, instant, tolerance)
     for error in stopped.values():
@@ -79,7 +80,7 @@ def close_drawing(mechanism: Mechanism, instant: float | None = None, tolerance:
 def closed_drawings(
     mechanism: Mechanism, instant: float | None = None, tolerance: float = 0.0
 ) -> tuple[Path, dict[int, AssemblyError]]:
-    """The drawings of a batch assembled at their own inputs, and what stops those that are not, by number."""
+    """The drawings of a batch assembled at their own inputs, and the errors of those that stop, by number."""
     own = mechanism.drawn[..., mechanism.map.unknowns :]
     factors = mechanism.drawn_factors if mechanism.drawn.ndim == 1 else None
     path = follow(mechanism.map, mechanism.drawn, own, factors, tolerance)
@@ -101,16 +102,16 @@ def assemble(
 ) -> Pose:
     """The pose for given inputs on the branch of the drawing.
 
-    The drawing is first assembled at its own inputs, then the inputs are taken from there to the wanted
-    ones along a straight line of the driven coordinates.
+    The drawing is first assembled at its own inputs. Then the driven coordinates move along a straight line
+    to their values at the given inputs.
 
     Args:
         inputs: value of each input, shape (...,), rad or mm.
         instant: for messages, s.
-        closed: the closed drawing, if it is at hand.
-        tolerance: how far the pose may be from the exact assembly, rounding apart, in units.
+        closed: the closed drawing, if available.
+        tolerance: allowed distance of the pose to the exact assembly, without rounding, in units.
     Raises:
-        AssemblyError: a pose on the way is singular; tells where, and which input to reduce.
+        AssemblyError: a pose on the way is singular; the error states where, and which input to reduce.
     """
     drawing = close_drawing(mechanism, instant) if closed is None else closed
     pose, stopped = assembled(mechanism, inputs, drawing, instant, tolerance)
@@ -122,7 +123,7 @@ def assemble(
 def assembled(
     mechanism: Mechanism, inputs: Mapping[str, Array], drawing: Path, instant: float | None, tolerance: float
 ) -> tuple[Pose, dict[int, AssemblyError]]:
-    """The poses of a batch for given inputs, and what stops those that have none, by number."""
+    """The poses of a batch for given inputs, and the errors of members that have no pose, by number."""
     target, path = driven_to(mechanism, inputs, drawing, tolerance)
     stopped = _stopped(mechanism, path, target, path.done < 1.0, "the mechanism cannot be assembled", instant)
     work = drawing.work + path.work
@@ -132,10 +133,10 @@ def assembled(
 def driven_to(
     mechanism: Mechanism, inputs: Mapping[str, Array], drawing: Path, tolerance: float
 ) -> tuple[Array, Path]:
-    """Known coordinates of given inputs, (..., known coordinates), and the paths there from the drawing.
+    """Known coordinates at given inputs, (..., known coordinates), and the paths there from the drawing.
 
-    The driven coordinates go straight there; but a turn, which is driven by its cosine and its sine, goes
-    round, and with it every input in proportion.
+    The driven coordinates move on a straight line. An angle is driven by its cosine and its sine: if an angle
+    changes, all inputs change in proportion instead.
     """
     wanted = {name: np.asarray(value, dtype=float) for name, value in inputs.items()}
     target = mechanism.known_series({name: value[..., None] for name, value in wanted.items()})[..., 0, :]
@@ -159,10 +160,11 @@ def driven_to(
 
 
 def by_inputs(mechanism: Mechanism, ends: Mapping[str, tuple[Array, Array]], goals: Array) -> Law:
-    """The paths along which every input goes from one value to another in proportion.
+    """The law of paths along which all inputs change in proportion from their first to their last values.
 
     Args:
-        ends: of each input, both (members,), rad or mm. goals: known coordinates at the ends.
+        ends: first and last value of each input, each (members,), rad or mm.
+        goals: known coordinates at the ends of the paths, (members, known coordinates).
     """
     cars = mechanism.drawn.ndim > 1
 
@@ -181,7 +183,7 @@ def by_inputs(mechanism: Mechanism, ends: Mapping[str, tuple[Array, Array]], goa
 
 
 def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:
-    """Poses of a mechanism as poses of a part of it (see `needed_part`)."""
+    """Poses of a mechanism, reduced to the coordinates of a part of it (see `needed_part`)."""
     if part is whole:
         return path
     y = path.y[..., part.layout.places_in(whole.layout)]
@@ -197,7 +199,7 @@ def _stopped(
     problem: str,
     instant: float | None,
 ) -> dict[int, AssemblyError]:
-    """What stops members of a batch, by number."""
+    """The errors of those members of a batch that `which` marks, by number."""
     found: dict[int, AssemblyError] = {}
     for number in np.flatnonzero(which).tolist():
         one = (np.arange(which.size) == number).reshape(which.shape)
@@ -215,23 +217,24 @@ def blocked(
     instant: float | None,
     change: Array | None = None,
 ) -> AssemblyError:
-    """What stops paths that end at poses on their way to `goal`, told for the first unfinished one.
+    """The error of the first unfinished path of a batch: where it stops, and what stops it.
 
-    Where a path ends, C_u loses rank, and its left null vector is a set of forces in the links that hold
-    each other in balance: the rows that take part are what limits the motion.
+    Where a path stops, C_u loses rank. Its left null vector is a set of forces in the links that are in
+    balance with each other: the links of its rows limit the motion.
 
     Args:
         problem: what could not be done, in words.
-        y: where they end, shape (..., size). factors: of C_u there.
-        goal: known coordinates, shape (..., known coordinates).
-        unfinished: shape (...).
-        change: how far each known coordinate would still go, with its sign; from there to the
-            goal unless given.
+        y: poses at which the paths stop, shape (..., size).
+        factors: factorisation of C_u at y.
+        goal: known coordinates at the ends of the paths, shape (..., known coordinates).
+        unfinished: paths that stopped before their end, shape (...).
+        change: remaining change of each known coordinate, with its sign; the way from y to the goal
+            unless given.
     """
     member = tuple(np.argwhere(unfinished)[0])
     known = y[..., mechanism.map.unknowns :]
 
-    def told(coordinates: Array) -> dict[str, float]:
+    def inputs_at(coordinates: Array) -> dict[str, float]:
         values = mechanism.input_values(np.broadcast_to(coordinates, known.shape))
         return {name: float(value[member]) for name, value in values.items()}
 
@@ -240,8 +243,8 @@ def blocked(
     pushes = _pushes(mechanism, y[member], balance * factors.row_scale[member], left)
     return AssemblyError(
         problem,
-        reached=told(known),
-        wanted=told(goal),
+        reached=inputs_at(known),
+        wanted=inputs_at(goal),
         condition=float(factors.condition[member]),
         reduce=max(pushes, key=pushes.__getitem__) if any(pushes.values()) else "",
         limits=mechanism.topology.strongest(balance),
@@ -250,13 +253,14 @@ def blocked(
 
 
 def _pushes(mechanism: Mechanism, y: Array, forces: Array, left: Array) -> dict[str, float]:
-    """How far each input pushes across the end of a path.
+    """Work of each input against the balanced forces at the end of a path, with a sum that is not negative.
 
-    There C_u loses rank: forces that hold each other in balance do no work on any motion of the unknowns, so
-    what is left of the inputs' way, C_w dw, works against them alone.
+    There C_u loses rank. Forces in balance with each other do no work on any motion of the unknowns. So only
+    the remaining change of the inputs, C_w dw, does work against them.
 
     Args:
-        forces: the balance, one per unscaled row. left: of every known coordinate, with its sign.
+        forces: the balanced forces, one for each unscaled row.
+        left: remaining change of every known coordinate, with its sign.
     """
     work = dict.fromkeys(mechanism.topology.required_inputs, 0.0)
     for drive in mechanism.topology.drives:

@@ -1,7 +1,7 @@
 """A chain of series and its derivatives summed at any instants, by matrix products.
 
-Sums are laid out with the instants side by side in memory: a row of instants for each number. So a product
-writes where its result belongs, and whatever is made of the sums runs along them.
+Each number has one row of sums, in which the instants are contiguous in memory. So a matrix product writes
+directly into its row, and later operations run along the rows.
 """
 
 from __future__ import annotations
@@ -18,18 +18,19 @@ Array = NDArray[np.float64]
 
 # Instants per matrix product: the powers and the results of a block stay in a second-level cache.
 BLOCK = 1024
-# Multiplications of a part of a product: OpenBLAS shares products of 2^20 out among threads, none of 2^19.
-# They wait for each other most of the time; one does as well by parts, to a tenth. Columns of one, at least.
+# Most multiplications of one part of a product, and fewest columns. OpenBLAS distributes products of 2^20
+# multiplications over threads, which mostly wait for each other, but none of 2^19: one thread with parts is
+# as fast to within a tenth.
 MOST, FEWEST = 2**19, 64
 
 
 @dataclass(frozen=True)
 class SeriesRows:
-    """A chain's series, and derivatives of them, ready to be summed: a row for each.
+    """Coefficients of a chain's series and of their derivatives, ready to be summed: one row for each series.
 
     Attributes:
-        starts, scales: of each segment, s.
-        tables: of each segment the coefficients, shape (..., rows, order + 1), per s**derivative.
+        starts, scales: first instant and unit of time of each segment, s.
+        tables: coefficients of each segment, shape (..., rows, order + 1), per s**derivative.
     """
 
     starts: tuple[float, ...]
@@ -41,8 +42,8 @@ class SeriesRows:
         """The rows of some derivatives of some coordinates.
 
         Args:
-            columns: for each segment its coefficients of the coordinates, shape (..., order + 1, m).
-            wanted: by time derivative, which of the m coordinates; the rows are in this order.
+            columns: coefficients of the m coordinates, for each segment, shape (..., order + 1, m).
+            wanted: numbers of the wanted coordinates for each time derivative. The rows are in this order.
         """
         tables = []
         for segment, piece in zip(chain.segments, columns, strict=True):
@@ -58,13 +59,13 @@ class SeriesRows:
         return self.tables[0].shape[:-1]
 
     def edges(self, instants: Array) -> list[int]:
-        """Where the instants of each segment begin among instants that do not decrease, and their end."""
+        """Index of the first instant of each segment, and the number of instants, which must not decrease."""
         return [0, *np.searchsorted(instants, self.starts[1:], side="left").tolist(), len(instants)]
 
     def sum(self, instants: Array, out: Array) -> None:
         """Sum the rows at instants that do not decrease, shape (N,), into an array of shape (..., rows, N).
 
-        With s = (t - start) / scale of the segment that t is in, each is sum_k table_k s^k.
+        Each sum is sum_k table_k s^k with s = (t - start) / scale of the segment that contains t.
         """
         edges = self.edges(instants)
         powers = np.empty((max(table.shape[-1] for table in self.tables), min(BLOCK, len(instants))))
@@ -85,7 +86,7 @@ def evaluate(chain: Chain, columns: Sequence[Array], instants: Array, derivative
     """Sum series at instants.
 
     Args:
-        columns: for each segment its coefficients of the wanted coordinates, shape (..., order + 1, m).
+        columns: coefficients of the m wanted coordinates, for each segment, shape (..., order + 1, m).
         instants: in any order, inside the chain, shape (N,), s.
         derivatives: highest time derivative wanted.
     Returns:
@@ -117,7 +118,7 @@ def derivative_tables(coefficients: Array, scale: float, derivatives: int) -> li
 
 
 def narrow_product(matrix: Array, columns: Array, out: Array) -> None:
-    """Write a product, shapes (..., m, k), (k, N) and (..., m, N), where it belongs, by parts."""
+    """Write a product, shapes (..., m, k), (k, N), into an array, (..., m, N), in parts of some columns."""
     step = max(MOST // max(matrix.shape[-2] * matrix.shape[-1], 1), FEWEST)
     for low in range(0, columns.shape[-1], step):
         here = slice(low, low + step)

@@ -1,18 +1,19 @@
-r"""Paths of the known coordinates, followed from pose to pose so that no step can change branch.
+r"""Follows paths of the known coordinates from pose to pose so that no step can change branch.
 
-Between two sets of known coordinates the path is straight, or a law leads from one to the other; what is not
-yet assembled is taken back in proportion. From each place a power series of the path is expanded, and
-followed as far as is proven (see `proven_step`): near it there is exactly one assembly, and it is the
-continuation of the one that the step started from. So the steps shrink on their own towards a pose where the
+Between two sets of known coordinates the path is straight or given by a law. A residual of the starting pose
+is reduced to zero in proportion along the path. From each pose a power series of the path is expanded and
+followed as far as proven (see `proven_step`): near the series there is exactly one assembly, the continuation
+of the assembly at the start of the step. So the steps become shorter by themselves towards a pose where the
 path ends.
 
-A place on the way is corrected only until Newton's method is proven to converge from it, which is one step as
-a rule; what it is still off is taken back along the rest of the path. Only the end is corrected to the
-tolerance. Rounding is not counted here: within the root of EPS of a pose where two branches cross, it may
-hide that they do. Nor is what cutting the series of a law leaves out, a turn's: of a step of h rad d =
-h^(p + 1) / (p + 1)!, so that where branches cross the assemblies along the cut law come within a root of d
-of both. A step that led past there would have to be no longer than that, and d goes with a higher power of
-it than the square.
+A pose on the way is corrected only until Newton's method is proven to converge from there, as a rule by one
+step. Its residual is reduced along the rest of the path. Only the end is corrected to the tolerance.
+
+Two errors are left out. Rounding: within the root of EPS of a pose where two branches cross, rounding may
+hide the crossing. Truncation of a law, that of a rotation: for a step of h rad the truncation error is
+d = h^(p + 1) / (p + 1)!. Where branches cross, the assemblies along the truncated law come within a root of d
+of both branches. A step past the crossing would have to be no longer than that root, but d is in proportion
+to a power of h above the square.
 """
 
 from __future__ import annotations
@@ -33,19 +34,19 @@ from pointcoord.solve.proven_step import hidden, orientation, prove, same_side
 
 Array = NDArray[np.float64]
 Law = Callable[[NDArray[np.intp], Array, int], Array]
-"""Series of the known coordinates of members, by number, about shares of their paths, both (m,), in the share
-and up to an order: (m, order + 1, size - unknowns)."""
+"""A path of the known coordinates: law(members, shares, order) expands the known coordinates of some members,
+by number, about shares of their paths, both (m,), as series in the share, (m, order + 1, size - unknowns)."""
 
-# Order of a series; of a large map, where every order is one more product of large matrices.
+# Order of a series; and for a large map, where every order costs one more product of large matrices.
 ORDER, OF_LARGE = 8, 3
-# A path that advances less than this fraction in a step has met the end of what can be assembled: steps
+# A path whose step is shorter than this share of the path has met the end of what can be assembled: steps
 # shrink in proportion to the distance to the end, which is then near 1e-12 of the path. The end is a fold,
-# where two assemblies meet as the root of the distance: they are still 1e-6 of the path apart, and
-# rounding, which grows as the inverse of that root, is near 1e-10.
+# where the distance of two assemblies falls as the root of the distance to the fold: they are still 1e-6 of
+# the path apart, and rounding, which grows as the inverse of that root, is near 1e-10.
 SMALLEST_STEP = 1e-13
-# Part of a step that is tried instead where digits have run out at its end.
+# Factor by which a step is shortened where digits have run out at its end.
 AGAIN = 0.1
-# Steps tried for a path, or for each part of it that is as long as a step may be.
+# Most steps for a path, or for each part of the path that is as long as the longest allowed step.
 STEPS = 2000
 
 
@@ -58,17 +59,17 @@ def follow(
     steps: int = STEPS,
     longest: float = 1.0,
 ) -> Path:
-    """Carry poses along paths of their known coordinates.
+    """Move poses along paths of their known coordinates.
 
     Args:
-        y: start, shape (..., size); what its residual is not zero by is taken back along the path.
+        y: start, shape (..., size); a residual of the start is reduced to zero along the path.
         target: known coordinates at the end of a straight path, shape (..., size - unknowns), or a law.
-        factors: factorisation of C_u at y, if it is at hand.
-        tolerance: how far the end may be from the exact assembly, rounding apart, in units.
-        steps: tried at most for each share `longest` of the path.
-        longest: share of the path in one step.
+        factors: factorisation of C_u at y, if available.
+        tolerance: allowed distance of the end to the exact assembly, without rounding, in units.
+        steps: most steps for each share `longest` of the path.
+        longest: largest share of the path in one step.
     Returns:
-        Poses at the ends of their paths, or where these stop.
+        Poses at the ends of their paths, or where the paths stop.
     """
     n, highest = system.unknowns, ORDER if len(system.rows) < LARGE else OF_LARGE
     batch = y.shape[:-1] if callable(target) else np.broadcast_shapes(y.shape[:-1], target.shape[:-1])
@@ -90,12 +91,12 @@ def follow(
     for tried in range(int(steps / min(longest, 1.0))):
         if not active.size:
             break
-        # What only has to be put together is so, as a rule, by one step of Newton's method.
+        # Where no known coordinate moves, one step of Newton's method assembles the pose as a rule.
         order = 1 if tried == 0 and still.all() else highest
         begun, local = done[active], factors.taken(active)
         left = 1.0 - begun
         with np.errstate(all="ignore"):
-            # In shares of what is left of the path.
+            # Series in the share of the remaining path.
             known = law(active, begun, order) * left[:, None, None] ** np.arange(order + 1.0)[:, None]
             series = expand(system, local, y[active], known, system.residual(y[active]))
             proof = prove(system, local.preconditioner, series)
@@ -108,11 +109,11 @@ def follow(
         end = np.where(length >= 1.0, 1.0, begun[able] + length * left[able])
         guess = (length[:, None, None] ** np.arange(order + 1.0) @ series)[:, 0]
         guess[:, n:] = law(active, end, 0)[:, 0]
-        # On the way it is enough to be where Newton's method is proven to converge.
+        # On the way any pose will do from which Newton's method is proven to converge.
         allowed = np.where(end == 1.0, tolerance, np.inf)
         reached = newton_refine(system, guess, (1.0 - end)[:, None] * offset[active], allowed)
         # In exact arithmetic every correction converges and no path crosses a fold, where the determinant
-        # changes its sign. One that does has run out of digits: a drawing on a fold, to within rounding.
+        # changes its sign. A path that does has run out of digits, like one from a drawing on a fold.
         there, factorised = factors_at(system, reached)
         work += reached.work + factorised
         good = reached.converged & proof.within(np.abs(reached.y - guess)[:, :n])
@@ -127,7 +128,7 @@ def follow(
         ]
     stopped = np.flatnonzero((done < 1.0) & (rest > 0.0))
     if stopped.size:
-        # Where a path ends is told as exactly as an assembly is.
+        # A pose where a path stops is corrected as exactly as an assembled pose.
         ends = newton_refine(system, y[stopped], offset[stopped] * (1.0 - done[stopped])[:, None])
         there, factorised = factors_at(system, ends)
         work += ends.work + factorised
@@ -139,7 +140,7 @@ def follow(
 
 
 def _straight(start: Array, goals: Array) -> Law:
-    """The straight paths between known coordinates, each (members, size - unknowns)."""
+    """The law of straight paths between known coordinates, start and goals (members, size - unknowns)."""
     change = goals - start
 
     def law(members: NDArray[np.intp], shares: Array, order: int) -> Array:

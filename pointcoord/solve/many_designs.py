@@ -1,10 +1,10 @@
-"""Many designs of one suspension solved together, with what stopped those that cannot be solved.
+"""Solves many designs of one suspension together, and says what stopped those that cannot be solved.
 
-Drawings are closed and poses assembled at once, each along its own proven steps. Then designs share one
-series in the inputs, where these come back often enough (see `series_in_inputs`), or the segments of a chain
-of series in time; one that asks for much shorter ones goes on without the others (see `build_chains`). A
-design that cannot be closed, assembled or moved drops out with its error, and the others go on as if it had
-not been there.
+All drawings are closed and all poses assembled in one batch, each along proven steps of its own. Then the
+designs share one series in the inputs, if the inputs repeat often enough (see `series_in_inputs`), or the
+segments of a chain of series in time. A design that needs much shorter segments leaves the others (see
+`build_chains`). A design that cannot be closed, assembled or moved is left out with its error and does not
+affect the others.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class Followed:
     """Designs that share the segments of one chain.
 
     Attributes:
-        numbers: of the designs, in increasing order, (A,).
-        chain: its coefficients of shape (A, order + 1, size), or of an `InputSeries` (A, powers, size).
+        numbers: numbers of the designs, in increasing order, (A,).
+        chain: coefficients of shape (A, order + 1, size), or (A, powers, size) in an `InputSeries`.
     """
 
     numbers: Numbers
@@ -41,18 +41,18 @@ class Followed:
 
     @property
     def bytes_of_a_design(self) -> int:
-        """What the series of one design take."""
+        """Bytes that the series of one design take."""
         return sum(8 * segment.coefficients[0].size for segment in self.chain.segments)
 
 
 @dataclass(frozen=True)
 class SolvedDesigns:
-    """What became of a batch of designs.
+    """Results of a batch of designs.
 
     Attributes:
-        followed: those that were followed to the end, each design in one of these.
-        closed: coordinates of the closed drawings, (D, size); NaN where there is none.
-        failures: by number, what stopped each of those that were not solved.
+        followed: groups of designs that were followed to the end; each solved design is in one group.
+        closed: coordinates of the closed drawings, (D, size); NaN where a drawing cannot be closed.
+        failures: the error of each design that was not solved, by number.
     """
 
     followed: tuple[Followed, ...]
@@ -61,14 +61,14 @@ class SolvedDesigns:
 
     @property
     def solved(self) -> Numbers:
-        """The numbers of all that were solved, in increasing order."""
+        """The numbers of all solved designs, in increasing order."""
         return np.sort(
             np.concatenate([np.empty(0, dtype=np.intp), *(each.numbers for each in self.followed)])
         )
 
     @property
     def bytes_of_a_design(self) -> int:
-        """What the series of one design take, of those that take most."""
+        """Bytes that the series of one design take, in the group with the longest chain."""
         return max((each.bytes_of_a_design for each in self.followed), default=0)
 
 
@@ -83,13 +83,13 @@ def solve_designs(
     """Close, assemble and move a batch of designs.
 
     Args:
-        mechanism: of all designs, with one batch dimension, (D,).
-        functions: the laws of the inputs that drive the linkage, which all designs share.
-        start, stop: of the motion, s; they may be the same.
-        settings: how chains are cut, as finely as the design that needs it finest.
-        tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
+        mechanism: the mechanism of all designs, with one batch dimension, (D,).
+        functions: the laws of the inputs that drive the linkage, shared by all designs.
+        start, stop: first and last instant of the motion, s; they may be equal.
+        settings: tolerance of the chains, the finest that any design needs.
+        tolerance: allowed distance of a pose to the exact assembly, without rounding, in units.
     Raises:
-        InputOutOfRange: a law has no meaning at an instant, whatever the design.
+        InputOutOfRange: a law is not defined at an instant, whatever the design.
     """
     failures: dict[int, PointcoordError] = {}
     alive = np.arange(len(mechanism.drawn))
@@ -98,7 +98,7 @@ def solve_designs(
         return SolvedDesigns((), closed, failures)
 
     def left(stopped: Mapping[int, PointcoordError]) -> Numbers:
-        """Places of those that go on."""
+        """Places, among `alive`, of the designs that go on."""
         failures.update({int(alive[place]): error for place, error in stopped.items()})
         return np.array([place for place in range(len(alive)) if place not in stopped], dtype=np.intp)
 

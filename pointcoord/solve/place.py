@@ -1,4 +1,4 @@
-"""Poses of a map, and what reaching them took; from a pose to what of it moves, and back."""
+"""Poses of a map with the work that they took; a pose reduced to the part that moves, and back."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ class Place:
     """One pose or a batch of them.
 
     Attributes:
-        y: coordinates, shape (..., size). factors: of C_u there.
-        left: proven distance to the exact assembly, rounding apart, where a tolerance ended the correction,
-            shape (...,), in units; zero where it went on to rounding.
-        work: what it took.
+        y: coordinates, shape (..., size).
+        factors: factorisation of C_u at y.
+        left: proven distance to the exact assembly, without rounding, where a tolerance ended the correction,
+            shape (...,), in units; zero where the correction went on to rounding.
+        work: work that the poses took.
     """
 
     y: Array
@@ -33,7 +34,7 @@ class Place:
     work: Work
 
     def taken(self, members: NDArray[np.intp]) -> Self:
-        """Some of them, by number; one batch dimension."""
+        """The poses of some members, by number; one batch dimension."""
         return replace(self, y=self.y[members], factors=self.factors.taken(members), left=self.left[members])
 
 
@@ -42,15 +43,15 @@ class Path(Place):
     """How far a batch of poses followed their paths.
 
     Attributes:
-        iterations: Newton steps that the last correction took, shape (...,).
-        done: share of each path, 1 where the end was reached, shape (...,).
+        iterations: Newton steps of the last correction, shape (...,).
+        done: share of each path that was followed, 1 where the end was reached, shape (...,).
     """
 
     iterations: NDArray[np.int64]
     done: Array
 
     def reshaped(self, batch: tuple[int, ...]) -> Self:
-        """The same with other batch dimensions."""
+        """The paths with other batch dimensions."""
         return replace(
             self,
             y=self.y.reshape(*batch, self.y.shape[-1]),
@@ -67,17 +68,17 @@ class Path(Place):
 
 
 def starting_place(part: PartialMap, pose: Place) -> Place:
-    """A pose as the start of a motion of the part that moves.
+    """A pose reduced to the part that moves, as the start of a motion.
 
-    What stands still is solved once more, to rounding, before it is taken as known: nothing corrects it
-    later.
+    If the pose was corrected to a tolerance only, the whole pose is first corrected to rounding: nothing
+    corrects the part that stands still later.
     """
     if part.is_whole:
         return Place(pose.y, pose.factors, pose.left, Work())
     y, left, work = pose.y, pose.left, Work()
     if np.any(left > 0.0):
         refined = newton_refine(part.whole, y)
-        # Where rounding keeps it from converging the pose is as good as it gets.
+        # Where rounding prevents convergence the pose cannot be improved.
         y = np.where(refined.converged[..., None], refined.y, y)
         left = np.where(refined.converged, refined.left, left)
         work = refined.work
@@ -87,7 +88,7 @@ def starting_place(part: PartialMap, pose: Place) -> Place:
 
 
 def whole_place(part: PartialMap, y: Array, factors: Factors) -> Place:
-    """A place of the part as one of the whole: what stops a motion is told with all that takes part."""
+    """A pose of the part as a pose of the whole, so that an error can name every link that stops a motion."""
     if part.is_whole:
         return Place(y, factors, np.zeros(y.shape[:-1]), Work())
     whole = part.back(y)

@@ -1,18 +1,18 @@
-r"""The paper's own algorithm: Newton at every instant, then two linear solves.
+r"""The algorithm of the paper: Newton's method at every instant, then two linear solves.
 
     C(u, w) = 0,    C_u u' = -C_w w',    C_u u'' = -C_w w'' - 2 B(y', y')      (eqs. 1, 19, 22)
 
-Each instant is reached from the one before it, by proof. That is no loop over time: from a pose y0 with
-X = C_u(y0)^-1 the poses of many instants ahead are guessed by a few terms of the series along the straight
-way to their inputs (see `power_series`) and corrected all at once, by Newton's method, or with X kept for as
-long as it serves (`chord`),
+Each pose is proven to continue the pose of the instant before. There is no loop over instants. From a pose y0
+with X = C_u(y0)^-1 the poses of many instants ahead are estimated by a few terms of the series along the
+straight path to their inputs (see `power_series`). All of them are corrected at once by Newton's method or,
+with `chord`, with one X kept as long as it converges fast enough,
 
-    u <- u - X C(u, w);
+    u <- u - X C(u, w).
 
-then each is proven to continue the one before it, straight (see `proven_step`). Where that does not lead on,
-or a turn takes more than a radian, the path is followed in shorter proven steps, along which inputs go in
-proportion. Or each instant is reached from the drawing (`cold`). The rates are solved for many instants at
-once in any case. This is what the series are measured against.
+Then each pose is proven to continue the pose before along a straight path (see `proven_step`). Where that
+fails, the path is followed in shorter proven steps. Where an angle changes by more than a radian, all inputs
+change in proportion along such a path. With `cold` each instant is reached from the drawing instead. In
+either case the rates are solved for many instants at once. The series are measured against this solver.
 """
 
 from __future__ import annotations
@@ -43,38 +43,39 @@ from pointcoord.time_functions import TimeFunction
 Array = NDArray[np.float64]
 SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
 Values = Mapping[str, Array]
-"""Of every input at all instants, each (N,)."""
+"""Value of every input at all instants, each (N,)."""
 How = tuple[float, bool]
 """The tolerance, and whether a factorisation is kept."""
 Reached = tuple[Array, Array, Work, Status]
-"""The poses that were reached, what is left of each, what they took, and what stopped them."""
+"""The solved poses, the proven distance of each to the exact one, the work, and what stopped the solver."""
 
-# Instants that are solved at once: a matrix for each takes 1 MB, which a processor keeps at hand. With
-# 4,096 at once 40,000 instants take half as long again; with 64 no less than with 512.
+# Instants that are solved at once: their matrices take 1 MB, which fits into a processor's cache. With 4,096
+# at once 40,000 instants take 1.5 times as long; with 64 no less than with 512.
 BLOCK = 512
-# Instants ahead that are tried first; twice as many after all of them were proven.
+# Instants ahead that are tried first; the number doubles whenever all of them were proven.
 FIRST_AHEAD = 8
-# Terms of the way there: with more the guess is nearer than Newton's first step needs.
+# Terms of the series that estimates the poses ahead: with more terms Newton's method saves no step.
 TERMS = 3
-# Where n eps cond(C_u) is larger, rounding may be more than that.
+# Where n eps cond(C_u) is larger, poses ahead are not estimated, because rounding may be too large.
 ROUNDED = 1e-2
-# Of a kept X a slower contraction is worth a new factorisation, which costs as much as some five steps.
+# If a kept X contracts more slowly, a new factorisation, which costs as much as about five steps, is cheaper.
 SLOW = 0.1
-# Steps from a distance of 1 to rounding at that rate, and as many again for what a bound misjudges.
+# Most steps with a kept X: those from a distance of 1 to rounding at that rate, and as many again because the
+# rate is only a bound.
 LIMIT = 32
 PROBLEM = "the mechanism cannot be assembled"
 
 
 @dataclass(frozen=True)
 class Solved:
-    """States at instants, as many of those that were asked for as could be reached.
+    """States at the requested instants, up to the last instant that could be reached.
 
     Attributes:
-        times: (N,), s.
+        times: the instants, (N,), s.
         states: y and its time derivatives, each (N, size).
-        left: proven distance of each pose to the exact assembly, rounding apart, in units, (N,).
-        work: what it cost.
-        status: how it ended.
+        left: proven distance of each pose to the exact assembly, without rounding, in units, (N,).
+        work: work that the states took.
+        status: how the solver ended.
     """
 
     times: Array
@@ -84,7 +85,7 @@ class Solved:
     status: Status = COMPLETE
 
     def coordinates(self, instants: Array) -> list[Array]:
-        """The states at some of the times, each of shape (..., size)."""
+        """The states at some of the instants, each of shape (..., size)."""
         places = np.searchsorted(self.times, instants)
         return [state[places] for state in self.states]
 
@@ -92,12 +93,12 @@ class Solved:
 InstantSolver = Callable[
     [Mechanism, Mapping[str, TimeFunction], Pose, Array, int, SquareVelocityTerm, float], Solved
 ]
-"""A way to solve for poses and their rates at instants: the states, up to the first instant that cannot be
-reached; see `solve_instants` for what it is given."""
+"""A solver of poses and their rates at instants. It returns the states up to the first instant that cannot be
+reached. See `solve_instants` for the arguments."""
 
 
 def square_velocity_term(system: QuadraticMap, velocity: Array) -> Array:
-    """(C_q q')_q q' = 2 B(y', y'), the paper's eq. (23) as it should be, shape (..., rows)."""
+    """(C_q q')_q q' = 2 B(y', y'), the corrected form of the paper's eq. (23), shape (..., rows)."""
     return 2.0 * system.residual(velocity)
 
 
@@ -112,20 +113,22 @@ def solve_instants(
     chord: bool = False,
     cold: bool = False,
 ) -> Solved:
-    """Solve at each instant, each from the one before.
+    """Solve at all instants, each from the instant before.
 
     Args:
-        pose: assembled at the first instant.
+        functions: the inputs as functions of time.
+        pose: the pose at the first instant.
         times: increasing instants, shape (N,), s.
         derivative: highest time derivative to solve for.
-        tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
-        chord: whether a factorisation is kept for as many instants as it serves.
-        cold: whether each instant is reached by itself from the closed drawing instead, also the first. Which
-            branch that leads to does not depend on the motion, but it depends on the way: where poses that do
-            not exist lie between, it is refused, though a motion might lead around them.
+        square_term: (C_q q')_q q' of eq. (23).
+        tolerance: allowed distance of a pose to the exact assembly, without rounding, in units.
+        chord: whether one factorisation is kept for as many instants as it converges for.
+        cold: whether every instant, also the first, is reached from the closed drawing instead. The branch
+            then does not depend on the motion but on the path from the drawing. An instant is refused if the
+            path leads through poses that do not exist, though a motion might lead around them.
     Returns:
-        The states, up to the first instant that cannot be reached. What stands still is solved once, but for
-        instants by themselves.
+        The states, up to the first instant that cannot be reached. Unless `cold`, the part that stands still
+        is solved once.
     """
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
     values = {name: f.series(times, 0)[:, 0] for name, f in functions.items()}
@@ -142,7 +145,7 @@ def solve_instants(
 
 
 def _from_drawing(mechanism: Mechanism, values: Values, times: Array, tolerance: float) -> Reached:
-    """All from the closed drawing."""
+    """The poses at all instants, each reached from the closed drawing."""
     drawing = close_drawing(mechanism, float(times[0]), tolerance)
     work, parts, status = drawing.work, [], COMPLETE
     for low in range(0, len(times), BLOCK):
@@ -163,12 +166,17 @@ def _from_drawing(mechanism: Mechanism, values: Values, times: Array, tolerance:
 def _one_from_another(
     mechanism: Mechanism, part: PartialMap, begun: Place, values: Values, known: Array, times: Array, how: How
 ) -> Reached:
-    """Each from the one before, of what moves; known: of the whole, (N, 1, known coordinates)."""
+    """The poses at all instants, each reached from the one before; only the part that moves is solved.
+
+    Args:
+        begun: pose of the part at the first instant.
+        known: known coordinates of the whole mechanism, (N, 1, known coordinates).
+    """
     system, (tolerance, chord) = part.system, how
     turned = sum(
         (np.abs(np.diff(values[name])) for name in mechanism.topology.turning), np.zeros(len(times) - 1)
     )
-    # Instants that are reached round, and the end.
+    # Instants to which an angle changes too far for a straight path, and the number of instants.
     far = np.append(np.flatnonzero(turned > LONGEST) + 1, len(times))
     goals = part.known(begun.y, known)[:, 0]
     y, left = np.empty((len(times), system.size)), np.empty(len(times))
@@ -207,7 +215,7 @@ def _one_from_another(
 
 
 def _of_part(part: PartialMap, y: Array, law: Law) -> Law:
-    """A law of what is known to the whole as one of what is known to a part, with a pose of it, (size,)."""
+    """A law of the whole mechanism's known coordinates as one of the part's, at a pose y of the part."""
 
     def of_part(members: NDArray[np.intp], shares: Array, order: int) -> Array:
         return part.known(y, law(members, shares, order))
@@ -218,12 +226,14 @@ def _of_part(part: PartialMap, y: Array, law: Law) -> Law:
 def _ahead(
     system: QuadraticMap, start: Array, factors: Factors, targets: Array, tolerance: float, chord: bool
 ) -> tuple[int, Array, Array, Work]:
-    """Poses with known coordinates one after the other, as many as are proven to continue a pose.
+    """Poses at successive known coordinates, up to the last one that is proven to continue the pose `start`.
 
     Args:
-        start: the pose, (size,). factors: of C_u there. targets: (N, known coordinates).
+        start: the pose, (size,).
+        factors: factorisation of C_u at `start`.
+        targets: known coordinates of the poses ahead, (N, known coordinates).
     Returns:
-        How many, the poses, what is left of each, and what all that were tried took.
+        Number of poses, the poses, the proven distance of each to the exact one, and the work of all trials.
     """
     n, none = system.unknowns, (0, np.empty((0, len(start))), np.empty(0))
     if not (len(targets) and n * EPS * factors.condition <= ROUNDED) or bool(hidden(system, start, factors)):
@@ -231,7 +241,7 @@ def _ahead(
     inverse = factors.preconditioner
     with np.errstate(all="ignore"):
         guess = _guessed(system, factors, start, targets)
-    # A guess that is not finite ends what is tried.
+    # Only the estimates before the first one that is not finite are tried.
     finite = _first_false(np.asarray(np.isfinite(guess).all(axis=-1)))
     if not finite:
         return *none, Work(residuals=3 * len(targets))
@@ -256,13 +266,13 @@ def _ahead(
 def _by_chord(
     system: QuadraticMap, inverse: Array, y: Array, tolerance: float
 ) -> tuple[Array, NDArray[np.bool_], Array, Work]:
-    """Poses from guesses of them, by steps with one inverse.
+    """Poses from estimates, by Newton steps with one inverse X for all.
 
-    Within r, the radius of the theorem about a guess (see `kantorovich`), X contracts by k = z + omega r:
-    after a step d, |u* - u| <= k |d| / (1 - k).
+    Within r, the radius of the theorem about an estimate (see `kantorovich`), the iteration contracts by
+    k = z + omega r: after a step d, |u* - u| <= k |d| / (1 - k).
 
     Returns:
-        The poses, which of them are as good as asked, what is left of each, rounding apart, and the work.
+        The poses, which of them meet the tolerance, their proven distances, without rounding, and the work.
     """
     y, n, magnitude, previous = y.copy(), system.unknowns, np.abs(inverse), np.full(len(y), np.inf)
     z = np.abs(np.eye(n) - inverse @ system.jacobian(y)).sum(axis=-1).max(axis=-1)
@@ -277,7 +287,7 @@ def _by_chord(
         y[:, :n] += step
         left = rate * size / (1.0 - rate)
         noise = system.uncertainty(y, np.zeros(y.shape[-1])) @ magnitude.T
-        # Near rounding a step is noise, or no longer shrinks.
+        # Near rounding a step is smaller than the noise, or no longer shrinks.
         noisy = (np.abs(step) <= noise).all(axis=-1) | (size < 1e-8) & (size >= 0.5 * previous)
         done, previous = (left <= tolerance) | noisy, size
         if (done | ~(rate <= SLOW)).all():
@@ -287,7 +297,7 @@ def _by_chord(
 
 
 def _guessed(system: QuadraticMap, factors: Factors, start: Array, targets: Array) -> Array:
-    """Poses near those with known coordinates, from one pose, shape (N, size)."""
+    """Estimates of the poses at the target known coordinates, from one pose, shape (N, size)."""
     starts = np.broadcast_to(start, (len(targets), len(start)))
     guess = np.sum(_straight(system, factors, starts, targets, TERMS), axis=1)
     guess[:, system.unknowns :] = targets
@@ -295,10 +305,13 @@ def _guessed(system: QuadraticMap, factors: Factors, start: Array, targets: Arra
 
 
 def _straight(system: QuadraticMap, factors: Factors, y: Array, targets: Array, order: int) -> Array:
-    """Series of straight ways to known coordinates, (N, terms, size); what poses y lack is taken back.
+    """Series along straight paths from poses y to known coordinates, (N, terms, size).
+
+    The residual of y is reduced to zero along the path.
 
     Args:
-        factors: of C_u at a pose nearby. targets: (N, known coordinates).
+        factors: factorisation of C_u at a pose nearby.
+        targets: known coordinates at the ends, (N, known coordinates).
     """
     known = np.zeros((len(y), order + 1, targets.shape[-1]))
     known[:, 0], known[:, 1] = y[:, system.unknowns :], targets - y[:, system.unknowns :]
@@ -319,17 +332,17 @@ def with_rates(
     work: Work,
     left: Array | None = None,
 ) -> Solved:
-    """Solved poses y, (N, size), with as many of their time derivatives as asked for.
+    """Solved poses y, (N, size), with their time derivatives up to `derivative`.
 
     Args:
         known: series of the known coordinates, (N, derivative + 1, known coordinates).
-        work: what the poses took.
-        left: how far these may be from the exact ones, (N,), in units; nothing unless given.
+        work: work that the poses took.
+        left: proven distances of the poses to the exact ones, (N,), in units; zero unless given.
     """
     states = [y, *(np.empty_like(y) for _ in range(derivative))]
     for low in range(0, len(times) if derivative else 0, BLOCK):
         some = slice(low, low + BLOCK)
-        # Newton's factors are of the place before its last step, which may be farther off than the bound.
+        # Newton's factors belong to the pose before the last step, which may be farther off than the bound.
         factors = factorise(system.jacobian(y[some]))
         states[1][some] = implicit_rate(system, factors, y[some], known[some, 1], 0.0)
         for d in range(2, derivative + 1):

@@ -1,32 +1,33 @@
-r"""What is proven of a step along a power series: that one branch leads along it, and which pose it leads to.
+r"""Proof of a step along a power series: the step follows one branch, and leads to one pose.
 
-Branches meet where C_u is singular: two in a fold, where a determinant changes its sign; and where two cross,
-as the parallel and the crossed assembly do of cranks and couplers in one line, a series is smooth in any
-case. So it is proven of every step, of a path, of a motion in time and of a range of inputs, that it meets no
-such pose.
+Branches meet where C_u is singular. In a fold two branches end, and a determinant changes its sign. At a
+crossing, like that of the parallel and the crossed assembly of a crank and coupler in line, a series is
+smooth and shows nothing. So every step of a path, of a motion in time and of a range of inputs is proven to
+meet no singular pose.
 
-Let y(s) = sum_k y_k s^k be a series of all coordinates, from any pose y_0, and c(s) what C(y(s)) should be.
-C is quadratic and C_u linear in y, so that with X near C_u(y_0)^-1
+Let y(s) = sum_k y_k s^k be a series of all coordinates, from any pose y_0, and c(s) the target of C(y(s)).
+C is quadratic and C_u is linear in y. With X near C_u(y_0)^-1 therefore
 
     X (C(y(s)) - c(s)) = sum_{k <= 2p} X R_k s^k,      R_k = sum_{i + j = k} B(y_i, y_j) - c_k,
     I - X C_u(y(s)) = I - X C_u(y_0) - sum_{0 < k <= p} X C_u(y_k) s^k      exactly,
 
 and with omega = Lipschitz(X C_u) the theorem of Newton and Kantorovich (see `kantorovich`) holds at every s
-from 0 to h if it does with
+from 0 to h if it holds with
 
     eta = max sum_k |X R_k| h^k,    z = |I - X C_u(y_0)| + |sum_{k > 0} |X C_u(y_k)| h^k|,
     2 omega eta < (1 - z)^2,  that is  z + sqrt(2 omega eta) < 1.
 
-Then one branch leads along the series, and no other assembly lies within (1 - z) / omega of its end: a pose
-that does is the next one. All is true in any weighted maximum norm; and of a series in several parameters,
-|s_i| <= 1, with the sums over all of its powers. Boxes side by side, each with its own X and norm, lead to
-the same pose where they touch: it is the one that Newton's method converges to from there. The pose y_0
-need not be exact: it stands for the assembly that u <- u - X (C - c_0) leads to from it, and so does the end
-of the step before if Newton's method is proven to converge from there, because both are about the same y_0.
+Then exactly one branch follows the series, and at most one assembly lies within (1 - z) / omega of the end of
+the series: a solved pose within this distance is the next pose. The theorem holds in any weighted maximum
+norm. It also holds for a series in several parameters, |s_i| <= 1, with sums over all powers. Two adjacent
+boxes, each with an X and a norm of its own, agree on the pose where they touch: Newton's method converges
+from there to one pose only. The pose y_0 need not be exact: it stands for the assembly to which
+u <- u - X (C - c_0) converges from y_0. The step before ends at the same assembly if Newton's method is
+proven to converge from its end, because both proofs start from the same y_0.
 
-Rounding is not counted. Near a pose where branches meet what it may move a pose by is in proportion to
-1 / D, D the determinant, and so is the way to another assembly to D: within the root of EPS of it no computed
-pose tells the branches apart (see `hidden`). A motion may end there, and does not go on from there.
+The proof leaves rounding out. Near a pose where branches meet, with D the determinant, rounding moves a pose
+in proportion to 1 / D, and the next assembly is at a distance in proportion to D. Within the root of EPS of
+that pose no computed pose tells the branches apart (see `hidden`). A motion may end there, but not go on.
 """
 
 from __future__ import annotations
@@ -50,31 +51,32 @@ from pointcoord.numerics.rounding import EPS
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-# Lengths of steps that are tried: few of those that few steps need.
+# Lengths of steps that are tried, a compromise between few lengths and few steps: fine steps down to 0.09,
+# then halves.
 LENGTHS = np.concatenate([0.85 ** np.arange(16.0), 0.5 ** np.arange(4.0, 44.0)])
 WHOLE = np.ones(1)
-# Of 1, what z + sqrt(2 omega eta) may be: the rest is far more than anything rounds, and with less than that
-# Newton's method would converge only linearly from the end of the step.
+# Limit of z + sqrt(2 omega eta). The theorem needs less than 1. The margin is far larger than any rounding
+# error, and nearer to 1 Newton's method would converge only linearly from the end of the step.
 ROOM = 0.9
-# Into how many parts a segment is divided, one after the other where that proves nothing.
+# Numbers of parts into which a segment is divided: the next number is tried if the one before proves nothing.
 PARTS = (1, 4, 16)
-# Times that weights are brought nearer to those of the smallest norm, so many times as many for a box, where
-# a shorter one is no answer; and a norm that is small enough.
+# Iterations towards the weights with the smallest norm; the factor by which a box may take more, because a
+# box cannot be made shorter; and a norm at which the iteration stops.
 WEIGHINGS, MORE, ENOUGH = 4, 2, 0.8
-# Where EPS |X|^2 is smaller, rounding hides nothing: of coordinates near 1 omega |X| d is at most some
-# thousand times that.
+# Below this value of EPS |X|^2 rounding cannot hide a branch: for coordinates near 1, omega |X| d is at most
+# about a thousand times EPS |X|^2.
 CLEAR = 1e-6
 
 
 @dataclass(frozen=True)
 class Proof:
-    """What holds of steps in a maximum norm.
+    """Proven steps, with distances in a weighted maximum norm.
 
     Attributes:
-        length: up to where, of the lengths that were asked about, one branch leads along the series, (...,);
-            0 if nowhere.
-        alone: no other assembly lies so near its place there, nor nearer to the start, (...,).
-        weights: of the norm, (..., n).
+        length: the longest of the tried lengths up to which one branch follows the series, (...,); 0 if none.
+        alone: radius about the end of the step, and about every pose before it, in which the branch is the
+            only assembly, (...,).
+        weights: weights of the norm, (..., n).
     """
 
     length: Array
@@ -82,11 +84,11 @@ class Proof:
     weights: Array
 
     def taken(self, members: NDArray[np.intp]) -> Proof:
-        """Some members, by number."""
+        """The proofs of some members, by number."""
         return Proof(self.length[members], self.alone[members], self.weights[members])
 
     def within(self, apart: Array) -> Flags:
-        """Whether places so far from the ends of the steps, (..., n), are alone there, shape (...,)."""
+        """Whether poses so far from the ends of the steps, (..., n), lie within `alone`, shape (...,)."""
         return np.asarray((apart / self.weights).max(axis=-1) <= self.alone)
 
 
@@ -97,13 +99,13 @@ def prove(
     lacking: Array | None = None,
     lengths: Array = LENGTHS,
 ) -> Proof:
-    """How far series are proven; floating point warnings are the caller's.
+    """How far series are proven. The caller suppresses floating point warnings.
 
     Args:
         inverse: X, (..., n, n).
-        series: (..., order + 1, size).
-        lacking: the first R_k, (powers, ..., rows), if they are not 0; up to the order all others are.
-        lengths: h that are tried, the longest first, (l,).
+        series: coefficients y_k, (..., order + 1, size).
+        lacking: the first R_k, (powers, ..., rows), if not 0; all other R_k up to the order are 0.
+        lengths: lengths h that are tried, the longest first, (l,).
     """
     order = series.shape[-2] - 1
     left, right = (powers_first(each) for each in system.factors(series))
@@ -117,7 +119,7 @@ def prove(
     of_rest = np.r_[: len(first), order + 1 : 2 * order + 1]
 
     def proven(weights: Array, count: int | None) -> tuple[NDArray[np.intp], Array]:
-        """Numbers of the lengths that are proven in a norm, (...,), and how far their ends are alone."""
+        """Index of the longest length proven in a norm, (...,), and the radius `alone` at its end."""
         z = _summed(powers[:count, : order + 1], np.matvec(change, weights) / weights)
         omega = system.lipschitz(inverse, weights)
         holds = z + np.sqrt(2.0 * omega * _summed(powers[:count, of_rest], rest / weights)) <= ROOM
@@ -128,7 +130,7 @@ def prove(
     weights = np.ones(change.shape[1:-1])
     number, alone = proven(weights, 1)
     if number.any():
-        # Nearer to the weights for which the norm of what changes most is smallest.
+        # Towards the weights that make the norm of X C_u(y_1), the largest change, smallest.
         for _ in range(WEIGHINGS):
             weights, _ = nearer_perron(change[1], weights)
         weights = np.where((number[..., None] > 0) & np.isfinite(weights), weights, 1.0)
@@ -137,9 +139,9 @@ def prove(
 
 
 def prove_segment(system: QuadraticMap, series: Array, s: float) -> Proof:
-    """Whether a series, (..., order + 1, size), is proven from 0 to s: then the length is 1.
+    """Proof of a series, (..., order + 1, size), from 0 to s: the length is 1 if proven, else 0.
 
-    It is a box about its middle, or boxes about the middles of shorter parts where that proves nothing.
+    The segment is proven as one box about its middle. If that fails, shorter parts are proven as boxes.
     """
     order = series.shape[-2] - 1
     scaled = (series * (s ** np.arange(order + 1.0))[:, None])[..., None, :, :]
@@ -161,18 +163,18 @@ def prove_box(
     sizes: Array,
     lacking: Array,
 ) -> Proof:
-    """Whether series are proven where all |s_i| <= 1: then the length is 1.
+    """Proof of series in the box of all |s_i| <= 1: the length is 1 if proven, else 0.
 
-    What is cut off is taken by the magnitudes of each degree. What C_u changes by is so too in several
-    parameters, |X| |C_u(y_k)|, and by |X C_u(y_k)| only where that proves nothing.
+    The truncated terms are bounded by the magnitudes of each degree. In several parameters the change of C_u
+    is first bounded by |X| |C_u(y_k)|, which is cheap, and by |X C_u(y_k)| only where that proves nothing.
 
     Args:
-        y: in the middle, (..., size).
-        moving: series about it of the coordinates that move, powers first, (powers, ..., moving).
-        places: which these are.
-        sizes: magnitudes in the box by degree, from the first on, of a series that is solved to its order,
-            (degrees, ..., size).
-        lacking: C(y) where that starts, (..., rows).
+        y: the pose in the middle of the box, (..., size).
+        moving: series of the moving coordinates about y, powers first, (powers, ..., moving).
+        places: places of the moving coordinates in y.
+        sizes: magnitudes in the box of the terms of each degree, from the first degree on, of the series as
+            it was solved to its order, (degrees, ..., size).
+        lacking: C at the pose from which that series starts, (..., rows).
     """
     with np.errstate(all="ignore"):
         inverse = factorise(system.jacobian(y)).preconditioner
@@ -207,14 +209,14 @@ def prove_box(
 
 
 def _summed(powers: Array, terms: Array) -> Array:
-    """The largest component of sums of vectors by powers of lengths, (l, k) and (k, ..., n) to (l, ...)."""
+    """Largest component of sum_k h^k term_k for each length h; powers (l, k), terms (k, ..., n); (l, ...)."""
     sums = (powers @ terms.reshape(len(terms), -1)).reshape(len(powers), *terms.shape[1:])
     return np.asarray(sums.max(axis=-1))
 
 
 @lru_cache(maxsize=64)
 def _about_middles(order: int, parts: int) -> Array:
-    """Matrices that give a polynomial on 0 .. 1 about the middles of parts, (parts, order + 1, order + 1).
+    """Matrices that expand a polynomial on 0 .. 1 about the middles of parts, (parts, order + 1, order + 1).
 
     sum_k a_k s^k = sum_j (sum_k binomial(k, j) m^(k - j) h^j a_k) t^j for s = m + h t.
     """
@@ -226,9 +228,9 @@ def _about_middles(order: int, parts: int) -> Array:
 
 
 def orientation(system: QuadraticMap, factors: Factors) -> Array:
-    """The signs of the determinants of the diagonal blocks of C_u, shape (..., blocks); 0 of a singular one.
+    """The signs of the determinants of the diagonal blocks of C_u, shape (..., blocks); 0 for singular ones.
 
-    Rows are scaled by positive numbers, which changes no sign.
+    The factors scale rows by positive numbers, which changes no sign.
     """
     signs = np.empty((*factors.matrix.shape[:-2], len(system.block_order.blocks)))
     for one in system.block_order.diagonal:
@@ -239,26 +241,30 @@ def orientation(system: QuadraticMap, factors: Factors) -> Array:
 
 
 def same_side(system: QuadraticMap, y: Array, factors: Factors, side: Array, last: Flags | bool) -> Flags:
-    """Whether the end of a proven step is surely on the branch of its start, shape (...,).
+    """Whether the end of a proven step is certainly on the branch of its start, shape (...,).
 
-    In exact arithmetic no such step crosses a fold or a crossing; what does has run out of digits.
+    In exact arithmetic no proven step passes a fold or a crossing. A step that does has run out of digits.
 
     Args:
-        y: the end, shape (..., size). factors: of C_u there. side: orientation at the start.
-        last: whether nothing goes on from there: only what lies beyond may be on another branch.
+        y: the pose at the end, shape (..., size).
+        factors: factorisation of C_u at y.
+        side: orientation at the start of the path.
+        last: whether the path ends at y. Then `hidden` need not hold: only poses beyond y could be on another
+            branch.
     """
-    # No sign is another, 0 or no number.
+    # Not the same: the opposite sign, 0 and NaN.
     same = np.asarray((orientation(system, factors) * side > 0.0).all(axis=-1))
     return same if np.all(last) else same & (last | ~hidden(system, y, factors))
 
 
 def hidden(system: QuadraticMap, y: Array, factors: Factors) -> Flags:
-    """Whether rounding may have moved a pose over to another one, at least 2 / omega away, shape (...,).
+    """Whether rounding may have moved a pose to another assembly, at least 2 / omega away, shape (...,).
 
     Args:
-        y: the pose, shape (..., size). factors: of C_u there.
+        y: the pose, shape (..., size).
+        factors: factorisation of C_u at y.
     """
-    # A row that vanishes shows in its scale, and what else does in the condition number.
+    # A vanishing row shows in the row scale, every other singularity in the condition number.
     size = factors.condition * factors.row_scale.max(axis=-1)
     doubtful = np.asarray(~(EPS * size * size < CLEAR))
     if not doubtful.any():

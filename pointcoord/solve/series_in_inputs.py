@@ -1,17 +1,16 @@
 r"""The motion of many designs as one series in their inputs, where that is cheaper than a chain in time.
 
-What a linkage does depends on time through its inputs only. Where these go over their ranges several times,
-one series in the inputs, about the middle of the ranges, holds the motion of a design however often it comes
-back,
+The pose of a linkage depends on time through its inputs only. Where the inputs sweep their ranges several
+times, one series in the inputs, about the middle of the ranges, describes the whole motion of a design,
 
     y(t) = sum_k c_k s(t)^k,        s_i = (input_i - middle_i) / half_i,        |s_i| <= 1,
 
-and the powers s(t)^k are the same for all designs. It must be as exact as a segment of a chain is (see
-`taylor`): its last two degrees, summed over their powers, are to it what the last two terms are to a segment
-of length 1. At every corner of the ranges Newton's method finds the assembly, from a first step of no more
-than the tolerance and rounding; and it is proven that no other branch is met in the ranges, of which the
-middle is reached from the start by proven steps (see `proven_step`). Designs of which that is not so are
-followed in time.
+and the powers s(t)^k are the same for all designs. The series must be as exact as a segment of a chain (see
+`taylor`). The last two degrees, each summed over its powers, take the place of the last two terms of a
+segment of length 1. At every corner of the ranges Newton's method must find the assembly with a first step of
+no more than the tolerance and rounding. And the series must be proven to meet no other branch in the ranges,
+whose middle is reached from the start by proven steps (see `proven_step`). Designs that fail are followed in
+time.
 """
 
 from __future__ import annotations
@@ -45,28 +44,29 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 Flags = NDArray[np.bool_]
 
-# Inputs of a series, at most: of three or more the powers are too many.
+# Most inputs of a series: three or more inputs need too many powers.
 INPUTS = 2
-# Powers of a series, at most: where products of pairs of them are looked up, all pairs are listed.
+# Most powers of a series: the table of products of powers lists all pairs.
 POWERS = 400
-# Spans of time by which the ranges of inputs are found, and how fast they go; their edges are multiples of
-# the golden ratio, which fall in step with no swing.
+# Number of spans of time from which the ranges and the rates of inputs are found. The edges of the spans are
+# multiples of the golden ratio, modulo 1, so that they are in step with no oscillation.
 SPANS, GOLDEN = 256, 0.5 * (5.0**0.5 - 1.0)
-# A start is taken for the middle of a range if it is no farther from it, in parts of half of it: a way there
-# costs as much as some 20 powers, and so wide a margin at most one degree more.
+# A start so near the middle of a range, as a share of half the range, is used as the middle: a path to the
+# middle costs as much as about 20 powers, the wider range at most one degree more.
 NEAR_MIDDLE = 0.02
-# Ranges narrower than this part of the input's size, or of 1, are as wide.
+# Smallest half width of a range, relative to the input's size, or to 1 if the input is smaller.
 NARROWEST = 2.0**-20
-# Powers of less are nothing beside the first, 1.
+# Smaller powers are set to zero: they are negligible next to the first power, 1.
 SMALLEST = 1e-200
-# Designs that need more degrees than this multiple of what the middle one does are followed in time.
+# Designs that need more degrees than this multiple of the median are followed in time.
 STANDS_OUT = 1.25
-# Degree of the first series, which so many designs have, and how many are made of all until one is enough.
+# Degree of the first series; number of designs for which the first series is made; and number of series made
+# for all designs until one is enough.
 FEWEST, ASKED, TRIED = 8, 16, 2
-# Early degrees fall faster than later ones: so many times as many are added as they tell, so that the first
-# series of all is enough.
+# Early degrees fall faster than later ones. So the estimated number of further degrees is multiplied by this
+# factor, and the first series for all designs is enough as a rule.
 SLOWER = 1.2
-# What a box costs beside its powers, in powers, and segments that a chain takes for a way over the range.
+# Cost of a box in addition to its powers, in powers; and segments of a chain for one sweep over the range.
 BOX, SEGMENTS = 100.0, 2.0
 
 
@@ -74,11 +74,13 @@ BOX, SEGMENTS = 100.0, 2.0
 class InputSeries(Segment):
     """One series in inputs: y(t) = sum_k coefficients[k] s(t)^k, powers ordered by degree (`multi_index`).
 
-    It has no unit of time, `scale`: summed in time it is no number. Of the known coordinates it has none.
+    The unit of time, `scale`, is NaN, because the series cannot be summed in time. The coefficients contain
+    no known coordinates.
 
     Attributes:
-        laws: of the inputs that move. middle, half: of their ranges.
-        degree: of the series.
+        laws: laws of the inputs that move.
+        middle, half: middle and half width of the range of each of these inputs.
+        degree: degree of the series.
     """
 
     laws: tuple[TimeFunction, ...] = ()
@@ -87,14 +89,14 @@ class InputSeries(Segment):
     degree: int = 0
 
     def powers(self, instants: Array, derivatives: int) -> list[Array]:
-        """The powers of s(t) and their time derivatives, `derivatives` in all, each (powers, N)."""
+        """The powers of s(t) and their time derivatives: `derivatives` arrays in all, each (powers, N)."""
         series = np.stack([law.series(instants, derivatives - 1) for law in self.laws])
         series[..., 0] -= self.middle[:, None]
         series /= self.half[:, None, None]
         states = [np.ascontiguousarray(series[..., d]) * factorial(d) for d in range(derivatives)]
         found = monomials(states, self.degree)
         for each in found:
-            # High powers near the middle would leave the normal numbers, which takes a hundred times as long.
+            # High powers near the middle would be subnormal numbers, which take a hundred times as long.
             each[np.abs(each) < SMALLEST] = 0.0
         return found
 
@@ -107,10 +109,13 @@ def follow_by_inputs(
     stop: float,
     settings: Settings,
 ) -> tuple[Numbers, InputSeries | None, Work]:
-    """The numbers of the designs that one box is confirmed of, and the box of these, if it is cheaper.
+    """The numbers of the designs for which one box is confirmed, their series, and the work.
+
+    Returns no designs and None where a chain in time is cheaper.
 
     Args:
-        functions: the inputs as functions of time. pose: assembled at `start`, one batch dimension.
+        functions: the inputs as functions of time.
+        pose: the poses at `start`, one batch dimension.
     """
     nobody = np.zeros(0, dtype=np.intp), None, Work()
     laws = {name: law for name, law in functions.items() if not law.still}
@@ -125,16 +130,18 @@ def follow_by_inputs(
     try:
         return course.solve(pose, start, stop)
     except InputOutOfRange:
-        # The range reaches a little farther than the way does: who follows it in time decides.
+        # The box is a little wider than the ranges. Following the motion in time shows whether it exists.
         return nobody
 
 
 @dataclass(frozen=True)
 class _Ranges:
-    """Where the inputs go.
+    """Ranges of the inputs that move.
 
     Attributes:
-        laws: of each. middle, half: shape (inputs,). passes: how often they go over their ranges.
+        laws: law of each input.
+        middle, half: middle and half width of the range of each input, shape (inputs,).
+        passes: number of times that the input that moves most sweeps its range.
         rates: the largest first and second rate of each s, per s and s^2, shape (inputs, 2).
     """
 
@@ -164,7 +171,7 @@ class _Ranges:
 
 @dataclass(frozen=True)
 class _Boxed:
-    """What is expanded over ranges of some inputs, the others held, and how finely."""
+    """The task of a series in inputs: inputs that sweep their ranges, held inputs, and the tolerance."""
 
     mechanism: Mechanism
     part: PartialMap
@@ -175,17 +182,17 @@ class _Boxed:
 
     @property
     def inputs(self) -> int:
-        """How many move."""
+        """Number of inputs that move."""
         return len(self.names)
 
     def known(self, s: Array) -> Array:
-        """Known coordinates of the mechanism at a place of the box, shape (designs, known)."""
+        """Known coordinates of the mechanism at a point s of the box, shape (designs, known)."""
         values = self.ranges.middle + self.ranges.half * s
         inputs = {**self.held, **{name: values[i : i + 1] for i, name in enumerate(self.names)}}
         return np.asarray(self.mechanism.known_series(inputs)[..., 0, :])
 
     def driven(self) -> tuple[list[int], list[int]]:
-        """The coordinates that move with the inputs: their places among the known ones, and in the part."""
+        """Places of the coordinates that move with the inputs: among the known ones, and in the part."""
         topology, system = self.mechanism.topology, self.part.whole
         drives = zip(topology.drives, topology.driven, strict=True)
         numbers = [number for drive, number in drives if drive.input in self.names]
@@ -193,7 +200,7 @@ class _Boxed:
         return [number - system.unknowns for number in numbers], places[numbers].tolist()
 
     def known_series(self, order: int, columns: list[int]) -> Array:
-        """The series in s of some of them, powers first, shape (powers, designs, columns)."""
+        """Series in s of some known coordinates, powers first, shape (powers, designs, columns)."""
         every, middle = powers(self.inputs, order), self.known(np.zeros(self.inputs))[:, columns]
         found = np.zeros((every.count, len(middle), len(columns)))
         found[0] = middle
@@ -209,7 +216,7 @@ class _Boxed:
         return found
 
     def solve(self, pose: Pose, start: float, stop: float) -> tuple[Numbers, InputSeries | None, Work]:
-        """The designs that the box is confirmed of, and the box."""
+        """The numbers of the designs for which the box is confirmed, their series, and the work."""
         system, everyone = self.part.system, np.arange(len(pose.y))
         nobody = everyone[:0], None, Work()
         here = starting_place(self.part, pose)
@@ -252,14 +259,14 @@ class _Boxed:
         return numbers, box if good.all() else box.taken(numbers), work
 
     def series(self, y: Array, factors: Factors) -> tuple[Array, int, Flags] | None:
-        """Series of all that moves, powers first, their degree, and of which designs it is enough.
+        """Series of all coordinates that move, powers first, its degree, and for which designs it is enough.
 
-        None where a chain is less work.
+        None where a chain is cheaper.
         """
         most = min(self.ranges.passes * SEGMENTS * (MOST + SEGMENT) - BOX, POWERS)
         system, order, (columns, driven) = self.part.system, FEWEST, self.driven()
         everyone = np.arange(len(y))
-        # Some tell the degree as a rule.
+        # A few designs show the degree that all need, as a rule.
         for some in (everyone[:: max(len(y) // ASKED, 1)], *[everyone] * TRIED):
             if comb(order + self.inputs, order) > most:
                 return None

@@ -1,4 +1,4 @@
-"""How a solver ended, as data: whoever asked for the whole motion raises what stopped it."""
+"""How a solver ended, as data. The caller who needs the whole motion raises the error."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from pointcoord.errors import PointcoordError
 
 @dataclass(frozen=True)
 class Status:
-    """How far a solver came.
+    """Whether a solver reached the end, or what stopped it.
 
     Attributes:
-        stopped: what stopped it before the end; None where it reached the end.
+        stopped: the error that stopped the solver before the end; None if the solver reached the end.
     """
 
     stopped: PointcoordError | None = None
 
     @property
     def complete(self) -> bool:
-        """Whether it reached the end."""
+        """Whether the solver reached the end."""
         return self.stopped is None
 
     def error(self, partial: Any = None) -> PointcoordError | None:
-        """The exception for those who wanted the whole; None where it is whole.
+        """The exception for a caller who needs the whole motion; None if the motion is complete.
 
         Args:
-            partial: the motion up to where it stopped, if any of it is solved.
+            partial: the motion up to the instant where it stopped, if any of it was solved.
         """
         error = copy(self.stopped)
         if error is not None:

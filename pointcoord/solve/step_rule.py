@@ -1,17 +1,17 @@
-r"""The step rule: how long a series holds, and of which order it should be, from how its terms fall.
+r"""The step rule: the length and the order of a series, from the rate at which its terms fall.
 
-A segment is as long as its last two terms allow: at its end they, and what they contribute to the derivatives
-that are asked for, are below the tolerance relative to the size of that derivative. The terms that were left
-out are smaller still.
+A segment is as long as its last two terms allow: at its end the two terms, and their contributions to the
+requested derivatives, are below the tolerance times the size of that derivative. The truncated terms are
+smaller still.
 
-All series are of one order p, the one that costs least for the tolerance e. A series of terms that fall as
-rho^-k, cut where its last one is e, has the length h(p) = rho exp(-B / p), B = -ln e (Jorba and Zou, Exp.
-Math. 14 (2005) 99). A segment of order p costs as much as SEGMENT + p orders do, which is least per second at
+All series are of one order p, the cheapest one for the tolerance e. A series whose terms fall as rho^-k, and
+whose last term is e at the end, has the length h(p) = rho exp(-B / p), B = -ln e (Jorba and Zou, Exp. Math.
+14 (2005) 99). A segment of order p costs as much as SEGMENT + p orders. The cost per second is least at
 
     p = (B + sqrt(B^2 + 4 B SEGMENT)) / 2.
 
-Jorba and Zou's own order, B / 2 + 1, is the best where the cost of an order grows with it and a segment costs
-nothing beside them; here a chain of it takes 2 to 9 times as long.
+Jorba and Zou's order, B / 2 + 1, is best if the cost of an order grows with the order and a segment has no
+other cost. Here a chain with their order takes 2 to 9 times as long.
 """
 
 from __future__ import annotations
@@ -28,29 +28,29 @@ from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 
-# A smaller truncation than this, relative to a derivative's size, drowns in the rounding of its sum.
+# A smaller truncation error, relative to the size of a derivative, drowns in the rounding of its sum.
 FINEST = 4.0 * EPS
-# Of a larger one what is proven of a segment (see `proven_step`) would say how long it is, and not its terms.
+# At a larger tolerance the proof of a segment (see `proven_step`) would limit its length, and not its terms.
 COARSEST = 1e-5
-# Orders, at most: beyond 40 little is gained at any tolerance. Up to SAFE the rates of an input stay numbers
-# however fast it is, 1e12 per second and more.
+# Largest order: beyond 40 little is gained at any tolerance. Up to order SAFE the rates of an input stay
+# finite, however fast the input is, 1e12 per second and more.
 MOST, SAFE = 40, 20
-# What a segment costs beside its orders, in orders: fitted to the times of thirty chains of 3 to 100 segments
-# and of orders from 8 to 40.
+# Cost of a segment in addition to its orders, in orders: fitted to the times of thirty chains of 3 to 100
+# segments and of orders from 8 to 40.
 SEGMENT = 25.0
-# A series of fewer terms, of a single instant or of a car at rest, does not show how terms fall.
+# A series of fewer terms, for a single instant or a car at rest, does not show how its terms fall.
 SHORT = 6
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How a chain is cut.
+    """How a motion is divided into segments.
 
     Attributes:
-        tolerance: allowed truncation, in the mechanism's units, between FINEST and COARSEST; for a derivative
-            the same fraction of that derivative's size.
+        tolerance: allowed truncation error, in the mechanism's units, between FINEST and COARSEST; for a
+            derivative, the allowed truncation error divided by the size of that derivative.
         derivative: highest time derivative that will be evaluated.
-        hopeful: whether a chain goes on to the most segments where its first ones tell that it needs more.
+        hopeful: whether a chain goes on to MOST_SEGMENTS though its first segments show that it needs more.
     """
 
     tolerance: float
@@ -59,26 +59,26 @@ class Settings:
 
     @property
     def kept(self) -> Settings:
-        """The same with a tolerance that can be kept."""
+        """The settings with the tolerance limited to FINEST .. COARSEST."""
         kept = min(max(self.tolerance, FINEST), COARSEST)
         return self if kept == self.tolerance else replace(self, tolerance=kept)
 
 
 def order_for(tolerance: float) -> int:
-    """The order of the series that cost least per second for a tolerance; see the formula above."""
+    """The order p of the series that cost least per second at a tolerance (formula of the module)."""
     b = -np.log(tolerance)
     return int(min(np.ceil(0.5 * (b + np.sqrt(b * (b + 4.0 * SEGMENT)))), MOST))
 
 
 def lengths_by_sizes(logs: Array, settings: Settings) -> Array:
-    r"""Lengths of segments in their own time unit, (members,).
+    r"""Lengths of segments in the unit of time of the series, (members,).
 
-    With c_k the largest k-th coefficient, the d-th derivative of either of the last two terms at s is
-    k!/(k-d)! c_k s^(k-d); it must not exceed half the tolerance times the size of the d-th derivative,
-    max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1). A term j stays below a multiple a of an
-    earlier one k up to s = (a c_k / c_j)^(1/(j-k)), so that the longest s is the least of the greatest of
-    these. Last terms that are missing or small by chance are taken for what the ones before them come to
-    (see `gone_on`).
+    With c_k the largest k-th coefficient, the d-th derivative of term k at s is k!/(k-d)! c_k s^(k-d). For
+    either of the last two terms j it must not exceed half the tolerance times the size of the d-th
+    derivative, max_k k!/(k-d)! c_k s^(k-d) (for d = 0: the mechanism's size, 1). Term j stays below a times
+    an earlier term k up to s = (a c_k / c_j)^(1/(j-k)). The length is the largest s over all k, and the
+    smallest of these over j and d. Last terms that are missing or small by chance are replaced by an
+    extrapolation of the terms before them (see `gone_on`).
 
     Args:
         logs: logarithms of the coefficients, (members, orders).
@@ -87,7 +87,7 @@ def lengths_by_sizes(logs: Array, settings: Settings) -> Array:
     logs[:, 0] = 0.0
     logs[:, -2:] = gone_on(logs)
     room, exponents = _room(logs.shape[-1], settings.derivative, settings.tolerance)
-    # Of two terms that are missing both there is nothing to compare, and without last terms there is no end.
+    # Two missing terms give NaN, which is ignored. Without last terms the length is infinite.
     with np.errstate(invalid="ignore", over="ignore"):
         ends = (logs[:, None, None, :] - logs[:, None, -2:, None] + room) * exponents
         longest = np.fmin.reduce(np.fmax.reduce(ends, axis=-1), axis=(1, 2))
@@ -96,10 +96,10 @@ def lengths_by_sizes(logs: Array, settings: Settings) -> Array:
 
 @lru_cache(maxsize=256)
 def _room(count: int, derivative: int, tolerance: float) -> tuple[Array, Array]:
-    """Logarithms of what two last terms j have beside all terms k, (derivatives, 2, terms), and 1 / (j - k).
+    """Logarithms of the allowed ratio c_j s^(j-k) / c_k, (derivatives, 2, terms), and 1 / (j - k).
 
-    Minus infinity where a term does not count: j itself and later ones, and for d = 0 all but the first,
-    which stands for the mechanism's size.
+    j are the last two terms, k all terms. The logarithm is minus infinity where a term k does not count: j
+    and later terms, and for d = 0 all terms but the first, which stands for the mechanism's size.
     """
     falling, order = _falling(count, derivative), np.arange(count)
     with np.errstate(invalid="ignore"):
@@ -111,13 +111,13 @@ def _room(count: int, derivative: int, tolerance: float) -> tuple[Array, Array]:
 
 
 def gone_on(logs: Array) -> Array:
-    """Logarithms of the last two coefficients, at least what those before them come to, (members, 2).
+    """Logarithms of the last two coefficients, at least as large as extrapolated, (members, 2).
 
-    Every other term is missing where an input is at rest, all but each n-th where it begins as t^n, and close
-    to such a place they are small; a pair of singular places beside the axis makes terms swing. The last two
-    then tell nothing of those that follow. So each term of the last half of a series goes on as terms fell
-    from the largest of the half before it to the largest of that one. Terms that end for good, of which the
-    last half has none, stay missing.
+    The last two terms may say nothing about the terms that follow. Every other term is missing where an input
+    is at rest, and all but each n-th term where the input begins as t^n; near such an instant these terms are
+    small. A pair of complex singularities makes terms swing. So each term of the second half of a series is
+    extrapolated to the end with the rate at which terms fall from the largest of the first half to the
+    largest of the second half. Where the second half has no terms at all, the last two stay missing.
     """
     if logs.shape[-1] < SHORT:
         return logs[:, -2:]
@@ -127,30 +127,33 @@ def gone_on(logs: Array) -> Array:
 
 
 def _fall(logs: Array) -> Array:
-    """How much the logarithms of terms fall from one to the next over the last half, (members,)."""
+    """Fall of the logarithms of terms from one term to the next over the second half, (members,)."""
     middle, members = logs.shape[-1] // 2, np.arange(len(logs))
     before, after = 1 + logs[:, 1:middle].argmax(axis=-1), middle + logs[:, middle:].argmax(axis=-1)
     with np.errstate(invalid="ignore"):
         fall = (logs[members, before] - logs[members, after]) / (after - before)
-    # Of terms that do not fall, or that begin here, the length that they allow says more.
+    # Terms that do not fall, or that only begin in the second half, are not extrapolated: fall 0.
     return np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)
 
 
 def degrees_lacking(series: Array, inputs: int, order: int, rates: Array, settings: Settings) -> Array:
-    r"""How many degrees more a series in inputs takes if terms go on to fall, 0 if none, (designs,).
+    r"""Number of further degrees that a series in inputs needs, 0 if none, (designs,).
 
-    Where degrees fall to a part f from one to the next, and e is what the last one, p, comes to at least
-    as those before it do, what is left out comes to no more, in the d-th rate of s, than
+    Let terms fall by a factor f from one degree to the next, and let e be the size of the last degree p, at
+    least as large as extrapolated from the degrees before. The d-th derivative by s of the truncated terms is
+    then at most
 
         sum_{j > 0} (p + j)^d f^j e <= (p + 1)^d f (1 + f) / (1 - f)^(d + 1) e.
 
-    With v and a the largest rates of s it is e for d = 0, v times that for d = 1 and v^2 times that for
-    d = 2 and a times that for d = 1. With 1 + f at most 2, it is held to half the tolerance of the size
-    of each: of the mechanism, v c_1, and a c_1 or 2 v^2 c_2.
+    With v and a the largest first and second rates of s, the truncation error of a coordinate is this sum for
+    d = 0; that of a velocity is v times the sum for d = 1; and that of an acceleration is v^2 times the sum
+    for d = 2 plus a times the sum for d = 1. With 1 + f at most 2, each must be below half the tolerance
+    times the size of its quantity: the mechanism's size, v c_1, and a c_1 or 2 v^2 c_2.
 
     Args:
-        series: of the unknown coordinates, powers first, shape (powers, designs, unknowns).
-        inputs: how many. order: its degree.
+        series: series of the unknown coordinates, powers first, shape (powers, designs, unknowns).
+        inputs: number of inputs.
+        order: degree of the series.
         rates: the largest first and second rate of each s, per s and s^2, shape (inputs, 2).
     """
     every, (v, a) = powers(inputs, order), rates.T
@@ -172,20 +175,20 @@ def degrees_lacking(series: Array, inputs: int, order: int, rates: Array, settin
     ][: settings.derivative + 1]
     excess = gone_on(logs)[:, 1] - fall - np.log(0.25 * settings.tolerance * np.min(allowed, axis=0))
     more = excess / fall
-    # Of p + n degrees the factors are larger by (1 + n / p)^d.
+    # With p + n degrees the factors (p + 1)^d are larger by (1 + n / p)^d.
     more += settings.derivative * np.log1p(np.maximum(more, 0.0) / order) / fall
     return np.where(np.isnan(more), np.inf, np.where(excess > 0.0, more, 0.0))
 
 
 def last_magnitudes(series: Array, length: float = 1.0) -> Array:
-    """Magnitudes of the last two terms, at least what the ones before come to, (2, size) (see `gone_on`).
+    """Magnitudes of the last two terms, at least as large as extrapolated, (2, size) (see `gone_on`).
 
-    How terms fall is looked at where the segment ends, whatever unit of time the coefficients are in: in a
-    longer unit those of a series that serves well may rise.
+    The fall of the terms is measured at the end of the segment. In the coefficients' unit of time, which may
+    be longer, the terms of a good series may rise.
 
     Args:
         series: coefficients, (order + 1, size).
-        length: of the segment, in their unit of time.
+        length: length of the segment, in the coefficients' unit of time.
     """
     sizes = np.abs(series)
     if len(sizes) < SHORT:
@@ -200,7 +203,7 @@ def last_magnitudes(series: Array, length: float = 1.0) -> Array:
 def _falling(count: int, derivative: int) -> Array:
     """log k!/(k-d)! for d up to a derivative and k below a count, minus infinity for k < d, (d, k).
 
-    The power of s is that of the term itself in every row: a common factor of a row changes no comparison.
+    The factor s^-d of the d-th derivative is left out: it is common to a row and changes no comparison.
     """
     rows = [[float(perm(k, d)) for k in range(count)] for d in range(derivative + 1)]
     with np.errstate(divide="ignore"):

@@ -1,11 +1,12 @@
 r"""A motion as a chain of short power series.
 
-A segment is as long as its last two terms allow (see `step_rule`). The end is then solved by Newton, which
-starts the next segment without inherited error and shows what the error was; a segment that missed, or along
-which no one branch is proven to lead there (see `proven_step`), is halved.
+A segment is as long as its last two terms allow (see `step_rule`). Newton's method then solves the pose at
+the end. So the next segment starts without inherited error, and the first Newton step shows the error of the
+segment. A segment is halved if this error is too large, or if the segment is not proven to stay on one branch
+(see `proven_step`).
 
-What stands still while the inputs do as their laws say is solved once, to rounding, and is a constant of
-every series (see `partial_map`).
+The part of the mechanism that stands still under the inputs' laws is solved once, to rounding, and is
+constant in every series (see `partial_map`).
 """
 
 from __future__ import annotations
@@ -36,25 +37,25 @@ from pointcoord.time_functions import TimeFunction
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-# A motion stops where a segment is this much shorter than the whole: near a singular pose lengths
-# shrink in proportion to the time that is left, so its place is then known to as many digits.
+# A motion stops where a segment would be shorter than this share of the motion. Near a singular pose lengths
+# shrink in proportion to the time that is left, so the instant of that pose is then known to as many digits.
 SHORTEST = 1e-15
-# A motion of more segments would take more than some ten seconds; it is refused with that reason.
+# A motion of more segments would take more than about ten seconds. It is refused, with that reason.
 MOST_SEGMENTS = 2000
-# Segments after which it is told how many there will be.
+# Number of segments after which the number of segments of the whole motion is estimated.
 TELLING = 64
 # A pose with a smaller condition number is far from any lock.
 REGULAR = 1e3
-# Unit of time of a series, s, at least, and how small at most: raised to its order it stays above 2^-SMALLEST
-# and so far above the smallest number, 2^-1022, that no coefficient is lost in a motion however short.
+# Shortest unit of time of a series, s, and the limit of a unit raised to its order, 2^-SMALLEST. The limit is
+# so far above the smallest number, 2^-1022, that no coefficient is lost, however short the motion.
 SHORTEST_UNIT, SMALLEST = 2.0**-50, 1000
-# Coefficients up to this size leave room for a length in mm and for its derivatives. Where a unit of time is
-# so long that those of a whole series are larger, a shorter one is found from its first few.
+# Coefficients up to this size leave room for a length in mm and for its derivatives. If the unit of time is
+# so long that a coefficient is larger, a shorter unit is found from the first few coefficients.
 LARGEST, FEW = 2.0**900, 8
-# A member of many whose terms allow less than this share of what the middle one's do goes on without them: it
-# would take twice as long to follow all of them by its segments as to follow it once more.
+# A member whose terms allow less than this share of the median length leaves the others: following all of
+# them with its short segments would take twice as long as following this member separately.
 STANDS_OUT = 0.5
-# Share of the tolerance up to which Newton's method may stop short of a pose.
+# Share of the tolerance that the pose at the end of a segment may be off when Newton's method stops.
 SOLVED = 0.1
 
 
@@ -63,9 +64,10 @@ class Segment:
     """One series: y(start + s scale) = sum_k coefficients[k] s^k until `stop`.
 
     Attributes:
-        start, stop: s. scale: unit of time, s.
+        start, stop: first and last instant, s.
+        scale: unit of time, s.
         coefficients: shape (..., order + 1, size), in the mechanism's units.
-        left: proven distance of its start to the exact assembly, rounding apart, shape (...,).
+        left: proven distance of the pose at `start` to the exact assembly, without rounding, shape (...,).
     """
 
     start: float
@@ -76,20 +78,20 @@ class Segment:
 
     @property
     def order(self) -> int:
-        """Of the series."""
+        """Order of the series."""
         return int(self.coefficients.shape[-2]) - 1
 
     def taken(self, members: Numbers) -> Self:
-        """Of some members; one batch dimension."""
+        """The segment of some members of a batch of one dimension."""
         left = np.broadcast_to(self.left, self.coefficients.shape[:1])[members]
         return replace(self, coefficients=self.coefficients[members], left=left)
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Segments in order of time, what they cost, and how the last one ended.
+    """Segments in order of time, the work that they took, and how the chain ended.
 
-    There is none where the motion cannot leave its start.
+    A chain has no segments where the motion cannot leave its start.
     """
 
     segments: tuple[Segment, ...]
@@ -110,14 +112,14 @@ def build_chain(
     stop: float,
     settings: Settings,
 ) -> Chain:
-    """Follow the inputs from an assembled pose; a batch of poses shares its segments.
+    """Follow the inputs from an assembled pose. The poses of a batch share the segments.
 
     Args:
         functions: the inputs as functions of time.
-        pose: assembled at `start`, any leading batch dimensions.
+        pose: the pose at `start`, any leading batch dimensions.
     Returns:
-        The chain up to `stop`, or up to a pose that the motion cannot pass, to the most segments, or to where
-        no step follows an input though the mechanism could; its status says which.
+        The chain up to `stop`, or up to a pose that the motion cannot pass, up to MOST_SEGMENTS, or up to an
+        instant where no step follows an input though the mechanism could. The status states which.
     """
     return _Course.of(mechanism, functions, start, stop, settings).build(pose, leaving=False)[0]
 
@@ -130,10 +132,10 @@ def build_chains(
     stop: float,
     settings: Settings,
 ) -> list[tuple[Numbers, Chain]]:
-    """The same of many members, one batch dimension, with the numbers of those that share each chain.
+    """Chains for a batch of one dimension, each with the numbers of the members that share the chain.
 
-    A member that asks for much shorter segments than the others, or that its segment's end is not confirmed
-    of, leaves; all that have left are followed together again, as long as any are left.
+    A member leaves its chain if it needs much shorter segments than the others, or if its end of a segment is
+    not confirmed. The members that left are followed together in a further chain, until no member is left.
     """
     found: list[tuple[Numbers, Chain]] = []
     waiting = [np.arange(len(pose.y))] if len(pose.y) else []
@@ -144,7 +146,7 @@ def build_chains(
         stopped = chain.status.stopped
         too_long = isinstance(stopped, NotFollowed) and not stopped.name
         if len(kept) > 1 and not (chain.status.complete or too_long):
-            # Which of them it was shows one by one.
+            # Following the members one by one shows which of them stopped.
             waiting += [members[[place]] for place in kept.tolist()]
         else:
             found.append((members[kept], chain))
@@ -158,8 +160,9 @@ class _Joint(Place):
     """An assembled pose from which a segment starts.
 
     Attributes:
-        known: series of the mechanism's known coordinates about it, (..., order + 1, known).
-        scale: a unit of time for the segment, s, as long as the one before it.
+        instant: its instant, s.
+        known: series of the mechanism's known coordinates about the instant, (..., order + 1, known).
+        scale: unit of time for the segment, s: about the length of the segment before.
     """
 
     instant: float
@@ -168,20 +171,21 @@ class _Joint(Place):
 
     @property
     def members(self) -> int:
-        """How many poses it is."""
+        """Number of poses in the batch."""
         return self.factors.condition.size
 
     def taken(self, members: Numbers) -> Self:
-        """Some of them."""
+        """The poses of some members, by number."""
         return replace(super().taken(members), known=self.known[members])
 
 
 @dataclass(frozen=True)
 class _Course:
-    """What a chain follows, a mechanism and its inputs over a time, and how finely.
+    """The task of a chain: a mechanism, its inputs over a time, and the tolerance.
 
     Attributes:
-        part: what of the mechanism moves; the coordinates of joints and of segments are in its order.
+        part: the part of the mechanism that moves. The coordinates of joints, and of segments until `whole`,
+            are in the order of the part.
     """
 
     mechanism: Mechanism
@@ -200,14 +204,14 @@ class _Course:
         stop: float,
         settings: Settings,
     ) -> _Course:
-        """With a tolerance that can be kept."""
+        """The course, with the tolerance limited to values that can be kept."""
         return cls(mechanism, functions, start, stop, settings.kept, mechanism.moving_part(functions))
 
     def build(self, pose: Pose, leaving: bool) -> tuple[Chain, Numbers]:
-        """The chain, and the numbers of the members that it is of.
+        """The chain, and the numbers of the members that it holds for.
 
         Args:
-            leaving: whether members may leave; then there is one batch dimension.
+            leaving: whether members may leave the chain; then the pose has one batch dimension.
         """
         course, start, stop, tolerance = self, self.start, self.stop, self.settings.tolerance
         here = starting_place(self.part, pose)
@@ -223,14 +227,14 @@ class _Course:
         def too_many(reached: float) -> NotFollowed:
             return NotFollowed(reached, limit=MOST_SEGMENTS, start=start, stop=stop)
 
-        untold = hidden(self.part.system, joint.y, joint.factors)
-        if start < stop and untold.any():
-            return chain(course.stops_at(joint, untold, coarsest=False))
+        ambiguous = hidden(self.part.system, joint.y, joint.factors)
+        if start < stop and ambiguous.any():
+            return chain(course.stops_at(joint, ambiguous, coarsest=False))
         while joint.instant < stop or not segments:
             if len(segments) == MOST_SEGMENTS:
                 return chain(Status(too_many(joint.instant)))
             if len(segments) == TELLING and not self.settings.hopeful:
-                # Later ones would have to be four times as long on average to be enough.
+                # Refused if even segments four times as long on average would be too many.
                 likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
                 if stop - start > 4.0 * (likely - start):
                     return chain(Status(too_many(likely)))
@@ -265,12 +269,12 @@ class _Course:
         return chain(COMPLETE)
 
     def whole(self, segment: Segment) -> Segment:
-        """A segment with its coordinates in the mechanism's order."""
+        """A segment of the part as a segment of the whole mechanism, coordinates in the mechanism's order."""
         return replace(segment, coefficients=self.part.back(segment.coefficients))
 
     @property
     def shortest(self) -> float:
-        """The shortest segment, s; still shorter ones are lost in the rounding of the instant itself."""
+        """The shortest segment, s. A shorter one would be lost in the rounding of its instants."""
         largest = max(abs(self.start), abs(self.stop))
         return max(SHORTEST * (self.stop - self.start), 4.0 * EPS * largest)
 
@@ -286,14 +290,14 @@ class _Course:
 
     @cached_property
     def order(self) -> int:
-        """Of the series."""
+        """Order of the series."""
         least = max(self.settings.derivative, 1)
         return least if self.start == self.stop else order_for(self.settings.tolerance)
 
     def known(self, instant: float) -> Array:
         """Series of the mechanism's known coordinates about an instant, shape (..., order + 1, known).
 
-        Its order is SAFE where a law has no rates of so many orders.
+        If the rates of a law are too large for numbers at that order, the order is SAFE.
         """
         if self.order > SAFE:
             try:
@@ -303,16 +307,16 @@ class _Course:
         return self.known_to(instant, min(self.order, SAFE))
 
     def known_to(self, instant: float, order: int) -> Array:
-        """The same of a given order."""
+        """Series of the mechanism's known coordinates about an instant, of a given order."""
         laws = {name: function.series(instant, order) for name, function in self.functions.items()}
         return self.mechanism.known_series(laws)
 
     def next_break(self, instant: float) -> float:
-        """Up to where the inputs are analytic: the next instant at which a derivative of one jumps."""
+        """The next instant at which a derivative of an input jumps: the inputs are analytic up to there."""
         return min((b for b in self.breaks if instant < b < self.stop), default=self.stop)
 
     def segment_from(self, joint: _Joint) -> tuple[Segment, Array]:
-        """The series about a joint, not yet cut, and the lengths that its members allow, s, (members,)."""
+        """The series about a joint, up to `stop`, and the lengths that its members allow, s, (members,)."""
         segment = self.series_about(joint)
         if not (np.abs(segment.coefficients) < LARGEST).all():
             few = replace(joint, known=joint.known[..., : FEW + 1, :])
@@ -321,19 +325,19 @@ class _Course:
         return segment, self.lengths(segment)
 
     def lengths(self, segment: Segment) -> Array:
-        """How long each member's terms allow a segment to be, s, (members,); infinite where they end."""
+        """The longest segment that each member's terms allow, s, (members,); infinite for a polynomial."""
         logs = log_sizes(segment.coefficients[..., : self.part.system.unknowns])
         return lengths_by_sizes(logs, self.settings) * segment.scale
 
     def series_about(self, joint: _Joint) -> Segment:
-        """The series about a joint, of the order of what is known there.
+        """The series about a joint, of the order of the known coordinates there.
 
-        Its unit of time is at most the joint's, or SHORTEST_UNIT, and small enough for no known coefficient
-        to exceed the mechanism's size, so that no product of two series overflows however fast the inputs
-        are.
+        The unit of time is at most that of the joint, or SHORTEST_UNIT. It is so small that no coefficient of
+        a driven coordinate exceeds the mechanism's size. So no product of two series overflows, however fast
+        the inputs are.
         """
         scale = max(joint.scale, SHORTEST_UNIT)
-        # The rates of very slow or fast inputs, per second to a power, are numbers up to some order only.
+        # The rates of very slow or fast inputs, in 1/s^k, are finite and not zero up to some order k only.
         order = min(joint.known.shape[-2] - 1, max(SAFE, int(SMALLEST / max(abs(np.log2(scale)), 1.0))))
         known, orders = joint.known[..., : order + 1, :], np.arange(order + 1.0)
         size = np.abs(known[..., 1:, self.driven]).max(axis=(*range(known.ndim - 2), -1))
@@ -341,7 +345,7 @@ class _Course:
             fastest = float((size ** (-1.0 / orders[1:])).min())
         if fastest < scale:
             scale = power_of_two(fastest)
-        # Within rounding of a singular pose the unknown ones overflow all the same: no step is found then.
+        # Within rounding of a singular pose the unknown coordinates still overflow: then no step is found.
         with np.errstate(over="ignore", invalid="ignore"):
             scaled = self.part.known(joint.y, known * (scale**orders)[:, None])
             series = expand(self.part.system, joint.factors, joint.y, scaled)
@@ -350,14 +354,13 @@ class _Course:
     def step_along(
         self, segment: Segment, length: float, joint: _Joint, leaving: bool
     ) -> tuple[_Joint | None, NDArray[np.bool_], Work]:
-        """Cut a segment where its last terms say, or shorter: until Newton's method confirms its end, and one
-        branch is proven to lead there.
+        """Shorten a segment until Newton's method confirms its end and it is proven to stay on one branch.
 
         Args:
-            length: as its terms say, s.
-            leaving: whether it is enough that some members are confirmed.
+            length: first length to try, s, the one that the terms allow.
+            leaving: whether the confirmation of some members is enough.
         Returns:
-            The end, None where not all members have one; which members have; and what that cost.
+            The joint at the end, None unless all members are confirmed; the confirmed members; and the work.
         """
         system, limit, tolerance = self.part.system, self.next_break(joint.instant), self.settings.tolerance
         order, solved, work = np.arange(segment.order + 1.0), SOLVED * tolerance, Work()
@@ -388,31 +391,31 @@ class _Course:
         return None, good, work
 
     def law_noise(self, reached: Converged, end: float) -> Array:
-        """What the rounding of the inputs' laws may move any coordinate by, shape (...,)."""
+        """The largest change of any coordinate by the rounding of the inputs' laws, shape (...,)."""
         off = {name: function.rounding(np.array(end)) for name, function in self.functions.items()}
-        if not any(doubt.any() for doubt in off.values()):
+        if not any(rounding.any() for rounding in off.values()):
             return np.zeros(reached.y.shape[:-1])
         _, data = self.mechanism.known_data(self.part.back(reached.y), off)
         rows = self.part.system.uncertainty(reached.y, self.part.taken(data))
         return np.asarray(np.matvec(np.abs(reached.factors.preconditioner), rows).max(axis=-1))
 
     def stops_at(self, joint: _Joint, unfinished: NDArray[np.bool_], coarsest: bool) -> Status:
-        """Why no segment leads on from a joint.
+        """The reason why no segment leads on from a joint.
 
         Args:
-            unfinished: the members of the batch that have none.
+            unfinished: the members of the batch that have no next segment.
             coarsest: whether no larger tolerance is left to try.
         """
         instant = joint.instant
         goal = self.known_to(min(self.stop, instant + 1e-6 * (self.stop - instant)), 0)[..., 0, :]
-        # What is left of the way to that goal may be nothing but rounding; what the laws say is not: the
-        # first of their rates that is not zero.
+        # The difference between that goal and the pose may be nothing but rounding. The direction is taken
+        # from the laws instead: their first rate that is not zero.
         laws = self.known_to(instant, 4)
         moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
         change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
         problem = "the motion cannot pass a singular pose"
         place = whole_place(self.part, joint.y, joint.factors)
-        # Members share their segments: where these become too short for all, one of them is at its end.
+        # Members share their segments. Where these become too short, the member nearest to a lock is blamed.
         condition = np.where(unfinished, place.factors.condition, 0.0)
         unfinished = unfinished & (condition >= condition.max())
         error = blocked(self.mechanism, problem, place.y, place.factors, goal, unfinished, instant, change)
@@ -428,13 +431,13 @@ def confirmed(
     law_noise: Callable[[], Array] | None = None,
     leaving: bool = True,
 ) -> NDArray[np.bool_]:
-    """Whether solved ends are what a series leads to, up to a tolerance, shape (...,).
+    """Whether solved ends agree with the ends of the series, up to a tolerance, shape (...,).
 
     Args:
-        law_noise: what the rounding of the inputs' laws may move any coordinate by, shape (...,).
-        leaving: whether it is enough that some members are confirmed.
+        law_noise: the largest change of any coordinate by the rounding of the inputs' laws, shape (...,).
+        leaving: whether the confirmation of some members is enough.
     """
-    # What rounding alone makes of a step is no truncation, however small the tolerance.
+    # A Newton step that is only rounding is no truncation error, however small the tolerance.
     good = reached.converged & (reached.first_step <= tolerance)
     if not good.all() and (leaving or reached.converged.all()):
         noise = rounding_of(system, reached) + (law_noise() if law_noise is not None else 0.0)

@@ -1,1 +1,1 @@
-"""Many designs of one suspension in one call: what varies, what becomes of each, and how they are solved."""
+"""Many designs of one suspension in one call: the designs, how they are solved, and their results."""

@@ -1,8 +1,8 @@
-"""Designs of one suspension: a scene, and what varies from design to design.
+"""Designs of one suspension: a scene, and the hardpoint coordinates that vary from design to design.
 
-A coordinate is called by its point and its axis, such as lower_ball_joint.z, and varies by a column of
-values. A column of a grid is kept as the values of its axis, so that a grid takes no memory however many
-designs it has.
+A coordinate has the name of its point and axis, such as lower_ball_joint.z, and a column of values. For a
+grid only the values of each coordinate are stored, so a grid takes almost no memory, however many designs it
+has.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
 AXES = ("x", "y", "z")
-# Grids of more designs are a slip: at a microsecond each of 100 instants they would take a day.
+# A larger grid is a mistake: with 100 instants and a microsecond each it would take more than a day.
 MOST = 10**9
 
 
@@ -44,9 +44,9 @@ class Designs(ReadOnly):
     """Designs of one suspension; make them with `designs_of` or `grid_of`.
 
     Attributes:
-        scene: what is not varied.
-        count: how many designs there are; they are numbered from 0.
-        columns: by coordinate, what varies: where it is drawn, mm.
+        scene: the scene that all designs share.
+        count: number of designs; they are numbered from 0.
+        columns: values of each coordinate that varies, by coordinate, mm.
     """
 
     scene: Scene
@@ -55,9 +55,9 @@ class Designs(ReadOnly):
 
     @cached_property
     def following(self) -> Mapping[str, str]:
-        """Points of the chassis that go where others go: by name, the point that each goes along with.
+        """Points of the chassis that move with another hardpoint, by name: the point that each moves with.
 
-        A rack that is drawn where the end of the tie rod is drawn belongs to it.
+        A rack centre that is drawn at the inner end of the tie rod moves with that end.
         """
         drawn, topology = self.scene.mechanism.points, self.scene.mechanism.topology
         varied = {coordinate.rpartition(".")[0] for coordinate in self.columns}
@@ -68,7 +68,7 @@ class Designs(ReadOnly):
         }
 
     def varied(self, numbers: Numbers) -> dict[str, Array]:
-        """By coordinate its values in some designs, each (n,), mm."""
+        """Values of each coordinate that varies in some designs, by coordinate, each (n,), mm."""
         return {coordinate: column.of(numbers) for coordinate, column in self.columns.items()}
 
     def points(self, numbers: Numbers) -> dict[str, Array]:
@@ -86,11 +86,11 @@ class Designs(ReadOnly):
         """The scene of one design, checked.
 
         Raises:
-            WrongArgument: there is no such design.
-            SceneError: it is no scene that could be solved.
+            WrongArgument: the design does not exist.
+            SceneError: the scene of the design cannot be solved.
         """
         if not 0 <= number < self.count:
-            raise WrongArgument(f"design {number}", "is none of these", f"0 to {self.count - 1}")
+            raise WrongArgument(f"design {number}", "does not exist", f"0 to {self.count - 1}")
         points = {name: tuple(place[0].tolist()) for name, place in self.points(np.array([number])).items()}
         part = self.scene.mechanism
         content = {name: getattr(self.scene, name) for name in self.scene.model_fields_set}
@@ -105,15 +105,15 @@ def designs_of(
     points: Mapping[str, ArrayLike] | None = None,
     offsets: Mapping[str, ArrayLike] | None = None,
 ) -> Designs:
-    """Designs from a list of values for whatever varies.
+    """Designs from a list of values for each point or coordinate that varies.
 
     Args:
-        points: by point, where each design draws it, (D, 3), mm; or by coordinate, such as
-            lower_ball_joint.z, (D,). What is given once, (3,) or a number, holds for all designs.
-        offsets: the same, measured from where the scene draws it.
+        points: positions of each point in all designs, (D, 3), mm; or values of a coordinate, such as
+            lower_ball_joint.z, (D,). One position, (3,), or one number holds for all designs.
+        offsets: positions or values relative to the drawing of the scene.
     Raises:
-        UnknownName: no point or axis is called so.
-        WrongArgument: numbers of another shape, of another count than the others, or of a coordinate twice.
+        UnknownName: no point or axis has this name.
+        WrongArgument: values of a wrong shape, columns of different lengths, or a coordinate given twice.
     """
     values = _coordinates(scene, points or {}, offsets or {})
     counts = {name: len(column) for name, column in values.items() if column.ndim}
@@ -121,7 +121,7 @@ def designs_of(
     for name, own in counts.items():
         if own != count:
             longest = max(counts, key=lambda name: counts[name])
-            raise WrongArgument(name, f"has {own} values where {longest} has {count}", "as many of each")
+            raise WrongArgument(name, f"has {own} values, but {longest} has {count}", "as many of each")
     if not count:
         raise WrongArgument(next(iter(counts)), "has no values", "one or more designs")
     return Designs(scene, count, {name: Column(np.atleast_1d(column)) for name, column in values.items()})
@@ -135,17 +135,17 @@ def grid_of(
     """Every combination of values of some coordinates; the last coordinate changes from design to design.
 
     Args:
-        points: by coordinate, such as lower_ball_joint.z, the values that it takes, (n,), mm.
-        offsets: the same, measured from where the scene draws it.
+        points: values of each coordinate, such as lower_ball_joint.z, (n,), mm.
+        offsets: values relative to the drawing of the scene.
     Raises:
-        UnknownName: no point or axis is called so.
-        WrongArgument: something else than a list of numbers, an empty one, a coordinate twice, or too many
-            designs.
+        UnknownName: no point or axis has this name.
+        WrongArgument: values that are not a list of numbers, an empty list, a coordinate given twice, or too
+            many designs.
     """
     for name in (*(points or {}), *(offsets or {})):
         if "." not in name:
             allowed = f"{name}.x, {name}.y or {name}.z with its values"
-            raise WrongArgument(name, "is no axis of a grid", allowed)
+            raise WrongArgument(name, "is not a coordinate of a grid", allowed)
     values = _coordinates(scene, points or {}, offsets or {})
     lengths = {name: int(column.size) for name, column in values.items()}
     for name, length in lengths.items():
@@ -164,7 +164,7 @@ def grid_of(
 def _coordinates(
     scene: Scene, points: Mapping[str, ArrayLike], offsets: Mapping[str, ArrayLike]
 ) -> dict[str, Array]:
-    """What varies by coordinate, each (D,) or (), mm."""
+    """The values of every coordinate that varies, by coordinate, each (D,) or (), mm."""
     found: dict[str, Array] = {}
     drawn, topology = scene.mechanism.points, scene.mechanism.topology
     for given, relative in ((points, False), (offsets, True)):
@@ -178,12 +178,12 @@ def _coordinates(
 
 
 def coordinates_of(scene: Scene, named: Sequence[str] = ()) -> tuple[str, ...]:
-    """Coordinates by their names, and all three of a point that is named whole; of every point unless named.
+    """The named coordinates, with all three coordinates of a named point; those of all points unless named.
 
-    A rack that goes along with the end of the tie rod has no coordinates of its own unless it is named.
+    A rack centre that moves with the end of the tie rod is left out unless named.
 
     Raises:
-        UnknownName: no point or axis is called so.
+        UnknownName: no point or axis has this name.
     """
     points = scene.mechanism.points
     going = () if named else Designs(scene, 1, {}).following
@@ -192,12 +192,12 @@ def coordinates_of(scene: Scene, named: Sequence[str] = ()) -> tuple[str, ...]:
 
 
 def coordinates_named(name: str, points: Collection[str]) -> tuple[str, ...]:
-    """The coordinates that a name means: one such as lower_ball_joint.z, or all three of a point.
+    """The coordinates that a name means: one coordinate, such as lower_ball_joint.z, or all three of a point.
 
     Raises:
-        UnknownName: no point or axis is called so.
+        UnknownName: no point or axis has this name.
     """
-    # A point of a part has a dot in its own name.
+    # The name of a point of a part contains a dot.
     if name in points:
         return tuple(f"{name}.{axis}" for axis in AXES)
     point, _, axis = name.rpartition(".")
@@ -209,7 +209,7 @@ def coordinates_named(name: str, points: Collection[str]) -> tuple[str, ...]:
 
 
 def _split(name: str, numbers: ArrayLike, topology: Topology) -> dict[str, Array]:
-    """Values of a point or of a coordinate by coordinate."""
+    """The given values of a point or a coordinate, by coordinate."""
     named = coordinates_named(name, topology.points)
     try:
         values = np.array(numbers, dtype=float)

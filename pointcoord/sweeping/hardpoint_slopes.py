@@ -1,14 +1,14 @@
-r"""What the numbers of a solved scene change by with its hardpoints, to first order: exact derivatives.
+r"""Exact derivatives of the numbers of a solved scene by its hardpoint coordinates.
 
-A hardpoint's coordinate x changes the known coordinates w: the places of points of the chassis, and what is
-read off the drawing, such as lengths and the places of points in their bodies. The inputs keep their values,
-unless it is said what they change by. So the poses y(t, x) change by what C(y) = 0 says in the orders d of t
-and 1 of x,
+A hardpoint coordinate x changes the known coordinates w: positions of points of the chassis, and dimensions
+taken from the drawing, such as lengths and positions of points in their bodies. The inputs keep their values
+unless changes of them are given. The derivatives of the poses y(t, x) of order d in t and order 1 in x follow
+from C(y) = 0,
 
-    C_u u_x^(d) = -( C_w w_x^(d) + sum_{0 < i <= d} binomial(d, i) 2 B(y^(i), y_x^(d-i)) ),
+    C_u u_x^(d) = -( C_w w_x^(d) + sum_{0 < i <= d} binomial(d, i) 2 B(y^(i), y_x^(d-i)) ).
 
-and so do their derivatives along a way (see `linkage.slopes`), which takes the place of t with d = 1. The
-formulas of the effects are evaluated with duals of these.
+The derivatives along a way (see `linkage.slopes`) follow likewise, with the way in place of t and d = 1. The
+formulas of the effects are then evaluated with dual numbers of these derivatives.
 """
 
 from __future__ import annotations
@@ -49,22 +49,23 @@ from pointcoord.sweeping.designs import AXES, designs_of
 
 Array = NDArray[np.float64]
 
-# Numbers that the coordinates of poses, their derivatives and all slopes of these have at a time: 30 MB.
+# Most numbers in the coordinates, time derivatives and slopes of the poses of one block: 30 MB.
 ROOM = 4e6
-# Of what an equation between coordinates below 1 changes by where a hardpoint moves by the mechanism's size:
-# one that goes on to follow from others by rounding, 5e-16 in bricard, and another by 0.1 and more.
+# Largest change of a left-out equation, between coordinates below 1, if a hardpoint moves by the mechanism's
+# size and the equation still follows from the others. Such an equation changes by rounding only, 5e-16 in
+# bricard; any other changes by 0.1 and more.
 HELD = 1e-9
 LOCKS = (
-    "as drawn, the equation {} follows from the others, and where this coordinate moves it does not: the "
+    "as drawn, the equation {} follows from the others; with this coordinate changed it does not, and the "
     "mechanism locks"
 )
 
 
 @dataclass(frozen=True, eq=False)
 class DualPoses(Poses):
-    """Poses of duals, whose slopes have a dimension of K parameters before those of the values.
+    """Poses in dual numbers. The slopes have one more dimension in front, of K parameters.
 
-    The mechanism is one with slopes of all that is read off its drawing.
+    The mechanism has slopes of every dimension taken from the drawing.
     """
 
     def constant(self, number: Array) -> Dual[Array]:
@@ -77,14 +78,14 @@ class DualPoses(Poses):
 
 @dataclass(frozen=True, eq=False)
 class MovedPoses:
-    """Poses as coordinates with slopes by K parameters (see `infinitesimal`).
+    """Coordinates of poses with slopes by K parameters (see `infinitesimal`).
 
     Attributes:
-        laws: of the inputs that move the chassis.
+        laws: laws of the inputs that move the chassis.
         states: y and its time derivatives, (K, N, size).
-        ways: its derivative along each way, per rad, mm or unit, (K, N, size).
-        violated: what the rows that are left out, as they follow from the others, change by where a hardpoint
-            moves by the mechanism's unit, (K, N, rows).
+        ways: derivative of y along each way, per rad, mm or unit, (K, N, size).
+        violated: change of the left-out rows, which follow from the others as drawn, if a hardpoint moves by
+            the mechanism's unit, (K, N, rows).
     """
 
     laws: Laws
@@ -95,11 +96,11 @@ class MovedPoses:
 
 @dataclass(frozen=True, eq=False)
 class ByHardpoints:
-    """K parameters of a car's hardpoints.
+    """Derivatives of a car's numbers by K parameters that move its hardpoints.
 
     Attributes:
-        readout: what is asked for of the car.
-        moves: by hardpoint, what its drawn place changes by with each parameter, (K, 3), mm; of all of them.
+        readout: the requested numbers of the car.
+        moves: derivative of every hardpoint's drawn position by each parameter, by hardpoint, (K, 3), mm.
     """
 
     readout: Readout
@@ -107,15 +108,15 @@ class ByHardpoints:
 
     @cached_property
     def moved(self) -> Mechanism:
-        """With slopes of all that is read off the drawing."""
+        """The mechanism with slopes of every dimension taken from the drawing."""
         return hardpoints_moved(self.readout.mechanism, self.moves)
 
     @cached_property
     def drawn_inputs(self) -> dict[str, Array]:
-        """The inputs at which the drawing stands, with their slopes, (K, 1), rad or mm.
+        """The inputs of the drawing, with their slopes, (K, 1), rad or mm.
 
-        An input q drives coordinates w(q, x) = w_drawn(x), so that q_x = (w_drawn - w)_x / w_q; of a turn,
-        which drives two of them, by least squares.
+        An input q drives coordinates with w(q, x) = w_drawn(x), so that q_x = (w_drawn - w)_x / w_q. An angle
+        drives two coordinates; its q_x is the least squares solution.
         """
         mechanism, moved = self.readout.mechanism, self.moved
         values = mechanism.drawn_inputs
@@ -137,17 +138,18 @@ class ByHardpoints:
         known = mechanism.known_series(laws)
         y = solved.coordinates(times, 0)[0].copy()
         y[:, system.unknowns :] = known[:, 0]
-        # The motion is within its tolerance, and a derivative is to be within rounding.
+        # The motion is exact to its tolerance only; derivatives shall be exact to rounding.
         y = newton_refine(system, y).y
         states = with_rates(system, y, known, times, highest, square_velocity_term, Work()).states
         return self._moved(states, laws, self.readout.laws(times))
 
     def at(self, y: Array, inputs: Mapping[str, Array], laws: Laws) -> MovedPoses:
-        """Poses y at inputs, (N, size).
+        """Poses y, (N, size), at given inputs.
 
         Args:
-            inputs: values of those that drive the linkage, (N,), or with slopes (K, N), rad or mm.
-            laws: values of those that move the chassis.
+            y: coordinates of the poses.
+            inputs: values of the inputs that drive the linkage, (N,), or with slopes (K, N), rad or mm.
+            laws: values of the inputs that move the chassis.
         """
         return self._moved([y], {name: value[..., None] for name, value in inputs.items()}, laws)
 
@@ -173,7 +175,7 @@ class ByHardpoints:
         return MovedPoses(laws, list(map(with_slope, states, slopes)), found, violated)
 
     def numbers(self, at: MovedPoses) -> dict[str, dict[str, Array]]:
-        """What every number changes by, by quantity and name, (K, N) of the car and (K, N, 3) of others."""
+        """Slopes of every number by quantity and name, (K, N) of the car, (K, N, 3) of points and bodies."""
         readout, moved, laws = self.readout, self.moved, at.laws
         orders = [factorial(d) for d in range(len(at.states))]
         series = np.stack([state / n for state, n in zip(at.states, orders, strict=True)], axis=-2)
@@ -207,12 +209,12 @@ class ByHardpoints:
 
 @dataclass(frozen=True)
 class Slopes:
-    """What every number changes by with hardpoint coordinates.
+    """Derivatives of every number by hardpoint coordinates.
 
     Attributes:
-        numbers: by quantity and name, (coordinates, N) of the car and (coordinates, N, 3) of others, their
-            unit per mm; NaN where there is no derivative.
-        failures: by coordinate, why there is none.
+        numbers: derivatives by quantity and name, (coordinates, N) of the car and (coordinates, N, 3) of
+            points and bodies, in the number's unit per mm; NaN where there is no derivative.
+        failures: why there is no derivative, by coordinate.
     """
 
     numbers: Mapping[str, Mapping[str, Array]]
@@ -220,7 +222,7 @@ class Slopes:
 
 
 def slopes_of_motion(scene: Scene, solved: SolvedScene, times: Array, coordinates: Sequence[str]) -> Slopes:
-    """Those of a scene's motion at instants, (N,), s; the inputs keep their values."""
+    """Derivatives of the numbers of a scene's motion at instants, (N,), s; the inputs keep their values."""
     by_hardpoints = ByHardpoints(solved.readout, moves_of(scene, coordinates))
 
     def poses(some: slice) -> MovedPoses:
@@ -236,13 +238,13 @@ def slopes_of_poses(
     drawn: Collection[str] = (),
     changes: Mapping[str, Array] | None = None,
 ) -> Slopes:
-    """Those of poses at inputs.
+    """Derivatives of the numbers of poses at given inputs.
 
     Args:
         inputs: values of every input, each (N,), rad or mm.
-        drawn: the inputs that stay as they are drawn, and so change with the drawing.
-        changes: what others that drive the linkage change by with each coordinate, (coordinates,), rad or mm
-            per mm; the rest keep their values.
+        drawn: inputs that keep their drawn position, so that their values change with the drawing.
+        changes: derivatives of other inputs that drive the linkage by each coordinate, (coordinates,), rad or
+            mm per mm. All further inputs keep their values.
     Raises:
         AssemblyError: a pose cannot be reached from the drawing on a straight path.
     """
@@ -261,7 +263,10 @@ def slopes_of_poses(
 
 
 def moves_of(scene: Scene, coordinates: Sequence[str]) -> dict[str, Array]:
-    """By hardpoint, what its place changes by with each coordinate, (K, 3); points that go along do so."""
+    """Derivative of every hardpoint's position by each coordinate, by hardpoint, (K, 3).
+
+    Points that move with another hardpoint (see `Designs.following`) have the derivatives of that hardpoint.
+    """
     points = scene.mechanism.points
     found = {name: np.zeros((len(coordinates), 3)) for name in points}
     for i, coordinate in enumerate(coordinates):
@@ -277,7 +282,7 @@ def _slopes(
     count: int,
     poses: Callable[[slice], MovedPoses],
 ) -> Slopes:
-    """Those of some of `count` poses at a time."""
+    """Derivatives of the numbers of `count` poses, computed in blocks that fit into ROOM."""
     plan, topology = by_hardpoints.readout.plan, by_hardpoints.readout.mechanism.topology
     each = len(coordinates) * topology.layout.size * (plan.derivative + 1 + 2 * len(plan.ways(topology)))
     together = max(int(ROOM // each), 1)
@@ -298,5 +303,5 @@ def _slopes(
 
 
 def _duals(points: Mapping[str, Array]) -> dict[str, Dual[Array]]:
-    """Values, (N, 3), which are the same for all parameters, and slopes, (K, N, 3)."""
+    """Dual numbers of values, (N, 3), which do not depend on the parameter, and slopes, (K, N, 3)."""
     return {name: Dual(point.real[0], slope_of(point)) for name, point in points.items()}

@@ -1,7 +1,7 @@
-r"""How much every number of the car changes by each coordinate of each hardpoint: exact derivatives.
+r"""Sensitivity: exact derivatives of every number of the car by every hardpoint coordinate.
 
-What is drawn is what is solved, so that the links of a moved point have other lengths, and the inputs keep
-their values. No car is solved but the one that is drawn (see `hardpoint_slopes`).
+If a hardpoint moves, the lengths of its links change as drawn, and the inputs keep their values. Only the
+drawn car is solved (see `hardpoint_slopes`).
 """
 
 from __future__ import annotations
@@ -29,10 +29,11 @@ class Sensitivity(ReadOnly):
     """Derivatives of numbers at the instants of a scene.
 
     Attributes:
-        coordinates: of hardpoints, such as lower_ball_joint.z.
-        times: (N,), s.
-        derivatives: by number, (coordinates, N), its unit per mm; NaN where there is none, or no such number.
-        failures: by coordinate, why there is no derivative.
+        coordinates: hardpoint coordinates, such as lower_ball_joint.z.
+        times: instants, (N,), s.
+        derivatives: derivatives of each number, by its name, (coordinates, N), in its unit per mm; NaN where
+            the number or the derivative does not exist.
+        failures: why there is no derivative, by coordinate.
     """
 
     coordinates: tuple[str, ...]
@@ -41,32 +42,33 @@ class Sensitivity(ReadOnly):
     failures: Mapping[str, str]
 
     def largest(self, number: str) -> Array:
-        """The derivative where it is largest, with its sign, (coordinates,); 0 where there is none."""
+        """The derivative of largest magnitude over all instants, with its sign, (coordinates,); 0 if none."""
         found = np.nan_to_num(self.derivatives[number])
         return np.asarray(np.take_along_axis(found, np.abs(found).argmax(axis=1)[:, None], axis=1)[:, 0])
 
     def spread(self, number: str, tolerance: float) -> tuple[float, float]:
-        """What a tolerance of every coordinate makes of a number, to first order, where that is most.
+        """Largest spread of a number over time, to first order, for one tolerance of all coordinates.
 
         Args:
-            tolerance: of every coordinate by itself, mm: its standard deviation, or a limit.
+            tolerance: tolerance of every coordinate, mm: a standard deviation, or a limit.
         Returns:
-            The standard deviation of independent coordinates, and the worst case of all together.
+            The standard deviation for independent coordinates, and the worst case of all together.
         """
         sizes = tolerance * np.abs(np.nan_to_num(self.derivatives[number]))
         return float(np.sqrt((sizes**2).sum(axis=0)).max()), float(sizes.sum(axis=0).max())
 
 
 def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence[str] = ()) -> Sensitivity:
-    """Derivatives of the numbers of the car that a scene's effects give, at its instants.
+    """Derivatives of the numbers that a scene's effects give, at the instants of the scene.
 
     Args:
-        numbers: of the car by their names, any other as QUANTITY.NAME or, of a vector, QUANTITY.NAME.AXIS,
-            such as rod_force.tie_rod or velocity.wheel_centre.z; all of the car unless given.
-        coordinates: such as lower_ball_joint.z, or a point's name for all three; all hardpoints unless given.
+        numbers: names of numbers of the car; other numbers as QUANTITY.NAME, and components of vectors as
+            QUANTITY.NAME.AXIS, such as rod_force.tie_rod or velocity.wheel_centre.z; all numbers of the car
+            unless given.
+        coordinates: names such as lower_ball_joint.z, or a point for all three; all hardpoints unless given.
     Raises:
-        SceneError, WrongArgument: as `sweep`.
-        UnknownName: no point, axis or number is called so.
+        SceneError, WrongArgument: see `sweep`.
+        UnknownName: no point, axis or number has this name.
 
     >>> found = sensitivity(Scene.load("double-wishbone"), ["camber"], ["upper_ball_joint.y"])
     >>> found.derivatives["camber"].shape
@@ -86,7 +88,7 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
     motion = drawn.motion(0)
     slopes, channels = slopes_of_motion(scene, motion.solved, motion.times, named), {}
     for quantity, channel in drawn.numbers.items():
-        # Where a number is none its formula may still have a slope.
+        # Where a number is not finite its formula may still have a slope.
         own = slopes.numbers.get(quantity, {})
         arrays = {n: np.where(np.isfinite(values), own[n], np.nan) for n, values in channel.items()}
         channels[quantity] = channel.with_arrays(arrays)
@@ -94,10 +96,10 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
 
 
 def numbers_named(channels: Mapping[str, Channel], names: Sequence[str]) -> dict[str, Array]:
-    """Numbers of many designs by name, each (designs, N); all of the car unless names are given.
+    """Numbers of many designs by name, each (designs, N); all numbers of the car unless names are given.
 
     Raises:
-        UnknownName: none is called so.
+        UnknownName: no number has this name.
     """
     scalars = _scalars(channels)
     if not names:
@@ -116,7 +118,7 @@ def numbers_named(channels: Mapping[str, Channel], names: Sequence[str]) -> dict
 
 
 def _scalars(numbers: Mapping[str, Channel]) -> dict[str, Array]:
-    """Numbers of the car by name; of one that comes twice, as a rod's may, the later by its quantity."""
+    """Numbers of the car by name. A name that comes again, as a rod's may, becomes QUANTITY.NAME."""
     found: dict[str, Array] = {}
     for quantity, channel in numbers.items():
         for name, values in channel.items() if channel.quantity.of == "car" else ():

@@ -1,8 +1,7 @@
-"""From designs to what becomes of them, many at a time.
+"""Solves blocks of designs, with the checks that `simulate` makes of one scene.
 
-Everything that `simulate` looks at in one scene is looked at in each design, in arrays: what is found in
-order in a whole batch is not looked at again, and what may be at fault in one design is told by the rules of
-a scene.
+The checks run on arrays of all designs. Only a design that may be at fault is checked again as a scene of its
+own, so that its error is the error of the scene.
 """
 
 from __future__ import annotations
@@ -53,21 +52,22 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 Points = Mapping[str, Array]
 
-# Designs that are solved together at most: of 128 to 2048 tried, the quickest or near it.
+# Most designs that are solved together: of 128 to 2048 this is the fastest, or nearly so.
 TOGETHER = 512
-# Bytes that solving takes on the way: of a design for its matrices and series and for products of these; and
-# of a number of the results at an instant for what the effects are made of.
+# Bytes of intermediate results: for a design, its matrices, series and their products; for each number of the
+# results at an instant, the arrays of the effects.
 OF_A_DESIGN, OF_A_NUMBER = 450_000, 16
-# Two orders of summing the same three products differ by less than this part of the largest.
+# Sums of the same three products in different order differ by less than this share of the largest product.
 SLACK = 1e-12
 
 
 @dataclass(frozen=True)
 class Course:
-    """Designs ready to be solved: what they share is checked.
+    """Designs ready to be solved.
 
     Attributes:
-        scene: what the designs share, checked.
+        scene: the scene that the designs share, checked.
+        plan: the effects to compute.
     """
 
     designs: Designs
@@ -76,10 +76,10 @@ class Course:
 
     @classmethod
     def of(cls, designs: Designs) -> Course:
-        """Check what designs share.
+        """Check the scene that the designs share.
 
         Raises:
-            SceneError: the scene was made wrong after it was read.
+            SceneError: the scene was changed after it was read and is wrong.
         """
         scene = Scene.checked(designs.scene, designs.scene.title or "scene")
         plan = plan_effects(scene.effects, None, scene.unreported_points)
@@ -95,24 +95,24 @@ class Course:
 
     @property
     def bytes_of_a_design(self) -> int:
-        """What the numbers of one design take."""
+        """Bytes that the numbers of one design take."""
         return 8 * self.table.height * len(self.scene.instants)
 
     @property
     def bytes_on_the_way(self) -> int:
-        """What solving one design takes beside its numbers."""
+        """Bytes that solving one design takes in addition to its numbers."""
         table, count = self.table, min(len(self.scene.instants), INSTANTS)
         return (
             OF_A_DESIGN + (OF_A_NUMBER * table.height * bool(table.computed) + 24 * len(table.spare)) * count
         )
 
     def solve(self, first: int, last: int, memory: float = np.inf) -> Sweep:
-        """What becomes of the designs from number `first` to before `last`.
+        """Solve the designs from number `first` up to, but not including, `last`.
 
         Args:
-            memory: bytes for solving, beside the numbers.
+            memory: most bytes for solving, in addition to the numbers.
         Raises:
-            InputOutOfRange: a law that has no meaning, whatever the design.
+            InputOutOfRange: a law leaves the range of an input, whatever the design.
         """
         rows = np.empty((last - first, self.table.height, len(self.scene.instants)))
         block = _Block.empty(self, first, rows)
@@ -124,11 +124,14 @@ class Course:
 
 @dataclass(frozen=True)
 class _Block:
-    """What is known so far of a block of designs.
+    """Results of a block of designs, filled while the designs are solved.
 
     Attributes:
-        rows: the table of each design, (D, height, N). filled: whether it is.
-        failures, notes: as far as they are found.
+        first: number of the first design.
+        rows: table of each design, (D, height, N).
+        filled: whether the table of each design is filled, (D,).
+        closing, drawn: see `Sweep`.
+        failures, notes: those found so far.
     """
 
     course: Course
@@ -155,10 +158,10 @@ class _Block:
         course, scene = self.course, self.course.scene
         numbers = np.arange(self.first, self.first + len(self.rows))
         solved = self.alive(numbers)
-        assert (self.filled | ~solved).all()  # no failure is lost; what was not filled holds anything
+        assert (self.filled | ~solved).all()  # no failure is lost; rows that were not filled are arbitrary
         self.rows[~solved] = np.nan
         if not self.filled.any():
-            scene_mechanism(scene)  # says if no design can have one
+            scene_mechanism(scene)  # raises if no design can have a mechanism
         samples = course.table.named(scene.instants, self.rows)
         return Sweep(
             times=samples.times,
@@ -194,7 +197,7 @@ class _Block:
         laws = [scene.functions[name] for name in topology.required_inputs]
         certain = all((law.rounding(scene.instants) <= scene.tolerance).all() for law in laws)
         if topology.left_out or not certain:
-            # Which rows follow from others hangs on each drawing, and how far a law's doubt moves a pose.
+            # The drawing decides which rows follow from others, and how far the error of a law moves a pose.
             for number in members.tolist():
                 self._alone(number, whole=True)
             return
@@ -206,7 +209,7 @@ class _Block:
             self._move(some, mechanism)
 
     def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
-        """The mechanism of all that have one, found in halves where some have none."""
+        """Mechanisms of the members that have one: a batch in which a member fails is divided in halves."""
         part = self.course.scene.mechanism
         if not len(members):
             return
@@ -230,19 +233,19 @@ class _Block:
         weights: Array | None = None,
         warns: bool = True,
     ) -> None:
-        """Note what is true of some of the members, in the words for the one of the largest weight."""
+        """Add a note on the members marked by `where`, in the words for the member of largest weight."""
         count = int(np.count_nonzero(where))
         if count:
             place = int(np.argmax(where if weights is None else np.where(where, weights, -np.inf)))
             weight = 0.0 if weights is None else float(weights[place])
-            told = words if isinstance(words, str) else words((place,))
-            self.notes.append(Noted(kind, warns, count, int(members[place]), told, weight))
+            text = words if isinstance(words, str) else words((place,))
+            self.notes.append(Noted(kind, warns, count, int(members[place]), text, weight))
 
     def _move(self, members: Numbers, mechanism: Mechanism) -> None:
         course, scene = self.course, self.course.scene
         time = scene.time
         functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
-        # Which values have a meaning is the same for every design.
+        # The range of an input is the same for every design.
         check_range(mechanism.taken(0), functions, scene.instants)
         settings = chain_settings(scene, mechanism, course.plan.derivative)
         allowed = pose_tolerance(scene, SERIES, mechanism)
@@ -260,26 +263,26 @@ class _Block:
             if members[place] in self.failures:
                 continue
             if isinstance(error, NotFollowed):
-                # What is too long or too rough for all together may not be so for one, or for a map.
+                # A motion that fails in a batch may succeed for the design alone, or by a map.
                 self._alone(int(members[place]))
             else:
                 self.fail([members[place]], error)
 
     def _look_at_closing(self, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
-        """Refuse drawings whose closing makes another car of them, and note how far the others move."""
+        """Refuse drawings that closing turns into another car, and note how far the others move."""
         moved = np.max(list(movements(mechanism, closed).values()), axis=0)
         size, places = car_size(mechanism), members - self.first
         self.closing[places] = moved
         for name, angle in self._angles(mechanism, closed).items():
             self.drawn[name][places] = angle
-        # A closure that puts points in their places is asked for by name, and refuses nothing.
+        # A closure that puts points in place is requested by name; then points may move any distance.
         far = (moved > (1.0 - SLACK) * ALLOWED * size) & (not mechanism.topology.puts_in_place)
         for place in np.flatnonzero(far).tolist():
             try:
                 require_the_drawn_car(self.course.scene, closing(mechanism.taken(place), closed[place]))
             except SceneError as error:
-                said = SceneError(f"design {members[place]}", error.key, error.problem, error.allowed)
-                self.fail([members[place]], said)
+                refused = SceneError(f"design {members[place]}", error.key, error.problem, error.allowed)
+                self.fail([members[place]], refused)
         with np.errstate(invalid="ignore"):
             noticed = (moved > np.minimum(NOTICED, NOTICED_SHARE * size)) & self.alive(members)
 
@@ -303,10 +306,10 @@ class _Block:
             self.rows[places] = rows
 
     def _alone(self, number: int, whole: bool = False) -> None:
-        """Solve one design as a scene of its own, by whatever follows its laws.
+        """Solve one design separately, as a scene with any method that can follow its laws.
 
         Args:
-            whole: whether nothing has looked at its drawing yet.
+            whole: whether the closing of its drawing is still to be noted.
         """
         try:
             motion = simulate(self.course.designs.design(number))
@@ -318,7 +321,7 @@ class _Block:
         for quantity, names in self.course.table.places.items():
             for name in names:
                 self.course.table.put(self.rows[place], quantity, name, motion.numbers[quantity][name])
-        alone = f"solved by itself, by the method {motion.method!r}"
+        alone = f"solved separately, by the method {motion.method!r}"
         self.notes.append(Noted("alone", False, 1, number, alone))
         if whole:
             mechanism, closed = motion.solved.readout.mechanism, motion.closing
@@ -332,10 +335,10 @@ class _Block:
         if not len(members):
             return
         places = members - self.first
-        # Neighbours are looked at where they are: a copy of all numbers would cost as much as computing them.
+        # Consecutive designs are read in place: copying all numbers would cost as much as computing them.
         apart = places[-1] - places[0] != len(places) - 1
         rows = self.rows[places] if apart else self.rows[places[0] : places[-1] + 1]
-        # A sum of numbers may overflow and be looked at for nothing, but none that is no number is missed.
+        # A sum finds every number that is not finite. If the sum itself overflows, the search is in vain.
         with np.errstate(over="ignore", invalid="ignore"):
             if np.isfinite(rows.sum()):
                 return
@@ -354,10 +357,10 @@ class _Block:
 
 
 def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
-    """Designs that may be no scene: all that are none, and hardly any others.
+    """Marks all designs that are not valid as a scene, and hardly any others.
 
-    A scene can be at fault in numbers that are not finite, in a wheel that lies inboard, and in two points at
-    one place that the scene itself draws apart.
+    The faults of a design are numbers that are not finite, a wheel that lies inboard, and two points at one
+    position that the shared scene draws apart.
     """
     part = designs.scene.mechanism
     found = np.zeros(len(next(iter(points.values()))), dtype=bool)
@@ -382,7 +385,7 @@ REASONS: tuple[tuple[type[PointcoordError], str], ...] = (
 
 
 def reason_of(error: PointcoordError) -> str:
-    """The reason of a failure in words without numbers."""
+    """The reason for a failure, in words without numbers."""
     if isinstance(error, AssemblyError | NotFollowed):
         return error.problem
     if isinstance(error, SceneError) and "that is another car" in error.problem:

@@ -28,19 +28,19 @@ def sweep(
 
     Args:
         designs: the scene whose points vary, or designs of `designs_of` or `grid_of`.
-        points: by point where each design draws it, (D, 3), mm, or by coordinate, such as lower_ball_joint.z,
-            (D,). What is given once holds for all designs. A rack_centre that is drawn where tie_rod_inner is
-            goes along with it.
-        offsets: the same, measured from where the scene draws it.
-        grid: whether to take every combination of the values of each coordinate, given by coordinate.
+        points: positions of each point in all designs, (D, 3), mm; or values of a coordinate, such as
+            lower_ball_joint.z, (D,). One position or number holds for all designs. A rack_centre that is
+            drawn at tie_rod_inner moves with tie_rod_inner.
+        offsets: positions or values relative to the drawing of the scene.
+        grid: whether to solve every combination of the values, which are then given by coordinate.
     Returns:
-        Every number with the design axis first. A design that cannot be solved has NaN and says why in
-        `failures`; it disturbs no other.
+        Every number with the design axis first. The numbers of a design that cannot be solved are NaN, and
+        `failures` states why; the other designs are not affected.
     Raises:
-        UnknownName: no point or axis is called so.
+        UnknownName: no point or axis has this name.
         WrongArgument: the values do not make designs, or their results do not fit into this machine's memory.
-        SceneError: the scene was made wrong after it was read.
-        InputOutOfRange: a law that all designs share.
+        SceneError: the scene was changed after it was read and is wrong.
+        InputOutOfRange: a law, which all designs share, leaves the range of an input.
 
     >>> from pointcoord import Scene
     >>> found = sweep(Scene.load("double-wishbone"), offsets={"lower_ball_joint.z": [-5.0, 0.0, 5.0]})
@@ -69,13 +69,14 @@ def sweep_blocks(
     grid: bool = False,
     memory: float = MEMORY,
 ) -> Iterator[Sweep]:
-    """The same in blocks of consecutive designs: any number of them, in a block's memory.
+    """Solve any number of designs in blocks of consecutive designs, with the memory of one block.
 
     Args:
-        memory: bytes that a block and solving it take at most; one that is still held when the next is asked
-            for comes to that.
+        designs, points, offsets, grid: see `sweep`.
+        memory: most bytes for a block and for solving it. A block that is still held when the next one is
+            requested takes its memory in addition.
     Raises:
-        WrongArgument: as `sweep`; or one design takes more memory than that.
+        WrongArgument: see `sweep`; or one design takes more memory than that.
 
     >>> from pointcoord import Scene
     >>> blocks = sweep_blocks(Scene.load("steer"), offsets={"strut_top.y": [0.0, 1.0]}, memory=100e6)
@@ -87,11 +88,11 @@ def sweep_blocks(
     if needed > memory:
         raise WrongArgument(
             "memory",
-            f"is {memory / 1e6:.4g} MB, where one design of {len(course.scene.instants)} instants takes "
+            f"is {memory / 1e6:.4g} MB, but one design of {len(course.scene.instants)} instants takes "
             f"{needed / 1e6:.4g} MB",
             "more memory, or fewer instants",
         )
-    # Half for the numbers of a block and half for what is solved together.
+    # Half of the memory for the numbers of a block, half for solving.
     solving = max(0.5 * memory, course.bytes_on_the_way)
     size, count = int(max((memory - solving) // course.bytes_of_a_design, 1)), course.designs.count
     return (course.solve(first, min(first + size, count), solving) for first in range(0, count, size))
@@ -105,7 +106,7 @@ def _designs(
 ) -> Designs:
     if isinstance(designs, Designs):
         if points or offsets or grid:
-            problem = "are given beside designs that have their own"
+            problem = "are given in addition to designs, which have points of their own"
             raise WrongArgument("points", problem, "a scene with these")
         return designs
     require_scene(designs)
@@ -113,7 +114,7 @@ def _designs(
 
 
 def _physical_memory() -> float:
-    """Bytes of this machine; without bound where it does not say."""
+    """Bytes of memory of this machine; infinite where the system does not report them."""
     try:
         return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     except (AttributeError, OSError, ValueError):

@@ -1,4 +1,4 @@
-"""What became of many designs: the numbers of those that were solved, and why the others were not."""
+"""Results of many designs: the numbers of the solved designs, and why the other designs failed."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Failure:
     """Why one design has no numbers.
 
     Attributes:
-        design: its number.
-        reason: in a few words that are the same for all designs with this reason.
-        error: what `simulate` says of it, with the instant and the inputs that it reached if it moved.
+        design: number of the design.
+        reason: a few words without numbers, the same for all designs that fail for this reason.
+        error: the error that `simulate` raises, with the instant and the inputs that the motion reached.
     """
 
     design: int
@@ -35,20 +35,21 @@ class Failure:
 
     @property
     def instant(self) -> float | None:
-        """How far its motion came, s; None if it has none."""
+        """Instant that the motion of the design reached, s; None if there is no motion."""
         return getattr(self.error, "instant", None)
 
 
 @dataclass(frozen=True)
 class Noted:
-    """Something that should be known of some designs, told of one of them.
+    """A note on some designs, in the words for one of them.
 
     Attributes:
-        kind: of what; one note is made of each kind.
-        warns: whether it may change what the numbers mean.
-        count: of how many designs it is true. design: the number of one of them.
-        words: what is true of that one.
-        weight: how much; the design with the largest is told.
+        kind: kind of note; all notes of one kind are merged.
+        warns: whether the note is a warning, because it may change the meaning of the numbers.
+        count: number of designs with this note.
+        design: number of the design that the words describe.
+        words: text for that design.
+        weight: severity; the words describe the design with the largest weight.
     """
 
     kind: str
@@ -62,7 +63,7 @@ class Noted:
         if self.count == total == 1:
             return self.words
         which = "all" if self.count == total else f"{self.count} of {total}"
-        return f"{which} designs, for one design {self.design}: {self.words}"
+        return f"{which} designs, for example design {self.design}: {self.words}"
 
 
 def merged(notes: Iterable[Noted]) -> tuple[Noted, ...]:
@@ -73,9 +74,9 @@ def merged(notes: Iterable[Noted]) -> tuple[Noted, ...]:
             found[note.kind] = note
             continue
         one = found[note.kind]
-        told = note if note.weight > one.weight else one
+        worst = note if note.weight > one.weight else one
         found[note.kind] = Noted(
-            one.kind, one.warns, one.count + note.count, told.design, told.words, told.weight
+            one.kind, one.warns, one.count + note.count, worst.design, worst.words, worst.weight
         )
     return tuple(found.values())
 
@@ -89,14 +90,15 @@ class Sweep(Samples):
     says why. The design at place i has the number first + i.
 
     Attributes:
-        designs: what was asked for.
-        first: number of the first design.
-        varied: by coordinate, where each design draws it, (D,), mm.
+        designs: the designs of the whole sweep.
+        first: number of the first design of this block.
+        varied: values of each coordinate that varies, by coordinate, (D,), mm.
         solved: whether each design could be solved, (D,).
-        closing: how far closing each drawing moves a point at most, (D,), mm; NaN if it cannot be closed.
-        drawn: by name, the angles that the scene asks for in each closed drawing, (D,), rad.
-        failures: of the designs that could not be solved, by number.
-        notes: what should be known of designs, gathered.
+        closing: largest distance by which closing each drawing moves a point, (D,), mm; NaN if a drawing
+            cannot be closed.
+        drawn: angles of each closed drawing that the scene's effects report, by name, (D,), rad.
+        failures: why designs could not be solved, by number.
+        notes: notes on the designs, merged by kind.
     """
 
     designs: Designs
@@ -117,15 +119,15 @@ class Sweep(Samples):
 
     @property
     def numbers_of_designs(self) -> NDArray[np.intp]:
-        """Of each place, the number of its design."""
+        """Number of the design at each place."""
         return np.arange(self.first, self.first + len(self))
 
     def of(self, number: int) -> Samples:
         """The numbers of one design, as `simulate` gives them.
 
         Raises:
-            WrongArgument: it is none of these.
-            PointcoordError: it could not be solved; what stopped it.
+            WrongArgument: the design is not in this block.
+            PointcoordError: the error that stopped the design.
         """
         place = self._place(number)
         if number in self.failures:
@@ -136,30 +138,30 @@ class Sweep(Samples):
         """The scene of one design.
 
         Raises:
-            WrongArgument: it is none of these.
-            SceneError: it is no scene that could be solved.
+            WrongArgument: the design is not in this block.
+            SceneError: the scene of the design cannot be solved.
         """
         self._place(number)
         return self.designs.design(number)
 
     def motion(self, number: int) -> Motion:
-        """The design solved once more by itself, dense in time.
+        """The motion of one design, solved again separately, for any instant.
 
         Raises:
-            WrongArgument: it is none of these.
-            PointcoordError: as `simulate`.
+            WrongArgument: the design is not in this block.
+            PointcoordError: see `simulate`.
         """
         return simulate(self.scene(number))
 
     def proof(self, number: int, rates: bool = False) -> Proof:
         """Proven error bounds of one design's numbers at each of the times.
 
-        The design is solved once more by itself, its poses are proven, and how far the numbers of the sweep
-        lie from them is measured and added.
+        The design is solved again separately and its poses are proven. The distance between these poses and
+        the numbers of the sweep is added to the bounds.
 
         Raises:
-            WrongArgument: it is none of these.
-            PointcoordError: it could not be solved.
+            WrongArgument: the design is not in this block.
+            PointcoordError: the design could not be solved.
         """
         samples = self.of(number)
         return self.motion(number).proof_of(samples, rates)
@@ -167,5 +169,5 @@ class Sweep(Samples):
     def _place(self, number: int) -> int:
         if not self.first <= number < self.first + len(self):
             allowed = f"{self.first} to {self.first + len(self) - 1}"
-            raise WrongArgument(f"design {number}", "is none of these", allowed)
+            raise WrongArgument(f"design {number}", "is not in this block", allowed)
         return number - self.first

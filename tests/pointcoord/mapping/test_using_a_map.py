@@ -124,9 +124,13 @@ REFUSED: list[tuple[Callable[[KinematicMap], object], type[PointcoordError], str
     (
         lambda m: m(AT, {**AT, "rack": np.inf}),
         InputOutOfRange,
-        "'rack' is inf; allowed: rates that are finite",
+        "'rack' is inf; allowed: finite rates",
     ),
-    (lambda m: m.evaluate([1.0, 0.0], [1.0, np.nan]), InputOutOfRange, "'rack' is nan; allowed: rates"),
+    (
+        lambda m: m.evaluate([1.0, 0.0], [1.0, np.nan]),
+        InputOutOfRange,
+        "'rack' is nan; allowed: finite rates",
+    ),
     (lambda m: m({**AT, "heave": np.nan}), InputOutOfRange, "'heave' is nan"),
     (lambda m: m(AT).velocity["wheel_centre"], NotComputed, "velocity of wheel_centre was not computed"),
     (lambda m: m.evaluate([1.0, 0.0, 3.0]), MapError, r"values have the shape \(3,\); allowed: \(2,\), a"),
@@ -148,10 +152,14 @@ def test_what_a_map_cannot_give_is_refused_in_words(
 
 UNUSABLE: list[tuple[dict[str, Any], type[PointcoordError], str]] = [
     ({"ranges": {"arm_angle": (0.9, 1.1)}}, UnknownName, "no range of an input named 'rack'"),
-    ({"ranges": {**RANGES, "heave": (0.0, 1.0)}}, MapError, "it moves the whole chassis"),
+    ({"ranges": {**RANGES, "heave": (0.0, 1.0)}}, MapError, "moves the whole chassis"),
     ({"ranges": {**RANGES, "rack": (5.0, -5.0)}}, MapError, r"ranges\['rack'\] is \(5.0, -5.0\)"),
     ({"ranges": {**RANGES, "rack": 5.0}}, MapError, r"ranges\['rack'\] is 5.0; allowed: two finite numbers"),
-    ({"ranges": {**RANGES, "rack": (0.0, 5e-324)}}, MapError, "rack.*5e-324.*the same to hold it"),
+    (
+        {"ranges": {**RANGES, "rack": (0.0, 5e-324)}},
+        MapError,
+        "rack.*5e-324.*equal numbers to hold the input",
+    ),
     ({"ranges": {"arm_angle": (1.0, 1.0), "rack": (0.0, 0.0)}}, MapError, "leave 0 inputs free"),
     ({"ranges": {**RANGES, "arm_angle": (3.0, 3.5)}}, InputOutOfRange, "'arm_angle' is 3.5"),
     ({"ranges": 7}, MapError, "ranges is a int"),
@@ -201,20 +209,23 @@ def _nudged(coefficients: Array) -> Array:
 
 DAMAGE: dict[str, tuple[Callable[[Path], object], str]] = {
     "none there": (lambda p: p.unlink(), "cannot be read: No such file"),
-    "a text": (lambda p: p.write_text("arm_angle"), "is no npz file"),
-    "empty": (lambda p: p.write_bytes(b""), "is no npz file"),
-    "cut off": (lambda p: p.write_bytes(p.read_bytes()[:1000]), "is no npz file, or a damaged one"),
-    "another npz": (lambda p: np.savez(p, a=np.zeros(3)), "is no kinematic map"),
+    "a text": (lambda p: p.write_text("arm_angle"), "is not an npz file"),
+    "empty": (lambda p: p.write_bytes(b""), "is not an npz file"),
+    "cut off": (lambda p: p.write_bytes(p.read_bytes()[:1000]), "is not an npz file, or is damaged"),
+    "another npz": (lambda p: np.savez(p, a=np.zeros(3)), "is not a kinematic map"),
     "another version": (
         lambda p: _changed(p, "version", lambda v: v + 1),
         "of version 3; allowed",
     ),
     "a coefficient off by 1e-8": (
         lambda p: _changed(p, "coefficients", _nudged),
-        "not those that were",
+        "differs from what was saved",
     ),
     "another scene": (lambda p: _changed(p, "head", lambda t: str(t).replace("460", "461")), "is damaged"),
-    "objects": (lambda p: _changed(p, "off", lambda c: np.array([None])), "is no npz file, or a damaged one"),
+    "objects": (
+        lambda p: _changed(p, "off", lambda c: np.array([None])),
+        "is not an npz file, or is damaged",
+    ),
 }
 
 

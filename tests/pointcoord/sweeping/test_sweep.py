@@ -220,7 +220,7 @@ def test_what_makes_no_designs_is_said() -> None:
     ):
         with pytest.raises(SweepError, match=problem):
             sweep(STRUT, points, offsets=offsets)
-    with pytest.raises(SweepError, match="is no axis of a grid"):
+    with pytest.raises(SweepError, match="is not a coordinate of a grid"):
         sweep(STRUT, {"strut_top": [[1.0, 2.0, 3.0]]}, grid=True)
     with pytest.raises(SweepError, match="use sweep_blocks"):
         sweep(STRUT, offsets={f"strut_top.{axis}": np.linspace(-1, 1, 1000) for axis in "xyz"}, grid=True)
@@ -228,7 +228,7 @@ def test_what_makes_no_designs_is_said() -> None:
         sweep_blocks(STRUT, offsets={"strut_top.x": [0.0]}, memory=1e3)
     with pytest.raises(SceneError, match="not a scene"):
         sweep("steer")
-    with pytest.raises(SweepError, match="design 7 is none of these; allowed: 0 to 0"):
+    with pytest.raises(SweepError, match="design 7 is not in this block; allowed: 0 to 0"):
         sweep(STRUT).of(7)
 
 
