@@ -1,1 +1,1 @@
-"""Two solutions of one scene, held to what each claims."""
+"""Compares two solutions of one scene; the tolerances follow from the error bounds of both."""

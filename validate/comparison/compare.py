@@ -1,4 +1,4 @@
-"""Two formulations on one scene: every quantity's largest difference, against a derived tolerance."""
+"""Compares two formulations on one scene: the largest difference of every quantity, and its tolerance."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from validate.formulations.protocol import AccuracyError, Formulation, Formulati
 from validate.formulations.registry import formulation
 
 Array = NDArray[np.float64]
-GIVEN_BACK = "points of the chassis, or such as stay where they are drawn"
+GIVEN_BACK = "points of the chassis, or points that stay where they are drawn"
 Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """What would explain that numbers disagree; `diagnosis` finds it.
+    """A possible explanation of a disagreement, found by `diagnosis`.
 
     Attributes:
-        words: which numbers, and what was done to them.
-        kind: of fault, as `diagnosis.kinds` calls it; two kinds joined by "and".
-        quantities: whose numbers it explains: a quantity where it explains all that disagrees of it and
-            undoes nothing that agrees, else quantity.name.
-        leftover: the largest difference that is left when the fault is undone / what it is held to.
+        words: the numbers that it explains, and their fault.
+        kind: kind of fault, by its name in `diagnosis.kinds`; two kinds are joined by "and".
+        quantities: what it explains. The name of a quantity if it explains all numbers of the quantity that
+            disagree and makes none disagree that agrees; otherwise quantity.name.
+        leftover: largest difference / tolerance after the fault is corrected.
     """
 
     words: str
@@ -50,15 +50,18 @@ class Comparison:
     """One quantity of one point, body or angle over a scene.
 
     Attributes:
-        difference: largest difference of any component, and the `instant` (s) where it is.
-        tolerance: what it was held to at that instant.
-        share: largest difference / tolerance over all instants and components; it agrees up to 1.
-        verdict: `not tested` where the tolerance rests on what one formulation claims of itself (see
-            `tolerance`); `not given` where one of them gives no such numbers, and all numbers here are NaN.
-        rests_on: the formulation whose claim makes the larger part of the widest tolerance, and `part` of it.
-        place: where that is in a file of results, whose instants may be travels; empty of a scene's instants.
-        telling: whether it would disagree if a solver gave back what it was given, where that is decided.
-        why: it is not tested or not given; empty of a row that says something.
+        difference: largest difference of any component; `instant` is where it occurs, s.
+        tolerance: the tolerance of this difference, at this instant.
+        share: largest share of its tolerance, difference / tolerance, over all instants and components; the
+            row agrees if it is at most 1.
+        verdict: `not tested` if the error bound of one formulation makes the tolerance too wide (see
+            `tolerance`); `not given` if one formulation gives no such numbers: all numbers here are NaN.
+        rests_on: the formulation that limits: its error bound is the larger part of the widest tolerance.
+        part: that error bound / the widest tolerance.
+        place: the place of the difference in a file of results, whose rows may be travels; empty for a scene.
+        telling: whether the row would disagree if a solver gave back the points that it was given. True
+            where this is not examined.
+        why: the reason for `not tested` or `not given`; empty for the other verdicts.
     """
 
     scene: str
@@ -84,14 +87,13 @@ class Outcome:
     """All comparisons of one scene and pair.
 
     Attributes:
-        solutions: both solved scenes, for whoever wants to look further.
-        notes: what the formulations said themselves of numbers without meaning, and what is wrong with
-            what they gave.
-        missing: what one formulation does not give, a line each.
-        faults: what one gives that cannot be used, a line each, which are among the notes too.
-        compared: at how many instants, of a file of results; None: at all that both give.
-        factor: how many times the derived tolerance the differences were held to.
-        explanations: what would explain that they disagree, the best first, where it was looked for.
+        solutions: the solutions of both formulations.
+        notes: remarks of the formulations on numbers without meaning, and what is wrong with their numbers.
+        missing: one line for each kind of number that one formulation does not give.
+        faults: one line for each part of a solution that cannot be used; the notes repeat these lines.
+        compared: number of rows compared, for a file of results; None: all instants that both give.
+        factor: factor on the derived tolerances.
+        explanations: possible explanations of the disagreements, the best first; empty if not searched for.
     """
 
     scene: str
@@ -111,13 +113,14 @@ class Outcome:
 
     @property
     def stated(self) -> bool:
-        """Whether one of them is held to an accuracy that it stated, and may give what it has."""
+        """Whether one of them stated an accuracy beforehand; it may then give only part of the numbers."""
         return any(solution.accuracy.blind is not None for solution in self.solutions)
 
     @property
     def passed(self) -> bool:
-        """Whether every row agrees; of a solver with a stated accuracy: something that tells, and nothing
-        disagrees. What cannot be used of what is given is no agreement either way.
+        """Whether every row agrees. With a stated accuracy: whether a telling row agrees and none disagrees.
+
+        Data that cannot be used never pass.
         """
         if self.faults or not self.stated:
             return self.agreed and not self.faults
@@ -125,43 +128,43 @@ class Outcome:
 
     @property
     def status(self) -> ExitStatus:
-        """What it alone would end a run with."""
+        """The exit status of a run of this comparison alone."""
         if self.passed:
             return ExitStatus.AGREE
         return ExitStatus.DISAGREE if self.disagreements else ExitStatus.NO_VERDICT
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many rows have each verdict, and how many of those that agree tell nothing."""
+        """Number of rows with each verdict; `given back`: the rows that agree but are not telling."""
         found = {verdict: sum(row.verdict == verdict for row in self.rows) for verdict in get_args(Verdict)}
         return found | {"given back": sum(row.verdict == "agrees" and not row.telling for row in self.rows)}
 
     @property
     def why_no_verdict(self) -> str:
-        """Why it neither passes nor disagrees, in words; empty where it does, or where the rows say it."""
+        """Why the comparison neither passes nor disagrees; empty if it does, or if the rows state why."""
         if self.passed or self.disagreements:
             return ""
         if self.faults:
-            return "something that is given cannot be used"
+            return "some of the numbers given cannot be used"
         if not self.stated:
             return ""
         if any(row.verdict == "agrees" for row in self.rows):
-            return f"whatever agrees is what the solver was given: {GIVEN_BACK}"
-        return "no number that is given is tested"
+            return f"all numbers that agree were given to the solver: {GIVEN_BACK}"
+        return "none of the numbers given is tested"
 
     def explained(self, row: Comparison) -> tuple[str, ...]:
-        """What would explain that a row disagrees, the best first."""
+        """Possible explanations of the disagreement of a row, the best first."""
         its = {row.quantity, f"{row.quantity}.{row.name}"}
         return tuple(one.words for one in self.explanations if its & {*one.quantities})
 
     @property
     def disagreements(self) -> tuple[Comparison, ...]:
-        """The rows that do not."""
+        """The rows that disagree."""
         return tuple(row for row in self.rows if row.verdict == "disagrees")
 
     @property
     def undecided(self) -> tuple[Comparison, ...]:
-        """The rows of which nothing can be said: not tested, or not given."""
+        """The rows without a verdict: not tested, or not given."""
         return tuple(row for row in self.rows if row.verdict in ("not tested", "not given"))
 
     def __repr__(self) -> str:
@@ -171,7 +174,7 @@ class Outcome:
         return f"<Outcome of {self.scene!r}, {first} and {second}: {counts}>"
 
     def _repr_html_(self) -> str:
-        """Every row, as a notebook shows it."""
+        """A table of all rows, for notebooks."""
         head = ("quantity", "name", "largest difference", "tolerance", "verdict")
         rows = (
             (
@@ -192,15 +195,15 @@ def compare(
     name: str | None = None,
     factor: float = 1.0,
 ) -> Outcome:
-    """Solve a scene by two formulations and compare all that the scene asks for.
+    """Solve a scene by two formulations and compare all numbers that the scene asks for.
 
     Args:
         first, second: names of formulations, or formulations themselves.
-        name: what to call the scene in the rows; its title if not given.
-        factor: how many times the derived tolerance to hold differences to.
+        name: name of the scene in the rows; its title if not given.
+        factor: factor on the derived tolerances.
     Raises:
-        FormulationError: one of them refuses the scene, or gives what is no solution.
-        SceneError: the scene's own hardpoints make no mechanism.
+        FormulationError: one of them refuses the scene, or does not return a `Solution`.
+        SceneError: the hardpoints of the scene do not form a mechanism.
 
     >>> compare(Scene.load("steer"), "pointcoord", "absolute").agreed
     True
@@ -210,11 +213,11 @@ def compare(
 
 
 def solved_by(solver: Formulation, scene: Scene) -> Solution:
-    """A scene's solution by a formulation.
+    """The solution of a scene by a formulation.
 
     Raises:
-        FormulationError: it refuses the scene, or gives what is no solution.
-        SceneError: the scene is none, or its own hardpoints make no mechanism.
+        FormulationError: the formulation refuses the scene, or does not return a `Solution`.
+        SceneError: `scene` is not a scene, or its hardpoints do not form a mechanism.
     """
     require_scene(scene)
     try:
@@ -222,7 +225,7 @@ def solved_by(solver: Formulation, scene: Scene) -> Solution:
     except AccuracyError as error:
         raise FormulationError(solver.name, error) from error
     if not isinstance(solution, Solution):
-        problem = TypeError(f"it gives a {type(solution).__name__}; needed: a Solution")
+        problem = TypeError(f"it returns a {type(solution).__name__}; needed: a Solution")
         raise FormulationError(solver.name, problem)
     return solution
 
@@ -238,11 +241,11 @@ def compare_solutions(
     """Compare two solved scenes.
 
     Args:
-        asked: names to compare by quantity, if these are not all that the scene asks for.
-        factor: how many times the derived tolerance to hold differences to; a tolerance that tests nothing
-            (see `tolerance.untested`) tests nothing either way.
+        asked: names to compare, by quantity; all that the scene asks for if not given.
+        factor: factor on the derived tolerances. It does not change which tolerances are too wide to test
+            anything (see `tolerance.untested`).
     Raises:
-        FormulationError: one of them does not say at which instants its numbers are.
+        FormulationError: one of them does not give the instants of its numbers.
     """
     instants, first, second = given_by_both(one, two, scene.instants)
     faults = tuple(dict.fromkeys((*first.faults, *second.faults)))
@@ -260,7 +263,7 @@ def compare_solutions(
 
 
 def _parts(quantity: str, asked: Sequence[str], one: Solution, two: Solution) -> list[str]:
-    """Every point, body or angle that the scene asks for, and whatever else both give."""
+    """Every point, body or angle that the scene asks for, and all others that both solutions give."""
     both = (name for name in one.numbers[quantity] if name in two.numbers[quantity])
     return list(dict.fromkeys((*asked, *both)))
 
@@ -268,7 +271,7 @@ def _parts(quantity: str, asked: Sequence[str], one: Solution, two: Solution) ->
 def _missing(
     quantity: str, parts: Sequence[str], one: Solution, two: Solution
 ) -> Iterator[tuple[str, Sequence[str]]]:
-    """Lines on what one of them does not give, each with the names that it is about."""
+    """One line for each kind of number that a solution does not give, with the names that are missing."""
     words = QUANTITIES[quantity].words
     for side in (one, two):
         lacking = [part for part in parts if part not in side.numbers[quantity]]
@@ -279,17 +282,18 @@ def _missing(
         for name in side.numbers[quantity]:
             near = "" if name in parts else nearest(name, lacking)
             if near:
-                line = f"{side.formulation} gives {words} of {shown(name)}, which is left out"
+                line = f"{side.formulation} gives {words} of {shown(name)}, which is ignored"
                 yield f"{line} (did you mean {near!r}?)", [near]
 
 
 def _reasoned(
     row: Comparison, lacking: Mapping[str, Sequence[str]], notes: Sequence[str], faults: Sequence[str]
 ) -> Comparison:
-    """A row that says nothing, with the reason.
+    """Adds the reason to a row that is not tested or not given.
 
     Args:
-        lacking: lines on what is not given, with the names that each is about. notes, faults: of the outcome.
+        lacking: lines on numbers that are not given, each with their names.
+        notes, faults: notes and faults of the outcome.
     """
     about = f": {QUANTITIES[row.quantity].words} of {row.name}"
     if row.verdict == "not given":
@@ -297,11 +301,11 @@ def _reasoned(
             [fault for fault in faults if f"{about} " in fault][:1]
             or [line for line, names in lacking.items() if row.name in names]
             or notes
-            or ["it is given at no instant of the scene"]
+            or ["no instant of the scene has a number"]
         )
     elif row.verdict == "not tested":
         wide = (
-            f"the tolerance rests on the error bound of {row.rests_on}, and is too wide to test the other one"
+            f"the tolerance is limited by the error bound of {row.rests_on}; it is too wide to test the other"
         )
         found = [note for note in notes if f"{about}: its accuracy " in note] or [wide]
     else:
@@ -335,6 +339,6 @@ def _row(name: str, part: str, pair: Pair, instants: Array, scene: Scene) -> Com
         verdict=verdict,
         rests_on=who[larger],
         part=float(pair.factor * held.claims[larger][widest] / (held.allowed[widest] + SMALLEST)),
-        # Decided only where one of them may give what it has: else every row has to agree.
+        # Matters only if one of them may give part of the numbers; otherwise every row must agree.
         telling=verdict != "agrees" or pair.tells(scene, held),
     )

@@ -1,4 +1,4 @@
-"""One scene, solved by several formulations, each once, and compared in pairs."""
+"""Examines one scene: several formulations solve it once each, and are compared in pairs."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ PRINTED = "printed"
 
 @dataclass(frozen=True)
 class Failure:
-    """A formulation or a comparison that ended in a way it should not: no memory left, or a defect.
+    """A formulation or a comparison that failed unexpectedly: out of memory, or a defect.
 
     Attributes:
-        formulation: its name, or both names of a pair.
-        error: class of the error. message: in its own words, and where it was raised.
+        formulation: name of the formulation, or both names of a pair.
+        error: class of the error.
+        message: message of the error, and where it was raised.
     """
 
     formulation: str
@@ -37,20 +38,20 @@ class Failure:
 
 @dataclass(frozen=True)
 class Examined:
-    """What came of a scene.
+    """The results of a scene.
 
     Attributes:
-        name: as the user gave it, in characters that can be shown.
-        outcomes: of each pair that both solved.
-        printed: the comparison with the formulas as printed, which counts for nothing.
-        refusals, failures: of the formulations that the pairs need.
-        unprinted: the refusal of the formulas as printed.
-        solved: names of the formulations that answered.
-        problem: what is wrong with the scene's file, if it was never solved.
-        advice: how to follow a hint of a refusal on the command line.
-        warnings: what the user should know of the scene, though it is solved.
-        closing: how far the points of the drawing move until it closes, as plain data.
-        defaults: what the scene leaves to the program, in words.
+        name: as the user gave it, in printable characters.
+        outcomes: comparison of each pair of formulations that both solved the scene.
+        printed: comparison with the paper's printed formulas, which does not count for the verdict.
+        refusals, failures: refusals and failures of the formulations in the pairs.
+        unprinted: refusal of the printed formulas.
+        solved: names of the formulations that solved the scene.
+        problem: what is wrong with the file of the scene, if the scene could not be read.
+        advice: the command line option that follows a hint of a refusal.
+        warnings: warnings on a scene that is solved.
+        closing: how far each point of the drawing moves when the drawing is closed, as plain data.
+        defaults: the default values that the scene uses, in words.
     """
 
     name: str
@@ -69,27 +70,27 @@ class Examined:
 
     @property
     def status(self) -> ExitStatus:
-        """What the scene alone would end the run with."""
+        """The exit status of a run of this scene alone."""
         found = [outcome.status for outcome in self.outcomes] or [ExitStatus.NO_VERDICT]
         found += [ExitStatus.NOT_FINISHED for _ in self.failures]
         if self.problem is not None:
             found.append(ExitStatus.WRONG_INPUT)
         if self.refusals:
-            # Hardpoints that make no mechanism, or another car than is drawn, are the file's fault; but the
-            # formulas as printed find fault with sound ones too.
+            # A file is wrong if its hardpoints form no mechanism, or close to a different car than drawn.
+            # But the printed formulas refuse sound hardpoints as well.
             wrong = any(r.error == SceneError.__name__ and r.formulation != PRINTED for r in self.refusals)
             found.append(ExitStatus.WRONG_INPUT if wrong else ExitStatus.NO_VERDICT)
         return combined(found)
 
     @property
     def complaint(self) -> str:
-        """Why there is no verdict, in one line; empty if there is one."""
+        """Why the scene has no verdict, in one line; empty if it has one."""
         if self.problem is not None:
             return self.problem
         parts = []
         if self.refusals:
             first = self.refusals[0]
-            # Such a message begins with what the scene calls itself.
+            # The message of a SceneError starts with the name of the scene.
             where = f"{self.name}: " if first.error != SceneError.__name__ else ""
             who = _listed([f"{r.formulation} ({r.error})" for r in self.refusals])
             parts.append(f"{where}{first.message}{self.advice}; refused by {who}")
@@ -112,21 +113,21 @@ def examine(
     factor: float = 1.0,
     others: Mapping[str, Formulation] | None = None,
 ) -> Examined:
-    """Compare a scene in pairs of formulations, each of which solves it once.
+    """Compare pairs of formulations on a scene; each formulation solves the scene once.
 
     Args:
-        name: what the user calls the scene.
+        name: the user's name for the scene.
         pairs: names of formulations.
-        printed: whether the first formulation is compared with the paper's printed formulas too.
-        factor: how many times the derived tolerance to hold differences to.
-        others: formulations by names of their own, beside those that there are.
+        printed: whether to compare the first formulation with the paper's printed formulas too.
+        factor: factor on the derived tolerances.
+        others: further formulations by name, such as the user's solver.
     """
     solvers = {one: (others or {}).get(one) or formulation(one) for pair in pairs for one in pair}
     answers: dict[str, Solution | Exception] = {}
     for one, solver in solvers.items():
         answers[one] = _answer(solver, scene)
         if _failed(answers[one]):
-            break  # a scene that fills the memory once would do so again, after a long time
+            break  # a scene that fills the memory would do so again with the next formulation, and take long
     refusals = {one: r for one, answer in answers.items() if (r := _refusal(one, answer, name, scene))}
     failures = [failure_of(one, e) for one, e in answers.items() if isinstance(e, Exception) and _failed(e)]
     outcomes: list[Outcome] = []
@@ -154,7 +155,7 @@ def examine(
         failures=tuple(failures),
         unprinted=unprinted,
         solved=tuple(n for n, one in answers.items() if isinstance(one, Solution) and n not in refusals),
-        # The method newton, which some refusals advise, under its name here.
+        # Some refusals advise the method newton; this is its name on the command line.
         advice=NEWTON if any(isinstance(one, NotFollowed) for one in reasons) else "",
         warnings=warnings_of(scene, moved),
         closing=closing_data(moved),
@@ -166,9 +167,9 @@ def _answer(solver: Formulation, scene: Scene) -> Solution | Exception:
     try:
         return solved_by(solver, scene)
     except MemoryError as error:
-        # Its traceback holds on to what filled the memory.
+        # A new error: the traceback of the old one would keep the memory in use.
         return MemoryError(str(error))
-    # A defect of one formulation must not end the run: it is recorded, and the status says so.
+    # A defect of one formulation must not end the run: the error is recorded, and the status shows it.
     except Exception as error:
         return error
 
@@ -180,7 +181,7 @@ def _compared(
     second: Solution | Exception | None,
     factor: float,
 ) -> Outcome | Exception | None:
-    """The comparison of a pair, or why it fails; None where one of them gives no solution."""
+    """The comparison of a pair, or the error that it raises; None if one of them has no solution."""
     if not isinstance(first, Solution) or not isinstance(second, Solution):
         return None
     try:
@@ -201,12 +202,12 @@ def _failed(answer: Solution | Exception) -> bool:
 
 
 def failure_of(what: str, error: Exception) -> Failure:
-    """The data of an error that nobody planned."""
+    """The data of an unexpected error."""
     return Failure(what, type(error).__name__, told_failure(error))
 
 
 def told_failure(error: BaseException) -> str:
-    """What to say of an error that nobody planned: its words, and where it was raised."""
+    """The message for an unexpected error: its text, and where it was raised."""
     if isinstance(error, MemoryError):
         said = f" ({error})" if str(error) else ""
         return f"out of memory{said}; try fewer samples, or fewer effects"

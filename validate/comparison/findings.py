@@ -1,4 +1,4 @@
-"""The paper's printed formulas held against the mended ones: what they get wrong, and why."""
+"""Compares the paper's printed formulas with the corrected ones: which quantities are wrong, and why."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from validate.paper.errata import erratum_of
 
 @dataclass(frozen=True)
 class Finding:
-    """A quantity of a scene that the printed formulas get wrong, its row furthest off, and the erratum."""
+    """A quantity of a scene that the printed formulas get wrong, its worst row, and the erratum."""
 
     scene: str
     quantity: str
@@ -20,7 +20,7 @@ class Finding:
 
 
 def findings(outcomes: Iterable[Outcome]) -> tuple[Finding, ...]:
-    """What disagrees in comparisons with the printed formulas, a row per scene and quantity."""
+    """The disagreements in comparisons with the printed formulas, one per scene and quantity."""
     result = []
     for outcome in outcomes:
         wrong: dict[str, Comparison] = {}

@@ -1,7 +1,7 @@
-"""What a formulation really gave: arrays that can be compared, and a line for everything that cannot.
+"""Checks the arrays of a solution: usable ones are compared, and a line reports each of the others.
 
-A formulation may be anybody's. What is missing, has another shape, is given at other times or is no real
-number is told and left out; the rest is compared.
+The solution may come from a user's solver. Data that are missing, have a wrong shape, belong to other
+instants or are not real numbers are reported and ignored; the rest is compared.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ Arrays = dict[str, dict[str, Array]]
 
 @dataclass(frozen=True)
 class Given:
-    """What can be compared of a solution.
+    """The part of a solution that can be compared.
 
     Attributes:
-        found: which of the instants asked for it gives, (instants,).
-        solution: at these; with every quantity, though it may give none of it; its notes are what the user
-            should know beside what it says itself.
+        found: which of the requested instants the solution has, (instants,).
+        solution: the solution at these instants, with every quantity as a key even if it has no numbers. Its
+            notes are those of the check, without the notes of the original solution.
     """
 
     found: NDArray[np.bool_]
     solution: Solution
 
     def at(self, instants: NDArray[np.bool_]) -> Solution:
-        """At fewer instants, a part of those that are found."""
+        """The solution at a part of the instants that are found."""
         rows = instants[self.found]
         return self.solution if rows.all() else self.solution.at(rows)
 
 
 def given_by_both(one: Solution, two: Solution, instants: Array) -> tuple[Array, Solution, Solution]:
-    """The instants that both give, and what each gives at these.
+    """The instants that both solutions have, and both solutions at these instants.
 
     Raises:
         FormulationError: see `given`.
@@ -50,10 +50,10 @@ def given_by_both(one: Solution, two: Solution, instants: Array) -> tuple[Array,
 
 
 def given(solution: Solution, instants: Array) -> Given:
-    """What a solution gives at instants, shape (N,).
+    """The usable part of a solution at instants, shape (N,), s.
 
     Raises:
-        FormulationError: it does not say at which instants its numbers are, or nothing of its accuracy.
+        FormulationError: the solution lacks its instants or its accuracy.
     """
     who, notes, faults = solution.formulation, list[str](), [*solution.faults]
     if not isinstance(solution.accuracy, Accuracy):
@@ -65,7 +65,7 @@ def given(solution: Solution, instants: Array) -> Given:
         raise FormulationError(who, ValueError(f"its times {problem}; needed: one number for each instant"))
     own = solution.accuracy
     if len(own.condition) != len(times):
-        problem = f"its accuracy is of {len(own.condition)} instants; needed: of its {len(times)} times"
+        problem = f"its accuracy is for {len(own.condition)} instants; needed: for its {len(times)} times"
         raise FormulationError(who, ValueError(problem))
     found, places = _places(times, instants)
     if not found.all():
@@ -77,7 +77,7 @@ def given(solution: Solution, instants: Array) -> Given:
     for quantity, given_part in _by_name(solution.numbers, f"{who}: its numbers", faults).items():
         if quantity not in QUANTITIES:
             known = ", ".join(QUANTITIES)
-            notes.append(f"{who}: {quantity!r} is no quantity and is left out; there are: {known}")
+            notes.append(f"{who}: {quantity!r} is not a quantity and is ignored; there are: {known}")
             continue
         words, shape = QUANTITIES[quantity].words, shape_of(quantity, len(times))
         claimed = own.claims.get(quantity, {})
@@ -85,7 +85,7 @@ def given(solution: Solution, instants: Array) -> Given:
             what = f"{who}: {words} of {name}"
             array = _shaped(raw, shape)
             if isinstance(array, str):
-                faults.append(f"{what} {array}; it is left out")
+                faults.append(f"{what} {array}; it is ignored")
                 continue
             finite = np.isfinite(array)
             wrong = 0 if finite.all() else int(np.sum(~finite.reshape(len(array), -1).all(axis=-1)))
@@ -102,7 +102,7 @@ def given(solution: Solution, instants: Array) -> Given:
 
 
 def usable(solution: Solution, instants: Array) -> Solution:
-    """A solution as a comparison takes it: at those of the instants that it gives, without what is no number.
+    """The solution that a comparison uses: at the requested instants that it has, with its usable numbers.
 
     Raises:
         FormulationError: see `given`.
@@ -117,17 +117,17 @@ def usable(solution: Solution, instants: Array) -> Solution:
 
 
 def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp] | slice]:
-    """Which instants are among the times, and the place of each of these there."""
+    """Which instants are among the times, (instants,), and the index into `times` of each of these."""
     if np.array_equal(times, instants) and (times[1:] > times[:-1]).all():
         return np.ones(len(instants), dtype=bool), slice(None)
     found = np.isin(instants, times)
-    # For each instant found the first place of its time: sorting keeps those of one time in their order.
+    # Each instant takes the first row with its time: the stable sort keeps rows of equal time in order.
     order = np.argsort(times, kind="stable")
     return found, order[np.searchsorted(times, instants[found], side="left", sorter=order)]
 
 
 def _by_name(part: object, what: str, faults: list[str]) -> Mapping[str, object]:
-    """A mapping as it is; what is none is told and empty."""
+    """The mapping itself; for anything else a fault is added and an empty mapping returned."""
     if isinstance(part, Mapping):
         return part
     faults.append(f"{what} given as {type(part).__name__}; needed: arrays by name")
@@ -135,7 +135,7 @@ def _by_name(part: object, what: str, faults: list[str]) -> Mapping[str, object]
 
 
 def _shaped(raw: object, shape: tuple[int, ...]) -> Array | str:
-    """An array of a shape, or what is wrong with it."""
+    """The numbers as an array of the given shape, or what is wrong with them."""
     array = _real(raw)
     if isinstance(array, str) or array.shape == shape:
         return array
@@ -143,13 +143,13 @@ def _shaped(raw: object, shape: tuple[int, ...]) -> Array | str:
 
 
 def _real(raw: object) -> Array | str:
-    """Real numbers in doubles, or what is wrong with them."""
+    """The numbers as an array of doubles, or what is wrong with them."""
     try:
         array = np.asarray(raw)
     except (ValueError, TypeError) as error:
-        return f"is no array ({error})"
+        return f"is not an array ({error})"
     if isinstance(raw, np.ma.MaskedArray) and (masked := int(np.sum(raw.mask))):
-        return f"has {masked} masked entries; needed: numbers, NaN where there are none"
+        return f"has {masked} masked entries; needed: numbers, or NaN where a number does not exist"
     if array.dtype.kind not in "iuf":
         return f"is of type {array.dtype}; needed: real numbers"
     return np.asarray(array, dtype=float)

@@ -1,4 +1,4 @@
-"""A quantity of two formulations: their numbers row by row, and what a difference is held to."""
+"""The numbers of one quantity by two formulations, their differences and tolerances."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import NOTHING, Solution
 
 Array = NDArray[np.float64]
-# Numbers below the smallest normal one lose digits, and so do tolerances made of them.
+# Numbers below the smallest normal double lose digits, and so do tolerances computed from them.
 SMALLEST = float(np.finfo(float).tiny)
 
 
@@ -24,10 +24,12 @@ class Held:
     """The numbers of one point, body or angle by both formulations; each array (N, components).
 
     Attributes:
-        numbers: of both. claims: what both claim of them, 0 where one claims nothing.
-        claimed: whether both claim something.
-        gap: the difference; infinite where one alone is no number.
-        allowed: what it is held to. share: it in parts of that, 0 where nothing differs.
+        numbers: numbers of both formulations.
+        claims: error bounds of both formulations, 0 if one gives no bound.
+        claimed: whether both give an error bound.
+        gap: absolute difference; infinite where only one of the two is a number.
+        allowed: tolerance.
+        share: difference / tolerance, 0 where the numbers are equal.
     """
 
     name: str
@@ -44,7 +46,7 @@ class Pair:
     """A quantity of two formulations at the same instants.
 
     Attributes:
-        factor: how many times the derived tolerance to hold differences to.
+        factor: factor on the derived tolerances.
     """
 
     quantity: str
@@ -53,18 +55,18 @@ class Pair:
 
     @cached_property
     def names(self) -> list[str]:
-        """Those of which both have numbers, at one instant at least."""
+        """The points, bodies or angles of which both have numbers; empty without instants."""
         one, two = (side.numbers[self.quantity] for side in self.sides)
         return [name for name in one if name in two] if len(self.sides[0].times) else []
 
     @cached_property
     def _largest(self) -> list[Array]:
-        """Of both sides the largest number at each instant, (N,)."""
+        """The largest number of each side at each instant, (N,)."""
         return [largest_numbers(side.numbers[self.quantity].values(), len(side.times)) for side in self.sides]
 
     @cached_property
     def _levels(self) -> list[Array]:
-        """What both would claim of any number, see `tolerance.level`, (N,)."""
+        """The error level of each side at each instant, (N,), see `tolerance.level`."""
         return [
             level(own.claims[self.quantity].values(), most, own.condition, own.usual.get(self.quantity))
             for own, most in zip((side.accuracy for side in self.sides), self._largest, strict=True)
@@ -72,19 +74,19 @@ class Pair:
 
     @cached_property
     def _blind(self) -> list[NDArray[np.bool_] | None]:
-        """Of both at which instants an accuracy that was stated says nothing, (N,); None: none was."""
+        """The instants at which the stated accuracy of each side gives no bound, (N,); None: none stated."""
         return [side.accuracy.blind for side in self.sides]
 
     def held(self, name: str) -> Held:
-        """The numbers of one of the names."""
+        """Numbers, differences and tolerances of one of the names."""
         mine, other = (_columns(side.numbers[self.quantity][name]) for side in self.sides)
         claimed = [side.accuracy.claims[self.quantity].get(name) for side in self.sides]
         own, others = (np.zeros_like(mine) if claim is None else _columns(claim) for claim in claimed)
         gap = gaps_between(mine, other, QUANTITIES[self.quantity].unit)
-        # Who gives a number that there is none of, a rounding over a rounding, claims nothing of it.
+        # One side has a number, the other NaN: the number does not exist (0/0) if its error bound is NOTHING.
         lone = np.where(np.isnan(mine), others, np.where(np.isnan(other), own, 0.0))
         gap[lone >= NOTHING] = 0.0
-        # The smaller of both, so that a wrong number does not widen its own tolerance.
+        # The smaller of both largest numbers, so that a wrong number does not widen its own tolerance.
         allowed = self.factor * tolerance(own, others, min(float(most.max()) for most in self._largest))
         with np.errstate(divide="ignore", invalid="ignore"):
             share = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
@@ -99,8 +101,8 @@ class Pair:
         )
 
     def wide(self, held: Held) -> NDArray[np.bool_]:
-        """At which instants what is allowed tests nothing, (N,)."""
-        # Whose accuracy was stated beforehand may claim much, and what it claims elsewhere is no measure.
+        """The instants at which the tolerance is too wide to test anything, (N,)."""
+        # An accuracy that was stated beforehand may be coarse: a wide bound from it still tests.
         stated = [blind for blind in self._blind if blind is not None]
         if stated:
             return np.asarray(np.any(stated, axis=0))
@@ -108,11 +110,11 @@ class Pair:
         return untested(one, two, *self._levels)
 
     def tells(self, scene: Scene, held: Held) -> bool:
-        """Whether a number is none that a solver was given: what was given would not agree as well.
+        """Whether the agreement of a number tests the solver: the data given to the solver would not agree.
 
-        It is asked of a solver with a stated accuracy only. It was given where each point is drawn, and that
-        of the chassis is all there is to know of its points. An instant of which its accuracy says nothing
-        does not count.
+        Only a solver with a stated accuracy is examined; otherwise True. The solver is given the drawn place
+        of each point; for a point of the chassis this place is the answer. Instants at which the stated
+        accuracy gives no bound do not count.
         """
         stated = [blind is not None for blind in self._blind]
         if stated[0] == stated[1]:
@@ -132,14 +134,14 @@ class Pair:
 
 
 def gaps_between(mine: Array, other: Array, unit: str) -> Array:
-    """How far two arrays of numbers are apart, number by number; infinity where one alone is none."""
+    """Absolute differences of two arrays, number by number; infinite where only one of them is a number."""
     gap = np.abs(mine - other)
     if unit == "rad":
-        # Whole turns apart is the same angle.
+        # Angles that differ by a whole turn are equal.
         gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
     # A NaN is a disagreement, and the worst one.
     gap[~np.isfinite(gap)] = np.inf
-    # That there is none, as of a centre at infinity, is what both say.
+    # Two NaN agree: neither has a number, as for a centre at infinity.
     gap[np.isnan(mine) & np.isnan(other)] = 0.0
     return np.asarray(gap)
 

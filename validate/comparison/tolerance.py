@@ -1,23 +1,23 @@
-r"""Tolerances of a comparison: what two formulations claim of their own accuracy, number by number.
+r"""Tolerances of a comparison, from the error bounds that two formulations return with each number.
 
-With e1 and e2 the errors that two formulations claim of a number at most (see `Accuracy`), a difference up to
+Let e1 and e2 be the error bounds of the two formulations for a number (see `Accuracy`). The tolerance is
 
-    T = e1 + e2 + eps^2 M
+    T = e1 + e2 + eps^2 M.
 
-is explained by the claims, and a larger one shows that one of them is broken. M is the largest number of the
-quantity in the scene: a number that is zero is solved for together with others that are not, and keeps a
-rounding of a rounding of these. The claims are those of each instant and each component: pointcoord's are
-proven from its own equations in twice the working precision, but never more than its method loses where
-nothing is wrong (`Proof.expected`); those of models that prove nothing are what a stated
-accuracy of their points makes of each number (`formulations.stated_accuracy`).
+A larger difference shows that an error bound is violated. M is the largest number of the quantity in the
+scene: a number that is zero is solved for together with nonzero numbers, and is off by a rounding error of
+their rounding errors. There is an error bound for each instant and each component. The bounds of pointcoord
+are proven from its own equations in twice the working precision, but are never wider than the error that its
+method makes where nothing is wrong (`Proof.expected`). The bounds of models that prove nothing follow from a
+stated accuracy of their points (`formulations.stated_accuracy`).
 
-A tolerance rests on the formulation that claims the larger part of it. Where that part is more than LOOSEST
-times what the other formulation would claim, a fault of the other one that is so many times larger than its
-own claim would pass: such a row is "not tested" and no agreement. What a formulation would claim is the
-largest of its claims for the quantity at that instant, so that a component that happens to be exact does not
-count against its partner, and not less than what rounding may do to any method: eps times its condition
-number times the largest number of that quantity. Nor is it less than what its own method usually loses of it
-(`Accuracy.usual`): a proof may by chance find next to nothing, as of a pitch that is 0 everywhere.
+A tolerance is limited by the formulation with the larger error bound. If this bound is more than LOOSEST
+times the error level of the other formulation, an error of the other one of LOOSEST times its level would
+pass: the row is "not tested", and does not agree. The error level of a formulation is the largest error bound
+of the quantity at the instant, so that a component that happens to be exact does not count against its
+partner. The level is at least the effect of rounding on any method, eps times condition number times the
+largest number of the quantity. The level is also at least the usual error of the method (`Accuracy.usual`),
+because a proven bound may be almost zero by chance, as for a pitch that is 0 everywhere.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ LOOSEST = 1000.0
 
 
 def tolerance(first: Array, second: Array, largest: float) -> Array:
-    """What a difference is held to."""
+    """The tolerance of a difference of two numbers with these error bounds; `largest` is M."""
     return np.asarray(first + second + EPS**2 * largest)
 
 
 def largest_numbers(numbers: Iterable[Array], count: int) -> Array:
-    """The largest finite number of a quantity at each instant, (count,), 0 where there is none."""
+    """The largest magnitude of the finite numbers of a quantity at each instant, (count,); 0 without any."""
     found = np.zeros(count)
     for array in numbers:
         np.maximum(found, _largest(np.where(np.isfinite(array), array, 0.0)), out=found)
@@ -48,11 +48,12 @@ def largest_numbers(numbers: Iterable[Array], count: int) -> Array:
 
 
 def level(claims: Iterable[Array], numbers: Array, condition: Array, usual: Array | None = None) -> Array:
-    """What a formulation would give for any number of a quantity at each instant, (N,).
+    """The error level of a formulation for a quantity at each instant, (N,), see the top of this file.
 
     Args:
-        claims: of all points, bodies or angles of the quantity, each (N, ...).
-        numbers: the largest of them, (N,). condition: of the matrix that gives the rates, (N,).
+        claims: error bounds of all points, bodies or angles of the quantity, each (N, ...).
+        numbers: the largest number of the quantity, (N,).
+        condition: condition number of the matrix that gives the rates, (N,).
         usual: see `Accuracy.usual`, (N,).
     """
     found = EPS * condition * numbers
@@ -64,11 +65,11 @@ def level(claims: Iterable[Array], numbers: Array, condition: Array, usual: Arra
 
 
 def untested(first: Array, second: Array, first_level: Array, second_level: Array) -> NDArray[np.bool_]:
-    """At which instants a tolerance is too wide to test anything, (..., N).
+    """The instants at which a tolerance is too wide to test anything, (..., N).
 
     Args:
-        first, second: the most that both claim of any component of a point, body or angle, (..., N).
-        first_level, second_level: what they would give for any of the quantity, (N,).
+        first, second: largest error bound of any component of a point, body or angle, (..., N).
+        first_level, second_level: error levels of both formulations for the quantity, (N,).
     """
     return np.asarray((first > LOOSEST * second_level) | (second > LOOSEST * first_level))
 

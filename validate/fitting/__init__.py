@@ -1,1 +1,1 @@
-"""Hardpoints that explain measured curves, and what the curves cannot tell of them."""
+"""Fits hardpoints to measured curves, and finds which corrections the curves do not determine."""

@@ -1,23 +1,24 @@
-r"""The hardpoint corrections that best explain a file, by least squares, and what it leaves open.
+r"""The hardpoint corrections that best explain a file, by least squares, and how well it determines them.
 
-Corrections a (mm) make
+The corrections a (mm) minimise, within bounds,
 
-    sum ((q_i(a) - m_i) / s_i)^2 + sum (a_j / prior)^2
+    sum ((q_i(a) - m_i) / s_i)^2 + sum (a_j / prior)^2.
 
-least within bounds; q_i is ours, m_i the file's, and s_i their standard deviation (see `problem`).
+q_i are the computed numbers, m_i the numbers of the file, and s_i their standard deviations (see `problem`).
 
-With J = dq/da / s = U diag(w) V^T at the solution the file knows the combination V_k . a to f / w_k mm; f is
-the r.m.s. of what is left over the degrees of freedom, at least 1, for more digits than these were not
-given. A combination that it knows no better than the prior or the bounds do it cannot see: the prior settles
-it, at as little as possible. The corrections' covariance is V diag(1 / (w^2 / f^2 + 1 / prior^2)) V^T, of
-those that end on no bound, the others held there; where f was estimated, what holds in 95 of 100 files is
-Student's t(freedom) times as wide as a standard deviation.
+Let J = dq/da / s = U diag(w) V^T at the solution. The standard deviation of the combination V_k . a from the
+file alone is f / w_k mm. f is the r.m.s. of the residual over the degrees of freedom, and at least 1, because
+the file has no more digits than those given. If this deviation is not smaller than the prior and the bounds,
+the file does not determine the combination: the prior keeps it as small as possible. The covariance of the
+corrections that are not on a bound is V diag(1 / (w^2 / f^2 + 1 / prior^2)) V^T, with the others fixed on
+their bounds. If f was estimated, the half width of the 95 % interval is a quantile of Student's t(freedom)
+times the standard deviation; otherwise a quantile of the normal distribution.
 
-Least squares are scipy's (dogleg in boxes, which end on bounds exactly: Voglis and Lagaris, WSEAS Conference
-on Applied Mathematics, 2004); the prior gives the Jacobian its full rank, which the method asks for. A design
-that cannot be solved, or leaves a row without a pose, is a step too far, and a shorter one is tried. The
-search has ended at a minimum if the linear problem there, within the bounds, would leave no more than
-SETTLED f^2 less: then no combination is farther from its minimum than a tenth of its own deviation.
+Least squares are scipy's (dogleg in boxes, which ends on bounds exactly: Voglis and Lagaris, WSEAS Conference
+on Applied Mathematics, 2004). The prior gives the Jacobian the full rank that the method needs. If a design
+cannot be solved, or has no pose at a row, a shorter step is tried. The search has converged if the linear
+problem at its end, within the bounds, would reduce the sum of squares by no more than SETTLED f^2: then no
+combination is farther from the minimum than a tenth of its standard deviation.
 """
 
 from __future__ import annotations
@@ -38,23 +39,23 @@ from validate.fitting.problem import Design, Problem
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-# Parts of what is left: the search ends where a step lessens it by no more.
+# Relative to the sum of squares: the search ends if a step reduces the sum by less.
 ENOUGH = 1e-9
 SETTLED = 0.01
 CONFIDENCE = 0.95
 MOST_SOLVES = 60
-AT_A_BOUND = 1e-9  # of the bounds, within which a correction lies on one
+AT_A_BOUND = 1e-9  # relative to the bounds: a correction this near to a bound lies on it
 
 Told = Callable[[str, int], None]
 
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A coordinate that was free, mm.
+    """A free coordinate and its correction, mm.
 
     Attributes:
-        deviation: of the correction; 0 on its bound, where it is held.
-        low, high: where the correction lies in 95 of 100 files, within the bounds.
+        deviation: standard deviation of the correction; 0 on a bound, where the correction is fixed.
+        low, high: 95 % interval of the correction, within the bounds.
     """
 
     drawn: float
@@ -68,13 +69,13 @@ class Coordinate:
 
 @dataclass(frozen=True)
 class Combination:
-    """A direction in the corrections.
+    """A direction in the space of corrections.
 
     Attributes:
-        singular_value: what moving 1 mm along it does to the numbers, in their standard deviations.
-        deviation: how well the file alone knows it, mm; infinite if not at all.
-        seen: whether that is better than the bounds and the prior.
-        parts: by coordinate, of unit length together.
+        singular_value: change of the numbers for 1 mm along the direction, in their standard deviations.
+        deviation: standard deviation from the file alone, mm; infinite if the file does not determine it.
+        seen: whether the deviation is smaller than the bounds and the prior.
+        parts: components by coordinate, of a unit vector.
     """
 
     singular_value: float
@@ -85,11 +86,12 @@ class Combination:
 
 @dataclass(frozen=True)
 class Fitted:
-    """A column before and after, in our units.
+    """A column of the file before and after the fit, in our units.
 
     Attributes:
-        before, after: r.m.s. difference. known_to: r.m.s. of what its numbers are known to.
-        count: of numbers that were used.
+        before, after: r.m.s. difference.
+        known_to: r.m.s. standard deviation of its numbers.
+        count: number of the numbers used.
     """
 
     column: str
@@ -102,20 +104,22 @@ class Fitted:
 
 @dataclass(frozen=True)
 class Fit:
-    """What came of fitting.
+    """The result of a fit.
 
     Attributes:
-        scene: corrected.
-        coordinates: by name.
-        columns: of the file.
-        combinations: of the corrections, the best known first.
-        factor: f above: how much more is left than the digits explain.
-        freedom: how many more numbers there are than combinations that they know.
-        left, largest: of what is left, in the numbers' standard deviations: sum of squares, and the largest.
+        scene: the corrected scene.
+        coordinates: the free coordinates by name.
+        columns: the columns of the file.
+        combinations: the combinations of corrections, the best determined first.
+        factor: f above: the residual in multiples of the rounding of the digits.
+        freedom: degrees of freedom: number of numbers less number of combinations that they determine.
+        left: sum of squares of the residual, in standard deviations of the numbers.
+        largest: the largest residual, in standard deviations of its number.
         bounds, prior: mm.
         converged: whether least squares ended at a minimum.
-        solves: how many designs were tried. failures: of these that could not be solved, why, each once.
-        notes: what was taken without being told, and rows that were left out.
+        solves: number of designs tried.
+        failures: the reasons why designs could not be solved, each once.
+        notes: what was assumed because it is not given, and rows that were left out.
     """
 
     scene: Scene
@@ -135,12 +139,12 @@ class Fit:
 
     @property
     def unseen(self) -> tuple[Combination, ...]:
-        """Combinations that the file cannot see: where there are any the answer is not unique."""
+        """Combinations that the file does not determine: if there are any, the answer is not unique."""
         return tuple(one for one in self.combinations if not one.seen)
 
     @property
     def rms(self) -> dict[str, tuple[float, float, int]]:
-        """By unit: before and after, over all columns of it, and how many numbers these are."""
+        """By unit: r.m.s. difference before and after, over all columns of the unit; number of numbers."""
         found = {}
         for unit in dict.fromkeys(column.unit for column in self.columns):
             of = [column for column in self.columns if column.unit == unit]
@@ -157,17 +161,17 @@ def fit_hardpoints(
     """Correct the free coordinates of a problem.
 
     Args:
-        solves: how many corrections are tried before it stops without having converged.
-        told: is called with words and how many designs were tried.
+        solves: largest number of designs tried; the fit then stops without convergence.
+        told: is called for progress with a text and the number of designs tried.
     Raises:
-        FileError: where the search comes by, a number has no slope.
+        FileError: a number has no derivative at a design of the search.
     """
     bounds, prior = problem.bounds, problem.prior
     rows, zero = problem.measured.rows, np.zeros(len(problem.free))
     designs, tried, failures = {zero.tobytes(): problem.start}, count(1), dict[str, None]()
 
     def design(amounts: Array) -> Design:
-        # Slopes are asked for where the search has just been, or on a bound that is a rounding away.
+        # Designs are kept: slopes are needed at the last one, or on a bound that is a rounding away from it.
         at = amounts.tobytes()
         if at not in designs:
             told(f"{(number := next(tried))} tried", number)
@@ -175,7 +179,7 @@ def fit_hardpoints(
         return designs[at]
 
     def left(amounts: Array) -> Array:
-        """What is left by corrections, NaN where the design cannot be solved or a row has no pose."""
+        """The residual with corrections; NaN if the design cannot be solved or a row has no pose."""
         misfit = np.full(len(problem.spread), np.nan)
         try:
             there = design(amounts)
@@ -245,13 +249,13 @@ def fit_hardpoints(
 
 
 def _known(matrix: Array) -> tuple[Array, Array]:
-    """A singular value for every column of a matrix, and their right singular vectors in rows."""
+    """As many singular values as the matrix has columns, and the right singular vectors in rows."""
     _, found, vectors = np.linalg.svd(matrix, full_matrices=True)
     return np.concatenate([found, np.zeros(matrix.shape[1] - len(found))]), vectors
 
 
 def _columns(problem: Problem, before: Array, after: Array) -> tuple[Fitted, ...]:
-    """What misfits were before and after, (used,) each, column by column."""
+    """The columns of the file, from the misfits before and after, each (used,)."""
     measured = problem.measured
     which = np.repeat(np.arange(len(measured.numbers)), len(measured.rows))[problem.used]
     found = list[Fitted]()

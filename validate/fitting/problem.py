@@ -1,13 +1,13 @@
-r"""A file's numbers beside those of a car whose hardpoints move, and how these change with each of them.
+r"""The misfit of a file's numbers to a car whose hardpoints move, and its derivatives by the coordinates.
 
-Positions and angles are read off poses that are solved one by one, and rates off the motion. An input that
-the file gives is the same in every design, a travel counting from the design's own drawing; one that it does
-not give is as drawn, and the drawing changes. What the numbers change by with each coordinate are exact
-derivatives at the solved design, of one solve (see `hardpoint_slopes`).
+Over inputs and travels each row is a pose that is solved by itself; over time the rows are instants of the
+motion. An input that the file gives has the same values in every design; a travel counts from the drawing of
+the design. An input that the file does not give has its drawn value, which changes with the drawing. The
+derivatives by coordinates are exact, from one solve of the design (see `hardpoint_slopes`).
 
-A number rounded to its last digit is evenly spread over its half unit h_i, and has the standard deviation
-h_i / sqrt(3); so has what the rounding of the independent columns does to it, and the accuracy that the user
-states:
+A number rounded to its last digit has an error that is evenly distributed over +-h_i, half a unit of this
+digit, with the standard deviation h_i / sqrt(3). The effect S_i of the rounding of the independent columns,
+and the accuracy a_i that the user states, are treated in the same way:
 
     s_i = (h_i + S_i + a_i) / sqrt(3), and at least LEAST.
 """
@@ -32,15 +32,15 @@ from validate.tables.errors import FileError
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-BOUNDS = 25.0  # mm, that no hardpoint of a drawing of this car is off by
-# Then they are five standard deviations out, which of 1e6 coordinates less than one is beyond. A wider prior
-# lets rounding of digits move hardpoints along what the file hardly sees: with 100 mm by 24 mm together where
-# one is off by 5, in a table of four decimals.
+BOUNDS = 25.0  # mm: no hardpoint in a drawing of this car has a larger error
+# The bounds are then five standard deviations, which less than one of 1e6 coordinates exceeds. With a wider
+# prior the rounding of digits moves hardpoints along combinations that the file hardly determines: with
+# 100 mm, in a table of four decimals, by 24 mm in total where one coordinate is off by 5.
 PRIOR = BOUNDS / 5.0
-# What a number is known to at best, however many digits it has: 0.1 um, and what that is on a wheel.
+# Least standard deviation of a number, however many digits it has: 0.1 um, and the angle of that on a wheel.
 LEAST = {"mm": 1e-4, "rad": 3e-7}
 OTHERS = 1e-4  # N or %
-TIGHT = 1e-12  # mm, of poses
+TIGHT = 1e-12  # mm, tolerance of poses
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Design:
     """A car at the rows of a file.
 
     Attributes:
-        numbers: every column one after the other, (columns * rows,); NaN where there is no pose.
+        numbers: all columns, one after the other, (columns * rows,); NaN at rows without a pose.
     """
 
     driven: Driven
@@ -70,14 +70,16 @@ class Design:
 
 @dataclass(frozen=True)
 class Problem:
-    """A file and the designs of a scene.
+    """The fit of a scene's hardpoints to a file.
 
     Attributes:
-        scene: as drawn.
+        scene: the scene as drawn.
         free: the coordinates that vary, such as lower_ball_joint.z.
-        bounds: that corrections keep, mm. prior: how far off hardpoints are thought to be, likewise.
+        bounds: largest correction of a coordinate, mm.
+        prior: assumed standard deviation of a coordinate, mm.
         start: the car as drawn.
-        used: which of its numbers the file has too, (columns * rows,). spread: s_i of the used ones.
+        used: which of its numbers exist and are in the file, (columns * rows,).
+        spread: s_i of the used numbers, (used,).
     """
 
     scene: Scene
@@ -102,12 +104,12 @@ class Problem:
         """The problem of a scene and a file.
 
         Args:
-            free: coordinates such as lower_ball_joint.z, or points for all three; empty: of every point.
+            free: coordinates such as lower_ball_joint.z, or points for all three axes; empty: all points.
             bounds, prior: mm, above 0.
-            accuracy: how far off the file's numbers may be beside their digits, each in its own unit.
+            accuracy: error of the file's numbers in addition to their rounding, in the unit of each.
         Raises:
-            UnknownName: no point or axis is called so.
-            UsageError: a coordinate is there twice, or bounds, prior or accuracy are none.
+            UnknownName: a point or axis does not exist.
+            UsageError: a coordinate is given twice, or bounds, prior or accuracy is out of range.
             FileError: no number of the file can be used, or a travel cannot be followed.
             PointcoordError: the scene as drawn cannot be solved.
         """
@@ -116,19 +118,19 @@ class Problem:
             if not (math.isfinite(value) and (value > 0.0 or (zero and value == 0.0))):
                 allowed = f"a finite number {'from 0 up' if zero else 'above 0'}"
                 raise UsageError(f"--{name} is {value:g}; allowed: {allowed}")
-        # Nothing is computed but what the file has.
+        # Only the numbers that the file has are computed.
         driven = Driven.of(scene.model_copy(update={"effects": ()}), measured)
         coordinates = coordinates_of(scene, free)
         twice = next((name for name in coordinates if coordinates.count(name) > 1), "")
         if twice:
-            raise UsageError(f"--free: {twice} is there twice; allowed: each coordinate once")
+            raise UsageError(f"--free: {twice} is given twice; allowed: each coordinate once")
         values, offs = [s.values for s in measured.independent], [s.off for s in measured.independent]
         start = Design.of(driven, measured, values)
         first, theirs = start.numbers, np.concatenate([s.values for s in measured.numbers])
         used: Bools = np.isfinite(first) & np.isfinite(theirs)
         if not used.any():
-            why = next(iter(start.found.reasons.values()), "no number is both there and ours")
-            allowed = "rows that the scene's car can have"
+            why = next(iter(start.found.reasons.values()), "no number is both in the file and computed")
+            allowed = "rows that the scene's car can reach"
             raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
         swing = np.zeros(len(first))
         for _, ends in at_either_end(values, offs):
@@ -140,24 +142,24 @@ class Problem:
         return cls(scene, measured, coordinates, bounds, prior, start, used, spread)
 
     def among(self, free: Sequence[str]) -> Problem:
-        """The same with fewer free coordinates: the car as drawn is solved already."""
+        """The problem with fewer free coordinates; the solved car as drawn is reused."""
         return replace(self, free=tuple(free))
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was taken without being told, and rows that were left out."""
+        """What was assumed because it is not given, and rows that were left out."""
         return (*self.start.driven.notes, *out_of_reach(self.measured, self.start.found))
 
     def corrected(self, amounts: Array) -> Scene:
-        """The scene with its free coordinates moved, (free,), mm.
+        """The scene with its free coordinates moved by amounts, (free,), mm.
 
         Raises:
-            SceneError: the hardpoints make no mechanism.
+            SceneError: the hardpoints do not form a mechanism.
         """
         return designs_of(self.scene, offsets=self._offsets(amounts)).design(0)
 
     def solved(self, amounts: Array) -> Design:
-        """A design at the rows of the file.
+        """The design with free coordinates moved by amounts, (free,), mm, at the rows of the file.
 
         Raises:
             PointcoordError: the design cannot be solved.
@@ -169,17 +171,17 @@ class Problem:
         return dict(zip(self.free, amounts.tolist(), strict=True))
 
     def misfit(self, design: Design) -> Array:
-        """Ours less theirs, (used,), in standard deviations; whole turns apart is the same angle."""
+        """Computed less measured, (used,), in standard deviations; whole turns are removed from angles."""
         series = self.measured.numbers
         columns = zip(series, design.numbers.reshape(len(series), -1), strict=True)
         apart = np.concatenate([s.apart(own, s.values) for s, own in columns])
         return np.asarray(apart[self.used] / self.spread)
 
     def slopes(self, design: Design) -> Array:
-        """How the misfit changes with each coordinate, (used, free), 1/mm.
+        """Derivatives of the misfit by each coordinate, (used, free), 1/mm.
 
         Raises:
-            FileError: a number of the design has no slope.
+            FileError: a number of the design has no derivative.
             AssemblyError: a pose cannot be reached on a straight path (see `slopes_of_poses`).
         """
         slopes = design.driven.slopes(design.found, self.free)
@@ -188,7 +190,7 @@ class Problem:
         found = np.concatenate([nothing if c is None else c for c in columns], axis=1)[:, self.used].T
         if not np.isfinite(found).all():
             lost = int(np.flatnonzero(self.used)[int(np.argmin(np.isfinite(found).all(axis=1)))])
-            problem = "the car's numbers have no slope there: its pose is next to a singular one"
+            problem = "the car's numbers have no derivative there: its pose is almost singular"
             row = self.measured.rows[lost % len(self.measured.rows)]
             raise FileError(self.measured.source, row, problem, "rows away from where the car jams")
         return found / self.spread[:, None]

@@ -1,4 +1,4 @@
-"""What is said of suspected sets of coordinates: in words, as plain data, and as a table."""
+"""The report on suspected sets of coordinates: as text, as plain data, and as a table."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from validate.fitting.words import COORDINATE, Said, cells_of, coordinates_of, m
 from validate.output.table import csv_of
 
 SIZES = ("coordinate alone", "sets of two", "sets of three")
-REFUSED = 3  # sets that are named one by one
-WIDE = 100  # characters of a line
+REFUSED = 3  # number of unsolvable sets that a warning names
+WIDE = 100  # characters per line
 
 
 def said_of_suspects(found: Suspects, name: str, source: str) -> Said:
-    """What is said of suspects; status 3 if nothing explains the file and some fits did not end."""
+    """The report on suspects; status 3 if no set explains the file and some fits did not converge."""
     surely = found.ended or found.explaining or found.drawn
     return Said(
         kind="fit-suspects",
@@ -34,9 +34,9 @@ def said_of_suspects(found: Suspects, name: str, source: str) -> Said:
 
 
 def _lines(found: Suspects, name: str, source: str) -> Iterator[str]:
-    yield f"{name}: which hardpoints would explain {source} (a diagnosis: nothing is corrected)"
-    drawn = f"{times(found.left, found.count):.3g} times what the digits explain is left"
-    yield f"  as drawn {drawn}, r.m.s. of {found.count} numbers"
+    yield f"{name}: hardpoints that may explain {source} (a diagnosis: nothing is corrected)"
+    drawn = f"{times(found.left, found.count):.3g} times the rounding of the digits"
+    yield f"  residual as drawn: {drawn}, r.m.s. of {found.count} numbers"
     if not found.drawn:
         fitted = (
             f"{'each ' if size == 0 else ''}{SIZES[size]}: {some} of {every} fitted"
@@ -44,10 +44,10 @@ def _lines(found: Suspects, name: str, source: str) -> Iterator[str]:
         )
         yield f"  {'; '.join(fitted)}; the others explain less in the linear problem"
         if found.unseen:
-            yield f"  change nothing that the file shows: {', '.join(found.unseen)}"
-        head = "sets that explain the file" if found.explaining else "no set explains the file; nearest are"
-        where = f"where it lies {100.0 * CONFIDENCE:g} times in 100"
-        yield f"\n  {head}, with what each leaves in times of the digits, and its offsets, mm, {where}"
+            yield f"  no effect on the numbers of the file: {', '.join(found.unseen)}"
+        head = "sets that explain the file" if found.explaining else "no set explains the file; nearest sets"
+        where = f"{100.0 * CONFIDENCE:g} % interval"
+        yield f"\n  {head}: residual in multiples of the rounding; offsets, mm, +- deviation, {where}"
         sets = found.explaining or found.nearest
         width = max((len(at) for one in sets for at in one.coordinates), default=0)
         for rank, one in enumerate(sets, 1):
@@ -60,51 +60,51 @@ def _lines(found: Suspects, name: str, source: str) -> Iterator[str]:
 
 
 def verdict(found: Suspects) -> str:
-    """In a sentence, which sets explain the file; sets by their ranks."""
+    """One sentence: which sets explain the file; sets are named by their rank."""
     if found.drawn:
-        return "The car as drawn explains the file: there is nothing to look for."
+        return "The car as drawn explains the file: no hardpoint is suspect."
     if (equal := len(found.equal)) > 1:
         which = "1 and 2" if equal == 2 else f"1 to {equal}"
         return f"Sets {which} explain it equally well: the file cannot tell them apart."
     if found.explaining:
         best = found.explaining[0]
         verb = "explain" if len(best.coordinates) > 1 else "explains"
-        return f"{names(best)} {verb} it best; the file can tell that from every other set that was fitted."
+        return f"{names(best)} {verb} it best; the file tells this set from every other set that was fitted."
     if not found.nearest:
         return "No set explains the file: none could be fitted."
     nearest = found.nearest[0]
     return (
-        f"No set explains the file; nearest is {names(nearest)}, which leaves {left_of(nearest):.3g} times "
-        "what the digits explain: another unit, sign or definition of a column, or more is off than these."
+        f"No set explains the file; nearest is {names(nearest)}, with a residual of {left_of(nearest):.3g} "
+        "times the rounding: a column may have another unit, sign or definition, or more coordinates are off."
     )
 
 
 def names(fit: Fit) -> str:
-    """The coordinates of a set."""
+    """The names of the coordinates of a set."""
     return " and ".join(fit.coordinates)
 
 
 def left_of(fit: Fit) -> float:
-    """What a set leaves, r.m.s. in times of what the digits explain."""
+    """The residual of a set, r.m.s., in multiples of the rounding of the digits."""
     return times(fit.left, max(fit.freedom, 1))
 
 
 def times(left: float, count: int) -> float:
-    """A sum of squares of so many numbers, r.m.s. in times of what the digits explain."""
+    """The r.m.s. of `count` numbers from their sum of squares, in multiples of the rounding of the digits."""
     return math.sqrt(left / count)
 
 
 def _warnings(found: Suspects) -> Iterator[str]:
-    """What must not be overlooked."""
+    """The warnings on the suspects."""
     if not (found.ended or found.explaining):
-        yield "some fits did not end at a minimum: such a set might explain the file yet"
+        yield "some fits did not end at a minimum: one of their sets may still explain the file"
     if found.refused:
         some = "; ".join(found.refused[:REFUSED])
         yield f"{len(found.refused)} sets could not be fitted: {some}"
 
 
 def _data(found: Suspects) -> dict[str, Any]:
-    """The sets and what became of the others."""
+    """The suspects as plain data."""
     equal = len(found.equal)
     return {
         "explained_as_drawn": found.drawn,

@@ -1,19 +1,20 @@
-r"""Which few hardpoint coordinates, moved, would explain a file: a diagnosis, that corrects nothing.
+r"""Finds sets of a few hardpoint coordinates that explain a file if they are moved; corrects nothing.
 
-Every coordinate that the file sees is fitted alone, then sets of two and of three, until some sets of a size
-explain the file. Not all sets are fitted. With r the misfit and J its slopes, both in standard deviations
-(see `problem`), a set S leaves in the linear problem
+Every coordinate that affects the file's numbers is fitted alone, then sets of two and of three, until some
+sets of one size explain the file. Not all sets are fitted. Let r be the misfit and J its Jacobian, both in
+standard deviations (see `problem`). In the linear problem the sum of squares left by a set S is
 
     |r|^2 - g_S . (J_S^T J_S + 1 / prior^2)^-1 g_S,    g_S = J_S^T r.
 
-Of each size those that leave least are fitted: of all sets, by the slopes of the car as drawn, and of the
-best of the size before with one more coordinate, by the slopes where that one ended.
+For each size the sets with the smallest value are fitted: of all sets, with the Jacobian of the car as drawn;
+and of the best sets of the previous size with one more coordinate, with the Jacobian at the end of their fit.
 
-A set explains the file if its sum of squares is one that rounding exceeds in one of LEVEL files, and no
-number is farther off than TWICE what its digits allow, for least squares make no largest difference least. A
-number that is evenly spread over its half unit has squares that scatter less than those of a normal one, so
-that chi-squared is on the safe side. Two sets explain it equally well if their sums of squares differ by less
-than what one coordinate more explains of nothing but rounding in 95 of 100 files.
+A set explains the file if rounding alone exceeds its sum of squares in at least one of LEVEL files, and no
+number is off by more than TWICE its rounding. The second condition is needed because least squares do not
+minimise the largest difference. The error of a rounded number is evenly distributed; its square scatters less
+than that of a normal error, so the chi-squared test is on the safe side. Two sets explain the file equally
+well if their sums of squares differ by no more than the reduction that one further coordinate gains from
+rounding alone in 95 of 100 files.
 """
 
 from __future__ import annotations
@@ -33,27 +34,28 @@ from validate.fitting.problem import Problem
 
 Array = NDArray[np.float64]
 
-LARGEST = 3  # coordinates of a set: a point that is misread
+LARGEST = 3  # coordinates of a set: all of one misread point
 LEVEL = 1000.0
-TWICE = 2.0 * math.sqrt(3.0)  # standard deviations of a number that is rounded
-# Sets of a size that are fitted by the slopes of the drawing, and as many beside a better start.
+TWICE = 2.0 * math.sqrt(3.0)  # in standard deviations: twice the half unit of a rounded number
+# Number of sets of a size that are fitted: so many from the drawing, and so many from the best smaller sets.
 CANDIDATES = 12
-STARTS = 3  # sets that one more coordinate is put to
-SHOWN = 8  # sets that explain nothing are kept for being nearest
+STARTS = 3  # number of best sets to which one more coordinate is added
+SHOWN = 8  # number of nearest sets kept if none explains the file
 
 
 @dataclass(frozen=True)
 class Suspects:
-    """Sets of coordinates that would explain a file.
+    """Sets of coordinates that may explain a file.
 
     Attributes:
-        fits: of all sets that could be fitted, by what they leave.
-        tried: by size, how many sets were fitted, and how many there are.
-        unseen: coordinates whose correction within the bounds changes nothing that the file shows.
-        left, count: the sum of squares of the car as drawn, and of how many numbers.
-        drawn: whether as drawn it explains the file; then nothing is fitted.
-        refused: sets whose designs could not be solved, and why.
-        notes: what was taken without being told, and rows that were left out.
+        left: sum of squares of the misfit of the car as drawn.
+        count: number of numbers in this sum.
+        drawn: whether the car as drawn explains the file; nothing is fitted then.
+        notes: what was assumed because it is not given, and rows that were left out.
+        fits: all sets that could be fitted, the smallest sum of squares first.
+        tried: by size, number of sets fitted and number of all sets.
+        unseen: coordinates whose correction within the bounds does not change the numbers noticeably.
+        refused: sets whose designs could not be solved, with the reason.
     """
 
     left: float
@@ -72,23 +74,27 @@ class Suspects:
 
     @property
     def nearest(self) -> tuple[Fit, ...]:
-        """Of the sets that do not, those that leave least."""
+        """The sets with the smallest sums of squares among those that do not explain the file."""
         return tuple(one for one in self.fits if not _explained(one))[:SHOWN]
 
     @property
     def equal(self) -> tuple[Fit, ...]:
-        """The best of those that explain it, and those that the file cannot tell from it."""
+        """The best set that explains the file, and the sets that the file cannot tell from it."""
         explaining, told = self.explaining, float(chdtri(1, 1.0 - CONFIDENCE))
         return tuple(one for one in explaining if one.left - explaining[0].left <= told)
 
     @property
     def ended(self) -> bool:
-        """Whether all fits came to an end."""
+        """Whether all fits converged."""
         return all(one.converged for one in self.fits)
 
 
 def explains(left: float, largest: float, freedom: int) -> bool:
-    """Whether a misfit is no more than rounding, in standard deviations."""
+    """Whether rounding alone explains a misfit, in standard deviations.
+
+    Args:
+        left: sum of squares. largest: largest misfit. freedom: degrees of freedom.
+    """
     return freedom > 0 and left <= float(chdtri(freedom, 1.0 / LEVEL)) and largest <= TWICE
 
 
@@ -97,12 +103,12 @@ def _explained(fit: Fit) -> bool:
 
 
 def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspects:
-    """The sets of a problem's free coordinates that would explain its file.
+    """The sets of a problem's free coordinates that may explain its file.
 
     Args:
-        told: is called with words and how many sets were fitted.
+        told: is called for progress with a text and the number of sets fitted.
     Raises:
-        FileError: a number of the car as drawn has no slope.
+        FileError: a number of the car as drawn has no derivative.
     """
     free, first = problem.free, problem.misfit(problem.start)
     left, count = float(first @ first), len(first)
@@ -143,7 +149,7 @@ def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspe
 def _ranked(
     misfit: Array, slopes: Array, among: Sequence[int], size: int, prior: float
 ) -> list[tuple[int, ...]]:
-    """Sets of a size, by what they leave in the linear problem."""
+    """All sets of a size, the smallest sum of squares in the linear problem first."""
     sets = np.array(list(combinations(among, size)))
     square, along = slopes.T @ slopes + np.eye(slopes.shape[1]) / prior**2, slopes.T @ misfit
     step = np.linalg.solve(square[sets[:, :, None], sets[:, None, :]], along[sets][..., None])[..., 0]
@@ -152,7 +158,7 @@ def _ranked(
 
 
 def _beside(problem: Problem, start: Fit, seen: Sequence[int]) -> list[tuple[int, ...]]:
-    """A fitted set with one more coordinate, likewise, by the slopes where it ended."""
+    """The sets of a fitted set and one more coordinate, by the Jacobian at the end of the fit, best first."""
     free = problem.free
     chosen = [free.index(name) for name in start.coordinates]
     amounts = np.zeros(len(free))
@@ -165,7 +171,7 @@ def _beside(problem: Problem, start: Fit, seen: Sequence[int]) -> list[tuple[int
     if not np.isfinite(misfit).all():
         return []
     others = [i for i in seen if i not in chosen]
-    # What the set explains already is taken out, so that each other one counts by what it adds.
+    # The columns of the set are projected out, so that each other coordinate is ranked by its own effect.
     basis, _ = np.linalg.qr(slopes[:, chosen])
     rest = slopes - basis @ (basis.T @ slopes)
     return [tuple(sorted((*chosen, *one))) for one in _ranked(misfit, rest, others, 1, problem.prior)]

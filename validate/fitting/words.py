@@ -1,4 +1,4 @@
-"""What is said of a fit: in words, as plain data, as a table; and the corrected scene as a file."""
+"""The report on a fit: as text, as plain data, and as a table; and the corrected scene as a file."""
 
 from __future__ import annotations
 
@@ -20,23 +20,25 @@ from validate.toml_written import written
 
 Array = NDArray[np.float64]
 
-# Parts of a combination that are said, of its largest one; all that two decimals show where it is exact.
+# Smallest printed part of a combination, relative to its largest; if exact, all that two decimals show.
 SAID, SAID_EXACT = 0.2, 0.005
-# Singular values below this part of the largest are rounding: differences over 0.02 mm to either side lack
-# (0.02 / L)^2 / 6 of a slope, with lines of L = 60 mm and more.
+# Singular values below this part of the largest are zero to accuracy: derivatives from differences over
+# +-0.02 mm have the relative error (0.02 / L)^2 / 6, for lines of L = 60 mm and more.
 NOTHING = 2e-8
 COORDINATE = ("coordinate", *(one.name for one in fields(Coordinate)))
-# Times what the digits explain, from which on something else than hardpoints is likelier.
+# Residual in multiples of the rounding; above this a cause other than hardpoints is more likely.
 STRANGE = 5.0
 
 
 @dataclass(frozen=True)
 class Said:
-    """What is said and written of what was found.
+    """The report on a fit or on suspects.
 
     Attributes:
-        kind: of the document. what: is found, in words.
-        results: for programs, angles in rad. table: the same of the coordinates (CSV).
+        kind: kind of the document.
+        what: name of the result, in words.
+        results: the results as plain data for programs, angles in rad.
+        table: the coordinates as CSV.
     """
 
     kind: str
@@ -49,14 +51,14 @@ class Said:
     table: str
 
     def data(self, name: str, source: str) -> dict[str, Any]:
-        """The results of a scene and a file, with all that goes with them."""
+        """The results with the names of scene and file, the confidence, notes and warnings."""
         about = {"scene": name, "data": shown(source), "confidence": CONFIDENCE}
         said = {"notes": self.notes, "warnings": self.warnings}
         return {**about, **self.results, **{key: [*map(shown, words)] for key, words in said.items()}}
 
 
 def said_of_fit(fit: Fit, name: str, source: str) -> Said:
-    """What is said of a fit; status 3 if least squares did not end."""
+    """The report on a fit; status 3 if least squares did not converge."""
     return Said(
         kind="fit",
         what="the fit",
@@ -70,78 +72,78 @@ def said_of_fit(fit: Fit, name: str, source: str) -> Said:
 
 
 def lines_of(fit: Fit, name: str, source: str) -> Iterator[str]:
-    """A fit in words."""
+    """The lines of the text on a fit."""
     yield f"{name}: hardpoints fitted to {source}"
     for unit, (before, after, count) in fit.rms.items():
         yield f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({count} numbers)"
     for one in fit.columns:
         ends = f"{_of(one.unit, one.before)} before, {_of(one.unit, one.after)} after"
-        yield f"    {shown(one.column)}: {ends}; known to {_of(one.unit, one.known_to)}"
-    more = f"{fit.factor:.3g} times what" if fit.factor > 1.0 else "no more than"
-    yield f"  what is left is {more} the digits explain\n"
-    where = f"where it lies {100.0 * CONFIDENCE:g} times in 100"
-    yield f"  correction, mm, within +-{fit.bounds:g}, its standard deviation, and {where}"
+        yield f"    {shown(one.column)}: {ends}; standard deviation {_of(one.unit, one.known_to)}"
+    more = f"{fit.factor:.3g} times" if fit.factor > 1.0 else "no more than"
+    yield f"  the residual is {more} the rounding of the digits\n"
+    where = f"{100.0 * CONFIDENCE:g} % interval"
+    yield f"  correction, mm, within +-{fit.bounds:g}; standard deviation; {where}"
     width = max(len(at) for at in fit.coordinates)
     yield from (f"    {at.ljust(width)} {moved(one)}" for at, one in fit.coordinates.items())
-    yield "\n  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm"
+    yield "\n  singular values of the scaled Jacobian, 1/mm, and standard deviation of each combination, mm"
     for combined in fit.combinations:
-        known = f"{combined.deviation:.3g}" if combined.seen else "not seen"
+        known = f"{combined.deviation:.3g}" if combined.seen else "not determined"
         yield f"    {combined.singular_value:10.3g}  {known}"
     if not fit.unseen:
-        yield "\n  The data settle every combination of these coordinates: unique near here."
+        yield "\n  The data determine every combination of these coordinates: the answer is unique nearby."
         return
     unseen = f"{len(fit.unseen)} of {len(fit.combinations)} combinations of coordinates"
-    yield f"\n  The answer is not unique: the data cannot see {unseen}. Along these the"
-    yield f"  correction is what the prior of {fit.prior:g} mm makes it, no finding. Any may be added:"
+    yield f"\n  The answer is not unique: the data do not determine {unseen}. Along these"
+    yield f"  the correction follows from the prior of {fit.prior:g} mm, not from the data. Any may be added:"
     yield from (f"    {words}" for words in unseen_words(fit))
 
 
 def moved(one: Coordinate) -> str:
-    """A correction, and how well it is known."""
+    """A correction, its standard deviation and its interval."""
     known = f"+- {one.deviation:.2g}   {one.low:+z.4f} to {one.high:+z.4f}"
-    return f"{one.correction:+z10.4f} " + ("  on its bound, and held there" if one.on_bound else known)
+    return f"{one.correction:+z10.4f} " + ("  on its bound, and fixed there" if one.on_bound else known)
 
 
 def warnings_of_fit(fit: Fit) -> Iterator[str]:
-    """What must not be overlooked."""
+    """The warnings on a fit."""
     if not fit.converged:
-        why = f"; a design on the way could not be solved ({fit.failures[-1]})" if fit.failures else ""
+        why = f"; a design of the search could not be solved ({fit.failures[-1]})" if fit.failures else ""
         yield (
             f"least squares did not end at a minimum, {fit.solves} designs were tried{why}; take fewer "
             "coordinates, closer bounds or a smaller prior"
         )
     if fit.factor > STRANGE:
         yield (
-            f"what is left is {fit.factor:.3g} times what the digits explain: other hardpoints than "
-            "these, or another unit, sign or definition of a column; pointcoord validate SCENE --data FILE "
-            "says column by column how far they are apart"
+            f"the residual is {fit.factor:.3g} times the rounding of the digits: other hardpoints may be "
+            "wrong, or a column may have another unit, sign or definition; pointcoord validate SCENE "
+            "--data FILE gives the difference column by column"
         )
     if on := ", ".join(at for at, one in fit.coordinates.items() if one.on_bound):
-        yield f"{on} would go beyond the bounds of {fit.bounds:g} mm: less might be left"
+        yield f"{on}: on the bound of {fit.bounds:g} mm; wider bounds may give a smaller residual"
     if fit.unseen:
         unseen = counted(len(fit.unseen))
-        yield f"the answer is not unique: the data do not see {unseen} of coordinates"
+        yield f"the answer is not unique: the data do not determine {unseen} of coordinates"
 
 
 def counted(number: int) -> str:
-    """So many combinations."""
+    """A number of combinations, in words."""
     return f"{number} combination{'' if number == 1 else 's'}"
 
 
 def unseen_words(fit: Fit) -> list[str]:
-    """Which combinations the data cannot see; those that change nothing at all as simply as can be."""
+    """The combinations that the data do not determine; those without any effect in their simplest form."""
     least = NOTHING * max(one.singular_value for one in fit.combinations)
     nothing = [one for one in fit.unseen if one.singular_value <= least]
-    said = [f"{combination(parts, SAID_EXACT)}: changes nothing" for parts in simplest(nothing)]
+    said = [f"{combination(parts, SAID_EXACT)}: has no effect" for parts in simplest(nothing)]
     weak = (one for one in fit.unseen if one not in nothing)
-    return said + [f"{combination(one.parts)}: known to {one.deviation:.2g} mm only" for one in weak]
+    return said + [f"{combination(one.parts)}: standard deviation {one.deviation:.2g} mm" for one in weak]
 
 
 def combination(parts: Mapping[str, float], said: float = SAID) -> str:
-    """A combination as a sum, largest part first; parts that are small beside it are left out."""
+    """A combination as a sum, largest part first; parts below `said` times the largest are left out."""
     largest = max(abs(part) for part in parts.values())
-    told = sorted(parts.items(), key=lambda one: -abs(one[1]))
-    some = [(name, part / largest) for name, part in told if abs(part) >= said * largest]
+    ranked = sorted(parts.items(), key=lambda one: -abs(one[1]))
+    some = [(name, part / largest) for name, part in ranked if abs(part) >= said * largest]
     if len(some) == 1:
         return some[0][0]
     sign = math.copysign(1.0, some[0][1])
@@ -150,7 +152,10 @@ def combination(parts: Mapping[str, float], said: float = SAID) -> str:
 
 
 def simplest(found: Sequence[Combination]) -> list[dict[str, float]]:
-    """The same space of combinations by ones of few coordinates: each has one of its own, by pivoting."""
+    """Another basis of the space of combinations, with few coordinates in each (QR with pivoting).
+
+    Each combination has one coordinate that no other one has.
+    """
     if not found:
         return []
     rows = np.array([[*one.parts.values()] for one in found])
@@ -165,7 +170,7 @@ def _of(unit: str, number: float) -> str:
 
 
 def data_of(fit: Fit) -> dict[str, Any]:
-    """What a fit has found."""
+    """The fit as plain data."""
     rms = ("unit", "before", "after", "count")
     return {
         "rms": [dict(zip(rms, (unit, *found), strict=True)) for unit, found in fit.rms.items()],
@@ -188,22 +193,22 @@ def table_of(fit: Fit) -> str:
 
 
 def corrected_text(fit: Fit, name: str, source: str) -> str:
-    """A scene file (TOML) of the corrected car, with what was done to it in comments."""
+    """A scene file (TOML) of the corrected car, with the corrections in comments."""
     before = [f"# {shown(name)}, its hardpoints fitted to {shown(source)}."]
     before += [
         f"# r.m.s. difference {first:.4g} {unit} before, {last:.4g} {unit} after."
         for unit, (first, last, _) in fit.rms.items()
     ]
     if fit.unseen:
-        before.append(f"# Not unique: the data do not see {counted(len(fit.unseen))} of coordinates.")
+        before.append(f"# Not unique: the data do not determine {counted(len(fit.unseen))} of coordinates.")
     for at, one in fit.coordinates.items():
-        known = "which is its bound" if one.on_bound else f"standard deviation {one.deviation:.2g} mm"
+        known = "which is the bound" if one.on_bound else f"standard deviation {one.deviation:.2g} mm"
         before.append(f"# {at} moved by {one.correction:+z.4f} mm, {known}.")
     return "\n".join([*before, *written(fit.scene.model_dump(exclude_none=True))]) + "\n"
 
 
 def coordinates_of(fit: Fit) -> list[dict[str, Any]]:
-    """Each coordinate, by the names of `COORDINATE`; nothing is known of one that is held on its bound."""
+    """Each coordinate, by the names of `COORDINATE`; deviation and interval are None on a bound."""
     rows = [
         dict(zip(COORDINATE, (name, *astuple(one)), strict=True)) for name, one in fit.coordinates.items()
     ]
@@ -211,5 +216,5 @@ def coordinates_of(fit: Fit) -> list[dict[str, Any]]:
 
 
 def cells_of(row: Mapping[str, Any]) -> list[Any]:
-    """A coordinate as the cells of a table; what is not known is left empty."""
+    """A coordinate as the cells of a table; None is an empty cell."""
     return [str(cell).lower() if isinstance(cell, bool) else cell for cell in row.values()]

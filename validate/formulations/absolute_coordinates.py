@@ -1,4 +1,4 @@
-"""The absolute-coordinate model as a formulation. It gets hardpoints and inputs, and nothing solved."""
+"""The absolute-coordinate model as a formulation. It gets hardpoints and inputs, but no solved numbers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ except ModuleNotFoundError as error:
 
 
 class AbsoluteCoordinates:
-    """Bodies with poses in Pinocchio."""
+    """Rigid bodies with poses, in Pinocchio."""
 
     name = "absolute"
 
@@ -29,7 +29,7 @@ class AbsoluteCoordinates:
         """Solve a scene.
 
         Raises:
-            FormulationError: the model refuses the scene, or a pose is too near to a fold.
+            FormulationError: the model refuses the scene, or a pose is too near a fold.
         """
         problem, asked = Problem.of(scene), asked_numbers(scene)
         part = scene.mechanism
@@ -59,7 +59,7 @@ class AbsoluteCoordinates:
 
 
 def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> Numbers:
-    """The model's numbers; it calls the quantities of points and bodies as pointcoord does."""
+    """The model's numbers by quantity; its names for quantities of points and bodies are pointcoord's."""
     numbers: Numbers = {
         quantity: getattr(solved, quantity, solved.effects if QUANTITIES[quantity].of == "car" else {})
         for quantity in asked
@@ -69,7 +69,7 @@ def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> N
 
 
 def effects_in(scene: Scene, model: absolute.Model) -> tuple[list[str], bool]:
-    """Which of a scene's numbers of the car are effects of the model, and whether it asks for forces."""
+    """A scene's numbers of the car that the model has as effects, and whether the scene asks for forces."""
     known = absolute.effects_in(model)
     effects = [name for name in asked_of_the_car(scene) if name in known]
     return effects, any(map(is_force, asked_numbers(scene)))

@@ -1,4 +1,4 @@
-"""What a scene asks a formulation for: which quantities, of which points, bodies and angles."""
+"""The numbers that a scene asks a formulation for: names of points, bodies and angles by quantity."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pointcoord.linkage.topology import Topology
 
 
 def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """By quantity, in the order of pointcoord's registry, the names of what the scene's effects give."""
+    """The names that the scene's effects give, by quantity, in the order of pointcoord's registry."""
     effects = plan_effects(scene.effects).computed
     return numbers_of(effects, scene.mechanism.topology, scene.reported_points)
 
@@ -21,7 +21,7 @@ def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
 def numbers_of(
     effects: Iterable[Effect], topology: Topology, points: tuple[str, ...]
 ) -> dict[str, tuple[str, ...]]:
-    """The same of effects, with all of these points."""
+    """The names that the given effects give, by quantity; quantities of points give all `points`."""
     every = {"point": points, "body": tuple(topology.bodies), "joint": (), "car": ()}
     found: dict[str, tuple[str, ...]] = {}
     for effect in effects:
@@ -32,22 +32,22 @@ def numbers_of(
 
 
 def known_names(topology: Topology) -> dict[str, tuple[str, ...]]:
-    """By quantity, every name that a number of it can have, whether a scene asks for it or not."""
+    """All possible names by quantity, whether a scene asks for them or not."""
     return numbers_of((*ALWAYS, *EFFECTS.values()), topology, tuple(topology.points))
 
 
 def asked_of_the_car(scene: Scene) -> tuple[str, ...]:
-    """The names of the numbers of the car that it asks for, of all quantities but forces."""
+    """The names of the numbers of the car that a scene asks for, without forces."""
     asked = asked_numbers(scene).items()
     return tuple(n for q, names in asked if QUANTITIES[q].of == "car" and not is_force(q) for n in names)
 
 
 def is_force(quantity: str) -> bool:
-    """Whether it is one of what loads make."""
+    """Whether a quantity is one of the forces that loads cause."""
     return QUANTITIES[quantity] in LOADS.quantities
 
 
 def per_second(quantity: str) -> int:
-    """How many times a quantity is divided by a time: 1 of a rate, 2 of an acceleration, by its unit."""
+    """The power of time in the divisor of a quantity's unit: 1 for a rate, 2 for an acceleration."""
     time, _, power = QUANTITIES[quantity].unit.partition("/")[2].partition("^")
     return int(power or 1) if time == "s" else 0

@@ -1,7 +1,8 @@
-"""Inputs of a scene as value, rate, acceleration and so on, evaluated apart from pointcoord's power series.
+"""Inputs of a scene as value, rate, acceleration and so on, evaluated without pointcoord's power series.
 
-Polynomials, sines and sums are rounded once, from intervals that are made narrow enough: terms may cancel,
-and an angle may be many turns. A table means scipy's cubic spline, for every model and for the reference.
+Polynomials, sines and sums are evaluated in intervals and rounded once. The precision of the intervals is
+raised until that is possible, because terms may cancel and an angle may be many turns. A table means scipy's
+cubic spline, in every model and in the reference.
 """
 
 from __future__ import annotations
@@ -18,20 +19,20 @@ from pointcoord.scene.input_part import InputPart, TablePart
 from pointcoord.scene.scene_file import Scene
 from validate.extras import not_there
 
-# It is imported where a law needs it, for few do; but it is missed before a scene is solved.
+# flint is imported where a law needs it, which is rare; but a missing flint is reported before solving.
 if find_spec("flint") is None:
     raise not_there("validate.formulations.input_rates", ModuleNotFoundError(name="flint"))
 
 Array = NDArray[np.float64]
 Intervals = NDArray[Any]
-"""Numbers of flint, arb, of which each is an interval that encloses what it stands for."""
+"""Array of flint's arb; each is an interval that encloses the exact number."""
 
-BITS = 128  # of intervals at first; four times as many where two doubles are in one
+BITS = 128  # first precision of intervals; multiplied by four while an interval contains two doubles
 ENDS = np.frompyfunc(lambda x: float(x.lower()), 1, 1), np.frompyfunc(lambda x: float(x.upper()), 1, 1)
 
 
 def laws_of(scene: Scene, times: Array) -> dict[str, Array]:
-    """Every input at instants, with two time derivatives, or as many as the scene's effects are made of."""
+    """Every input at instants, with two time derivatives, or more if the scene's effects need them."""
     derivatives = max(2, plan_effects(scene.effects).derivative)
     return {name: rates(part, times, derivatives) for name, part in scene.inputs.items()}
 
@@ -39,9 +40,9 @@ def laws_of(scene: Scene, times: Array) -> dict[str, Array]:
 def rates(part: InputPart, times: Array, derivatives: int = 2) -> Array:
     """Value and time derivatives at instants, shape (N, derivatives + 1); rad or mm per s^d.
 
-    Each is the double nearest to what it stands for: the precision is raised until both ends of its interval
-    round to one (Ziv, ACM Transactions on Mathematical Software 17, 1991). What is too large for the
-    arithmetic comes out infinite; whoever uses it must check.
+    Each number is the double nearest to the exact number: the precision is raised until both ends of its
+    interval round to the same double (Ziv, ACM Transactions on Mathematical Software 17, 1991). A number that
+    is too large for the arithmetic becomes infinite; the caller must check.
     """
     instants = np.asarray(times, dtype=float)
     if part.constant is not None:
@@ -100,7 +101,7 @@ def _exact(numbers: Array) -> Intervals:
 
 
 def _spline(table: TablePart, instants: Array, derivatives: int) -> Array:
-    # Imported here: it takes several times as long as numpy, and few scenes have a table.
+    # Imported here: the import takes several times as long as numpy's, and few scenes have a table.
     from scipy.interpolate import CubicSpline
 
     spline = CubicSpline(table.times, table.values)

@@ -1,4 +1,4 @@
-"""The many-digit reference as a formulation, where nothing else can stand beside pointcoord."""
+"""The many-digit reference as a formulation, for use where no other model is available."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Array = NDArray[np.float64]
 
 
 class ManyDigits:
-    """Exact equations in balls, solved to 60 digits and rounded to doubles.
+    """Exact equations in ball arithmetic, solved to 60 digits and rounded to doubles.
 
-    What it claims is that rounding; what a method in doubles usually loses is what points that are off by EPS
-    of the car's size make of its numbers.
+    The error bounds are those of the rounding. The usual error of a method in doubles (`Accuracy.usual`) is
+    the error of a solver whose points are accurate to EPS times the car's size.
     """
 
     name = "reference"
@@ -31,7 +31,7 @@ class ManyDigits:
         """Solve a scene.
 
         Raises:
-            FormulationError: an instant has no pose, or none can be proven.
+            FormulationError: an instant has no pose, or no pose can be proven.
         """
         try:
             found = reference_solution(scene)
@@ -44,7 +44,7 @@ class ManyDigits:
 
 
 def _largest(claims: Numbers) -> dict[str, Array]:
-    """The largest of each quantity at each instant, (N,)."""
+    """The largest error bound of each quantity at each instant, (N,)."""
     return {
         quantity: np.max([one.reshape(len(one), -1).max(axis=-1) for one in of.values()], axis=0)
         for quantity, of in claims.items()

@@ -1,4 +1,4 @@
-"""Models that prove nothing: what they get of a scene, and bounds of their numbers by a stated accuracy."""
+"""For models without proofs: their inputs from a scene, and error bounds from a stated accuracy."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
 
-SLOW = 2.0**-200  # rad/s and mm/s
-LONGEST = 500  # s, as a power of two whose square is still a number
+SLOW = 2.0**-200  # rad/s and mm/s: squares of slower rates would underflow
+LONGEST = 500  # exponent of the longest unit of time, 2^500 s, whose square is still finite
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,8 @@ class Problem:
     """A scene and its inputs.
 
     Attributes:
-        laws: value and time derivatives of every input, (N, orders), rad or mm, and in the unit of time.
-        unit: of time at each instant, (N,), s.
+        laws: value and time derivatives of every input, (N, orders), in rad or mm, and `unit` of time.
+        unit: unit of time at each instant, (N,), s.
     """
 
     scene: Scene
@@ -40,21 +40,22 @@ class Problem:
 
     @classmethod
     def of(cls, scene: Scene) -> Problem:
-        """The inputs per second; where all are so slow that squares of their rates are lost, per more."""
+        """The inputs of a scene; the unit of time is 1 s, or longer where squares of all rates underflow."""
         laws = laws_of(scene, scene.instants)
         unit = _slow_unit(laws, len(scene.instants))
         laws = {name: law * unit[:, None] ** np.arange(law.shape[-1]) for name, law in laws.items()}
         return cls(scene, laws, unit)
 
     def solution(self, who: str, found: Numbers, accuracy: Array) -> Solution:
-        """What the scene asks for, of all that was found at the first of its instants.
+        """The numbers that the scene asks for, with error bounds, at the first N of its instants.
 
         Args:
-            found: numbers of every point, and of the bodies and angles that the model has.
-            accuracy: how exactly it says that it places points, mm, (N,): what is left of its equations, and
-                what rounds lengths of the car's size. What that makes of each number is not its affair.
+            found: the model's numbers of every point, and of the bodies and angles that it has.
+            accuracy: accuracy of points that the model states, mm, (N,): from the residual of its equations
+                and the rounding of lengths of the car's size. The error bounds are derived from it here.
         Raises:
-            AccuracyError: a pose is so near to a fold that the stated accuracy says nothing of it.
+            AccuracyError: the scene has no reference equations, or a pose is so near a fold that the stated
+                accuracy gives no bound.
         """
         count = len(accuracy)
         laws = {name: law[:count] for name, law in self.laws.items()}
@@ -62,26 +63,26 @@ class Problem:
             stated = accuracy_at(self.scene, accuracy, found["position"], laws, solves_rates=True)
         except NoReferenceError as error:
             raise AccuracyError(
-                "the car", f"has no equations to bound it by: {error}", "another car"
+                "the car", f"cannot be bounded without reference equations: {error}", "another car"
             ) from None
         if stated.blind is not None and stated.blind.any():
-            # A model at fault may place points where there is no pose: it is held to that of the others.
+            # A faulty model may place points where there is no pose: bounds at pointcoord's pose are used.
             places = {name: place[:count] for name, place in self._places().items()}
             if places:
                 stated = accuracy_at(self.scene, accuracy, places, laws, solves_rates=True)
-        assert stated.blind is not None  # of a stated accuracy it is known
+        assert stated.blind is not None  # always set for a stated accuracy
         if stated.blind.any():
             raise AccuracyError(
                 f"the pose at t = {self.scene.instants[np.argmax(stated.blind)]:.10g} s",
-                "leaves open on which side of a fold it is",
-                "poses that a model's rounding cannot bring to another assembly",
+                "does not determine on which side of a fold the pose is",
+                "poses that rounding in the model cannot move to another assembly",
             )
         numbers = self._per_second(asked_of(found, self.scene))
         claimed = replace(stated, claims=self._per_second(stated.claims), blind=None)
         return Solution(who, self.scene.instants[:count], numbers, claimed)
 
     def _places(self) -> Mapping[str, Array]:
-        """Where pointcoord places every point; nothing of a scene that it refuses."""
+        """Position of every point by pointcoord; empty if it refuses the scene."""
         try:
             return places_in(self.scene)
         except (FormulationError, SceneError):
@@ -100,10 +101,10 @@ class Problem:
 
 
 def asked_of(found: Numbers, scene: Scene) -> Numbers:
-    """What a scene asks for, of all that was found.
+    """The numbers in `found` that a scene asks for.
 
-    Numbers of the car of a quantity that is not found by its name are taken from `OF_CAR`, but for forces: a
-    rod may be called as a number of the car is.
+    If `found` has no such quantity, numbers of the car are taken from `OF_CAR`. Exception: forces, because a
+    rod may have the name of a number of the car.
     """
     asked: dict[str, dict[str, Array]] = {}
     for quantity, names in asked_numbers(scene).items():
@@ -115,10 +116,10 @@ def asked_of(found: Numbers, scene: Scene) -> Numbers:
 
 
 def require_the_drawn_car(scene: Scene, movement: Mapping[str, float]) -> None:
-    """Refuse a drawing that a model's own closing makes another car of, as pointcoord does with its own.
+    """Refuse a drawing that becomes a different car when the model closes it; pointcoord does likewise.
 
     Args:
-        movement: by how much closing moves each point, mm.
+        movement: how far closing the drawing moves each point, mm.
     Raises:
         SceneError: a point moves by more than is allowed.
     """
@@ -131,8 +132,7 @@ def require_the_drawn_car(scene: Scene, movement: Mapping[str, float]) -> None:
             scene.title or "scene",
             "mechanism.points",
             f"closing the drawing moves {point} by {movement[point]:.3g} mm: that is another car",
-            f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; draw the points that miss where they "
-            "belong",
+            f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; correct the points that miss",
         )
 
 
@@ -143,7 +143,7 @@ def extent(scene: Scene) -> float:
 
 
 def _slow_unit(laws: Mapping[str, Array], count: int) -> Array:
-    """A power of two at each instant, (N,), s: 1 unless all inputs are slower than SLOW."""
+    """The unit of time at each instant, a power of two, (N,), s: 1 unless all inputs are slower than SLOW."""
     fastest = np.zeros(count)
     for law in laws.values():
         for order in range(1, law.shape[-1]):

@@ -1,8 +1,8 @@
 """pointcoord as a formulation: by series, by Newton's method at instants, and as the paper prints it.
 
-A comparison sees no fault of either side that is smaller than what one of them leaves out on purpose. So a
-scene is solved as finely as rounding allows, however coarse its own tolerance, unless the formulation is made
-to solve as the scene asks. What is claimed is what was left out, whichever it was.
+A comparison cannot show a fault that is smaller than the truncation error of one side. So a scene is solved
+as finely as rounding allows, however coarse its own tolerance, unless the formulation is made with
+`as_asked`. The error bounds include the truncation error in both cases.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ from validate.formulations.protocol import Accuracy, FormulationError, Solution
 
 Array = NDArray[np.float64]
 
-UNKNOWN = 1e-9
+UNKNOWN = 1e-9  # relative rounding error of an input above which fewer than nine of its digits are known
 
 
 @dataclass(frozen=True)
 class PointCoordinates:
-    """pointcoord by one of its methods.
+    """pointcoord with one of its methods.
 
     Attributes:
         as_asked: whether to solve to the scene's own tolerance, as `simulate` does.
@@ -45,11 +45,11 @@ class PointCoordinates:
     as_asked: bool = False
 
     def solve(self, scene: Scene) -> Solution:
-        """Solve a scene; what it claims of its accuracy is proven, number by number (see `_claims`).
+        """Solve a scene; the error bound of each number is proven (see `_claims`).
 
         Raises:
-            FormulationError: pointcoord refuses the scene, or cannot bound the error of a number; but a fault
-                of the scene file itself is raised as it is.
+            FormulationError: pointcoord refuses the scene, or cannot bound the error of a number.
+            SceneError: the scene file itself is wrong.
         """
         try:
             motion = self._solved(scene)
@@ -62,19 +62,19 @@ class PointCoordinates:
         return self._solution(scene, motion)
 
     def _solved(self, scene: Scene) -> Motion:
-        """As finely as rounding allows."""
+        """The motion, solved as finely as rounding allows, or as the scene asks with `as_asked`."""
         fine = min(scene.tolerance, finest_tolerance(scene))
         if self.as_asked or fine == scene.tolerance:
             return simulate(scene, self.method)
         try:
             return simulate(scene.model_copy(update={"tolerance": fine}), self.method)
         except NotFollowed:
-            # A rough law may be followed to what the scene asks for and no further.
+            # A rough law may be solvable at the tolerance of the scene, but not at a finer one.
             return simulate(scene, self.method)
 
     def _solution(self, scene: Scene, motion: Motion) -> Solution:
         proof = motion.proof(rates=True)
-        # Numbers that nothing is known of would agree with anything: they are no answer here.
+        # A number without an error bound would agree with anything, so it is refused.
         _refuse_unproven(self.name, motion, proof, "pose", proof.bound + proof.carried_bound)
         uncertain = _uncertain_laws(scene, motion.times)
         return Solution(
@@ -95,19 +95,19 @@ class PointCoordinates:
     def _claims(
         self, motion: Motion, proof: Proof, quantity: str, uncertain: NDArray[np.bool_]
     ) -> dict[str, Array]:
-        """The proven error of each number, or the expected one where that is less.
+        """The error bound of each number: the smaller of the proven and the expected error.
 
-        The proof sees how far off a number is, whatever the reason: a fault of the method would widen its
-        own tolerance until it passed. So no more is claimed than the method loses where nothing is wrong; but
-        where an input's terms cancel until few of its digits are left, only the proof knows what that does.
+        The proven error includes any fault of the method, so a fault would widen its own tolerance until it
+        passed. The bound is therefore at most the error of a method without faults. Exception: if the terms
+        of an input cancel until few digits are left, only the proof includes the effect, and is used alone.
 
         Args:
-            uncertain: at which instants that is so, (N,).
+            uncertain: the instants of this exception, (N,).
         """
         claims: dict[str, Array] = {}
         expected = proof.expected[quantity]
         for name, proven in proof.proven[quantity].items():
-            # What is not a number has no error; the comparison finds it.
+            # NaN has no error; the comparison reports it.
             number = np.isfinite(motion.numbers[quantity][name])
             bound = np.where(number, proven, 0.0).reshape(len(number), -1).max(axis=-1)
             _refuse_unproven(self.name, motion, proof, f"{QUANTITIES[quantity].words} of {name}", bound)
@@ -125,7 +125,7 @@ class PointCoordinates:
 
 
 def _uncertain_laws(scene: Scene, times: Array) -> NDArray[np.bool_]:
-    """At which times fewer than nine digits are known of an input, in parts of its largest value, (N,)."""
+    """The times at which an input is known to fewer than nine digits of its largest value, (N,)."""
     uncertain = np.zeros(len(times), dtype=bool)
     for function in scene.functions.values():
         largest = float(np.abs(function.series(scene.instants, 0)).max())

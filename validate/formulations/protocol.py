@@ -1,4 +1,4 @@
-"""What a formulation is to a comparison: a name, and a way from a scene to plain arrays."""
+"""The interface of a formulation: a name, and a method that solves a scene into plain arrays."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ from pointcoord.scene.scene_file import Scene
 Array = NDArray[np.float64]
 
 NOTHING = 1e150
-"""Claimed where nothing can be said: wider than any number, and its square is finite."""
+"""The error bound of a number without a known bound: larger than any number, and its square is finite."""
 
 Numbers = Mapping[str, Mapping[str, Array]]
-"""By quantity, then by point, body or angle: (N, 3), or (N,) of what the car has one number of."""
+"""By quantity, then by point, body or angle: (N, 3), or (N,) for a number of the car."""
 
 
 Places = slice | NDArray[np.bool_] | NDArray[np.intp]
-"""Which instants of several."""
+"""A selection of instants."""
 
 
 def numbers_at(numbers: Numbers, places: Places) -> Numbers:
-    """Numbers at some of their instants."""
+    """Numbers at a selection of their instants."""
     return {q: {name: array[places] for name, array in of.items()} for q, of in numbers.items()}
 
 
 def shape_of(quantity: str, count: int) -> tuple[int, ...]:
-    """The shape of the numbers of a quantity at `count` instants: vectors but of what the whole car has."""
+    """The shape of a quantity's array at `count` instants: vectors, but scalars for numbers of the car."""
     return (count,) if QUANTITIES[quantity].of == "car" else (count, 3)
 
 
 class AccuracyError(ValueError):
-    """What a formulation claims of its accuracy is no bound of an error."""
+    """An error bound that a formulation returns is not valid as a bound."""
 
     def __init__(self, claim: str, problem: str, allowed: str) -> None:
         self.claim = claim
@@ -48,25 +48,25 @@ class AccuracyError(ValueError):
 
 @dataclass(frozen=True)
 class Accuracy:
-    """What a formulation says of its own accuracy: how far each of its numbers may be off, at most.
+    """The error bounds that a formulation returns with its numbers.
 
-    A comparison holds the difference of two formulations to the sum of what they claim (see `tolerance`). So
-    a claim must cover all that the formulation rounds and leaves out. It must also be no wider than what the
-    method should reach: a claim that followed the number's own error would let any fault pass.
+    The tolerance of a difference is the sum of the error bounds of both formulations (see `tolerance`). So a
+    bound must include all rounding and truncation. A bound must also be no wider than the error that the
+    method should reach: a bound that grew with the actual error would let any fault pass.
 
     Attributes:
         condition: condition number of the matrix that gives the rates, shape (N,).
-        claims: by quantity and name, each like the numbers that it is about, in their unit.
-        proven: whether the claims are proven bounds or estimates.
-        blind: where the claims are what an accuracy makes that was stated beforehand, at which instants they
-            say nothing, (N,); such claims may be as wide as they are, and elsewhere they test. None: how
-            much they test is judged by their width (see `comparison.tolerance`).
-        stated: how exactly it says beforehand that it places points, mm, if it does.
-        usual: by quantity, the most that its method loses of any number where nothing is wrong, (N,), if that
-            is known beside the claims: what is proven of a number may by chance be far less.
+        claims: error bounds by quantity and name, each in the shape and unit of its numbers.
+        proven: whether the error bounds are proven; otherwise they are estimates.
+        blind: for error bounds that follow from an accuracy stated beforehand: the instants at which this
+            accuracy gives no bound, (N,). At all other instants such bounds test, however wide they are.
+            None: the width of the bounds decides whether they test (see `comparison.tolerance`).
+        stated: accuracy of points that was stated beforehand, mm, if any.
+        usual: by quantity, the largest error of the method in any number where nothing is wrong, (N,), if
+            known apart from the bounds: the proven error of a number may by chance be far less.
     Raises:
-        AccuracyError: a claim is not a finite number from 0 up, has not the shape of its numbers, or is
-            about no quantity that there is.
+        AccuracyError: an error bound is not a finite number from 0 up, does not have the shape of its
+            numbers, or belongs to an unknown quantity.
     """
 
     condition: Array
@@ -77,7 +77,7 @@ class Accuracy:
     usual: Mapping[str, Array] = field(default_factory=dict)
 
     def at(self, places: Places) -> Accuracy:
-        """The same at some of its instants."""
+        """The accuracy at a selection of its instants."""
         if isinstance(places, slice) and places == slice(None):
             return self
         return replace(
@@ -89,7 +89,7 @@ class Accuracy:
         )
 
     def with_claims(self, claims: Numbers) -> Accuracy:
-        """The same with other claims of some quantities."""
+        """The accuracy with the error bounds of some quantities replaced."""
         return replace(self, claims={**self.claims, **claims})
 
     def __post_init__(self) -> None:
@@ -128,18 +128,18 @@ def _check_claim(what: str, claim: Array, shape: tuple[int, ...]) -> None:
 
 @dataclass(frozen=True, repr=False)
 class Solution:
-    """A solved scene as plain arrays; every quantity that it gives is an attribute too, such as `position`.
+    """A solved scene as plain arrays. Every quantity in it is also an attribute, such as `position`.
 
         Solution("mine", times, {"position": {"wheel_centre": places}}, Accuracy(np.ones(len(times))))
 
     Attributes:
-        formulation: who gives it.
-        times: shape (N,), s.
+        formulation: name of the formulation.
+        times: instants, shape (N,), s.
         numbers: by quantity (see `pointcoord.effects.registry.QUANTITIES`, which gives the units) and by
-            point, body or angle. What the scene does not ask for may be left out.
-        accuracy: how far each number may be off; what is not claimed of a number cannot be tested.
-        notes: what the formulation itself says of numbers that have no meaning.
-        faults: what it gives that cannot be used, and why, a line each.
+            point, body or angle. Numbers that the scene does not ask for may be left out.
+        accuracy: error bounds of the numbers; a number without an error bound cannot be tested.
+        notes: remarks of the formulation on numbers that have no meaning.
+        faults: one line for each part of the numbers that cannot be used, with the reason.
     """
 
     formulation: str
@@ -150,12 +150,12 @@ class Solution:
     faults: tuple[str, ...] = ()
 
     def at(self, places: Places) -> Solution:
-        """The same at some of its instants."""
+        """The solution at a selection of its instants."""
         numbers, accuracy = numbers_at(self.numbers, places), self.accuracy.at(places)
         return replace(self, times=self.times[places], numbers=numbers, accuracy=accuracy)
 
     def with_numbers(self, numbers: Numbers) -> Solution:
-        """The same with other numbers of some quantities."""
+        """The solution with the numbers of some quantities replaced."""
         return replace(self, numbers={**self.numbers, **numbers})
 
     def __getattr__(self, name: str) -> Mapping[str, Array]:
@@ -170,7 +170,7 @@ class Solution:
 
 
 class Formulation(Protocol):
-    """A way to solve a scene. Adding one is writing one class with these two members."""
+    """A way to solve a scene. A new formulation is a class with these two members."""
 
     @property
     def name(self) -> str:
@@ -181,13 +181,13 @@ class Formulation(Protocol):
         """Solve a scene at its instants.
 
         Raises:
-            FormulationError: the scene cannot be solved; carries the formulation's own error.
+            FormulationError: the scene cannot be solved; `reason` is the formulation's own error.
         """
         ...
 
 
 class FormulationError(Exception):
-    """A formulation refused a scene, with its own reason as the cause."""
+    """A formulation refused a scene; `reason` is its own error."""
 
     def __init__(
         self,
@@ -202,10 +202,10 @@ class FormulationError(Exception):
 
     @property
     def partial(self) -> Solution | None:
-        """What was solved before, at the first of the scene's instants; None if nothing, or not how well.
+        """The solution at the first instants, up to the refusal; None without any, or without error bounds.
 
-        Found when it is first asked for, if it was given as a function: what is claimed of it costs as much
-        as of a whole motion, and few who are refused want it.
+        If it was given as a function, it is computed on first use: error bounds cost as much as for a whole
+        motion, and are rarely wanted after a refusal.
         """
         if callable(self._partial):
             before, self._partial = self._partial, None

@@ -1,8 +1,8 @@
-"""The reference as a solution: at a scene's instants, in doubles, which are off by their rounding.
+"""The reference as a solution: at a scene's instants, rounded to doubles.
 
-A drawing need not be assembled, so the reference calls one unclear that is less than 1e-9 of its size from
-another assembly. Cars may be drawn so near to where two assemblies meet on purpose, and then their
-coordinates are exact. Whoever knows that asks for `exact_sides`.
+A drawing need not be assembled exactly. So the reference reports a drawing as unclear if another assembly is
+nearer than 1e-9 of its size. A car may be drawn near a pose where two assemblies meet on purpose, with exact
+coordinates; `exact_sides` then turns this check off.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from validate.reference.route import CLEAR
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]
 
-# The reference is proven to 60 digits of the greatest number of its kind; ten are left for what "greatest"
-# means.
+# The reference is proven to 60 digits of the greatest number of its kind; ten digits are a margin for the
+# estimate of this greatest number.
 DUST = 1e-50
 ANGLE = NUMBERS_OF_THE_CAR[ANGLES[0]].quantity.name
 DIGITS = 60
@@ -42,12 +42,12 @@ Inputs = Mapping[str, Sequence[float]]
 
 
 def inputs_at(scene: Scene, time: float) -> dict[str, tuple[float, ...]]:
-    """Every input's value, rate and acceleration at an instant, and more if the scene asks for jerks."""
+    """Value, rate and acceleration of every input at an instant, and higher derivatives if asked for."""
     return {name: tuple(law[0].tolist()) for name, law in laws_of(scene, np.array([time])).items()}
 
 
 def design_of(scene: Scene) -> Design:
-    """The scene's mechanism, as the reference takes it; its drawing is closed once for all its instants."""
+    """The scene's mechanism in the form of the reference; kept, so its drawing is closed only once."""
     return _design(json.dumps(scene.mechanism.plain(tuple(scene.inputs))))
 
 
@@ -62,32 +62,32 @@ def reference_instant(
     """The reference for a scene's car at given inputs, reached from the drawing.
 
     Args:
-        inputs: value, rate and acceleration of each, and as many more of its rates as are wanted of points.
-        exact_sides: whether the drawing is meant as it is, however near it is to another assembly.
+        inputs: value, rate and acceleration of each input, and higher derivatives as far as points need them.
+        exact_sides: whether the drawing is exact, however near it is to another assembly.
     Raises:
-        NoReferenceError: there is no pose, or none can be proven.
+        NoReferenceError: there is no pose, or no pose can be proven.
     """
     return next(instants_of(design_of(scene), [inputs], digits, _clearness(exact_sides), effects_of(scene)))
 
 
 def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = False) -> list[Instant]:
-    """The reference at instants of a scene's motion, in this order: each is reached from the one before.
+    """The reference at instants of a scene's motion; each pose is reached from the one before.
 
     Raises:
-        NoReferenceError: an instant has no pose, or none can be proven.
+        NoReferenceError: an instant has no pose, or no pose can be proven.
     """
     inputs = (inputs_at(scene, time) for time in times)
     return list(instants_of(design_of(scene), inputs, DIGITS, _clearness(exact_sides), effects_of(scene)))
 
 
 def effects_of(scene: Scene) -> tuple[str, ...]:
-    """The numbers of the car that the reference is asked for: what the scene asks for, and the angles."""
+    """The numbers of the car to compute: those that the scene asks for, and always the angles."""
     asked = [name for names in _numbers_of_the_car(scene).values() for name in names]
     return tuple(name for name in dict.fromkeys((*ANGLES, *asked)) if name.rpartition(".")[2] in EFFECTS)
 
 
 def _numbers_of_the_car(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """By quantity, in which angles are though nobody asks for them."""
+    """The names of the numbers of the car by quantity, without forces; the angles always included."""
     asked = {q: names for q, names in asked_numbers(scene).items() if QUANTITIES[q].of == "car"}
     asked = {quantity: names for quantity, names in asked.items() if not is_force(quantity)}
     return asked | {ANGLE: tuple(dict.fromkeys((*ANGLES, *asked.get(ANGLE, ()))))}
@@ -97,7 +97,7 @@ def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
     """The reference at a scene's instants, rounded, in the form that `compare_solutions` takes.
 
     Raises:
-        NoReferenceError: an instant has no pose, or none can be proven.
+        NoReferenceError: an instant has no pose, or no pose can be proven.
     """
     return as_solution(scene, reference_motion(scene, scene.instants.tolist(), exact_sides))
 
@@ -109,12 +109,13 @@ def _clearness(exact_sides: bool) -> float:
 def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None = None) -> Solution:
     """The reference at the instants of a scene, or at other times, rounded to doubles.
 
-    Numbers that are zero up to the reference's own proven error, which it claims, are zero: the middles of
-    its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out; any other
-    number of the car is none there, NaN: the wheels are not steered to one side, a centre is at infinity.
+    A number smaller than the reference's proven error is set to zero, and its error bound is that error: the
+    midpoints of intervals about 0 are some 1e-170. An angle that is missing at one instant is left out of the
+    solution. Any other number of the car is NaN where it is missing: the wheels are not steered to one side,
+    or a centre is at infinity.
     """
     times, first = scene.instants if times is None else times, instants[0]
-    told = [
+    present = [
         number.name
         for number in numbers_of(design_of(scene), effects_of(scene))
         if all(number.name in i.effects for i in instants)
@@ -135,7 +136,7 @@ def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None =
         forces = (name for name in rows[0] if all(name in row for row in rows))
         numbers[quantity] = {n: np.array([row[n] for row in rows], dtype=float) for n in forces}
     for quantity, names in _numbers_of_the_car(scene).items():
-        there = [name for name in names if name in told]
+        there = [name for name in names if name in present]
         numbers[quantity] = {n: np.array([float(i.effects.get(n, nan)) for i in instants]) for n in there}
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
     swept = {
@@ -150,7 +151,7 @@ def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None =
 
 
 def scales(numbers: Numbers) -> dict[str, float]:
-    """The greatest number of each kind; of an acceleration the parts that cancel count, speed^2 / size."""
+    """The greatest number of each kind; for accelerations with terms that may cancel, speed^2 / size."""
     corners = np.stack(list(numbers["position"].values()))
     size = float((corners.max(axis=0) - corners.min(axis=0)).max())
     fastest, hardest = _largest(numbers["velocity"]), _largest(numbers["acceleration"])
@@ -180,14 +181,15 @@ def _rounded(rows: Sequence[Mapping[str, Any]], names: Iterable[str]) -> Arrays:
 
 
 def off_by(found: float, exact: Any) -> float:
-    """How far a double is from a number of the reference, rounded once."""
+    """The distance of a double from a number of the reference, rounded once."""
     return float(abs(as_fraction(exact, "number") - Fraction(float(found))))
 
 
 def told_by(reference: Solution, scene: Scene) -> dict[str, tuple[str, ...]]:
-    """What the scene asks for, by quantity, without what the reference has not at every instant.
+    """The names that the scene asks for, by quantity, as far as the reference has them at every instant.
 
-    An angle that it leaves out is 0/0 there, or half a turn, where its sign has no meaning.
+    An angle that the reference leaves out is 0/0 at some instant, or half a turn, where its sign has no
+    meaning.
     """
     given = reference.numbers
     return {

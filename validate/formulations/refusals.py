@@ -1,7 +1,7 @@
-"""Why a formulation refuses a scene: the kind of reason, so that two refusals can be compared, and its data.
+"""Refusals of scenes by formulations: the kind of reason, so that two refusals can be compared, and the data.
 
-A refusal says which formulation refused, with which error, at which instant, for which input, its value and
-its limit; what the error does not know is None.
+A refusal states the formulation, the error, the instant, the input, its value and its limit; data that the
+error does not have are None.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ START = "start out of reach"
 MOTION = "motion leaves its reach"
 INPUT = "input out of range"
 
-# Two models may notice the same thing at different places: a drawing while it is checked or while it is
-# assembled, the end of the reach on the way to the first instant or after it.
+# Two models may find the same fault at different stages: a wrong drawing when it is checked or when it is
+# assembled; the end of the reach before or after the first instant.
 FAMILIES = ({DRAWING, HARDPOINTS}, {START, MOTION})
 
 KINDS: Mapping[str, str] = {
@@ -31,11 +31,11 @@ KINDS: Mapping[str, str] = {
     "InputOutOfRange": INPUT,
     "InputError": INPUT,
 }
-"""Of errors by the names of their classes: without Pinocchio there is no module of absolute to ask."""
+"""Kinds of reason by the name of the error's class: without Pinocchio, absolute cannot be imported."""
 
 
 def why_refused(error: FormulationError) -> str:
-    """The kind of reason of a refusal; the name of its error where that is of no kind."""
+    """The kind of reason of a refusal; the name of the error's class if it has no kind."""
     return _class_of(error.reason)
 
 
@@ -49,32 +49,33 @@ def _class_of(reason: Exception) -> str:
     if isinstance(reason, NoAnswer) and reason.name:
         return HARDPOINTS if reason.value is None else INPUT
     if isinstance(reason, NoAnswer) or "PoseError" in names:
-        # What cannot be solved at an instant, or in the drawing.
+        # A pose that cannot be solved, at an instant or, without an instant, in the drawing.
         instant = getattr(reason, "instant", None)
         return DRAWING if instant is None else START if instant == 0 else MOTION
     return found or type(reason).__name__
 
 
 def same_reason(first: str, second: str) -> bool:
-    """Whether two kinds of reason say the same thing about a scene."""
+    """Whether two kinds of reason are the same fault of a scene."""
     return first == second or any({first, second} <= family for family in FAMILIES)
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why a formulation does not answer for a scene.
+    """Why a formulation refuses a scene.
 
     Attributes:
-        formulation: its name.
-        error: the class of its error. reason: the kind of reason.
-        message: in its own words, on one line.
-        instant: of the scene, s.
-        input: which input, or which key of the scene, is at fault.
-        value: what it was to be there, rad or mm.
+        formulation: name of the formulation.
+        error: class of its error.
+        reason: kind of reason.
+        message: message of the error, on one line.
+        instant: instant of the scene, s.
+        input: the input, or the key of the scene, at fault.
+        value: its required value, rad or mm.
         limit: the last value that could be reached, or what is allowed in words.
-        inputs, reached: all inputs as wanted and as reached.
+        inputs, reached: values of all inputs, required and reached.
         condition: condition number at the last pose that could be solved.
-        links: what holds each other there, the strongest first.
+        links: the links that block each other there, the strongest first.
     """
 
     formulation: str
@@ -116,7 +117,7 @@ def refusal_of(formulation: str, reason: Exception, scene: Scene) -> Refusal:
 
 
 def _instant(reason: Exception, scene: Scene) -> float | None:
-    """The time of a refusal; errors of the models in Pinocchio count the instants."""
+    """The time of a refusal, s; errors of some models give the number of the instant instead."""
     instant = getattr(reason, "instant", None)
     if isinstance(instant, Integral):
         times = scene.instants
@@ -125,7 +126,7 @@ def _instant(reason: Exception, scene: Scene) -> float | None:
 
 
 def _at_fault(reason: Exception, wanted: Mapping[str, float], reached: Mapping[str, float]) -> str:
-    """The input or key at fault; of several inputs the one that lacks the largest part of its value."""
+    """The input or key at fault; of several inputs the one with the largest relative shortfall."""
     named = getattr(reason, "reduce", "") or getattr(reason, "name", "") or getattr(reason, "key", "")
     if named:
         return str(named)

@@ -33,25 +33,25 @@ _POINT_COORDINATES: dict[str, Formulation] = {
 }
 
 WORDS = {
-    "pointcoord": "point coordinates, by a chain of power series in time, or by a map where that is too long",
-    "pointcoord-map": "the same by a map: series in the inputs, proven in patches along their way",
-    "pointcoord-newton": "point coordinates, by Newton's method at each instant, as the paper does",
-    "pointcoord-newton-cold": "the same with each instant by itself, from the drawing",
-    "pointcoord-chord": "the same with one factorisation kept for many instants",
-    "pointcoord-as-asked": "the first again, only as fine as the scene's tolerance asks",
-    "printed": "the same with the paper's formulas as printed, some of which are wrong",
+    "pointcoord": "point coordinates, by a chain of power series in time, or a map if the chain is too long",
+    "pointcoord-map": "point coordinates, by a map: series in the inputs, proven in patches along their path",
+    "pointcoord-newton": "point coordinates, by Newton's method at each instant, as in the paper",
+    "pointcoord-newton-cold": "as pointcoord-newton, but each instant starts from the drawing",
+    "pointcoord-chord": "as pointcoord-newton, but one factorisation serves many instants",
+    "pointcoord-as-asked": "as pointcoord, but only to the tolerance of the scene",
+    "printed": "as pointcoord-newton, with the paper's formulas as printed, some of which are wrong",
     "absolute": "poses of rigid bodies (absolute coordinates), with Pinocchio",
     "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",
-    "mujoco": "the same suspension in MuJoCo, an outside witness",
-    "exudyn": "the same suspension in Exudyn, another one",
+    "mujoco": "a tree of joints with loop closures, in MuJoCo, an independent program",
+    "exudyn": "a tree of joints with loop closures, in Exudyn, an independent program",
     "reference": "exact equations in balls of many digits, rounded to doubles; some hundred times slower",
 }
-"""Every formulation by its name, in words."""
+"""Description of every formulation, by name."""
 
 NAMES = tuple(WORDS)
 
 OUTSIDE = ("mujoco", "exudyn")
-"""Other people's programs, which the extra `peers` brings."""
+"""Formulations that use programs of others; the extra `peers` installs the programs."""
 
 
 MODELS = {
@@ -63,15 +63,15 @@ PROGRAMS = {
     "mujoco": "validate.peers.in_mujoco.InMujoco",
     "exudyn": "validate.peers.in_exudyn.InExudyn",
 }
-"""What makes a linkage a model of a program."""
+"""Class of each program's model of a linkage."""
 
 
 def formulation(name: str) -> Formulation:
-    """A formulation by its name; what it needs is imported when it is used.
+    """A formulation by its name; the packages that it needs are imported now.
 
     Raises:
         UsageError: no formulation has this name.
-        MissingLibrary: a package that it needs is not installed, or does not load.
+        MissingLibrary: a package that the formulation needs is not installed, or does not load.
     """
     if name in _POINT_COORDINATES:
         return _POINT_COORDINATES[name]
@@ -91,7 +91,7 @@ def formulation(name: str) -> Formulation:
 
 
 def program_of(name: str) -> Callable[[Linkage], Program]:
-    """What makes a linkage a model of a program: `relative`, or one of `OUTSIDE`.
+    """The class of a program's model of a linkage, for `relative` or one of `OUTSIDE`.
 
     Raises:
         MissingLibrary: the program is not installed, or does not load.
@@ -106,9 +106,9 @@ def _imported(path: str) -> Any:
 
 
 def second_there() -> tuple[str, str]:
-    """What stands beside pointcoord where nobody names a second one, and why it is not the absolute model.
+    """The default second formulation, and the reason if it is not the absolute model.
 
-    There are systems that Pinocchio is not built for; the programs in `OUTSIDE` are, and the reference needs
+    Pinocchio is not built for all operating systems. The programs in `OUTSIDE` are, and the reference needs
     none of them.
     """
     why = ""
@@ -123,7 +123,7 @@ def second_there() -> tuple[str, str]:
 
 
 def missing(names: Iterable[str]) -> dict[str, str]:
-    """Those of some formulations that need a package which is not there, and what to say of each."""
+    """The formulations among `names` whose packages are not installed, each with the message."""
     lacking: dict[str, str] = {}
     for name in dict.fromkeys(names):
         try:

@@ -1,32 +1,32 @@
-r"""What an accuracy that a model or a solver states, in mm, makes of each number that it gives.
+r"""Error bounds of all numbers of a model or solver, from its stated accuracy of points, in mm.
 
-The one way in which what proves nothing gets error bounds: the model in Pinocchio, the trees of joints, other
-people's programs and users' solvers each state how exactly they place points, and all else follows.
+This is the only source of error bounds for formulations that prove nothing: the model in Pinocchio, the trees
+of joints, outside programs and users' solvers. Each states the accuracy of its points.
 
-A solver of accuracy e answers for a pose whose points are off by up to e in every coordinate. At such a pose
-y + dy the equations of the many-digit reference, C(y, t) = 0, are missed by up to
+A solver of accuracy e returns a pose whose points are off by up to e in every coordinate. The residual of the
+equations of the many-digit reference, C(y, t) = 0, at such a pose y + dy is at most
 
-    rho_i = e sum_k |sum_j C'_ij dy_j/dx_k|
+    rho_i = e sum_k |sum_j C'_ij dy_j/dx_k|,
 
-over the coordinates x_k of the points that the unknowns y_j are read from: the reader is differentiated, so
-a body whose matrix is read from three points is off by what these make of it together. Of a link that is its
-length missed by e to sqrt(3) e at each end, of a joint its two halves apart by as much, of a body its shape.
-A solver that stops there, however it goes about it, is a car whose lengths are off, or whose joints gape, by
-as much. With links alone the toe of a double wishbone would be held 2.5 times closer, but that says nothing
-of a solver that places bodies.
+with the coordinates x_k of the points from which the unknowns y_j are read. The reading is differentiated, so
+the error of a body whose matrix is read from three points includes the errors of all three. For a link rho
+is a length error of e to sqrt(3) e at each end, for a joint a gap of this size, for a body an error of its
+shape. The solver's answer is the exact pose of a car whose lengths are off, or whose joints have gaps, by as
+much. With links alone the toe of a double wishbone would have a tolerance 2.5 times smaller, but this
+tolerance would not apply to a solver that places bodies.
 
-What that makes of the motion follows from C(y, t) = delta with a constant delta, |delta_i| <= rho_i:
+The effect on the motion follows from C(y, t) = delta with a constant delta, |delta_i| <= rho_i:
 
     C' dy   = delta,      C' dy'  = -(C')' dy,      C' dy'' = -2 (C')' dy' - (C')'' dy,
 
-with the rates of C' along the motion, and of every number q(y, y', y'') by its own derivative. The worst
-signs are taken: the sum over the rows i of |dq / d delta_i| rho_i. All of this is the reference's own text of
+with the rates of C' along the motion, and for every number q(y, y', y'') from its own derivative. The signs
+are the worst: the sum over the rows i of |dq / d delta_i| rho_i. All of this uses the reference's own code of
 its equations (`residual`, `jacobian`, `points_of`, `body_turns`, the angles), evaluated with dual numbers of
-arrays instead of balls: a tolerance needs no 60 digits.
+arrays instead of balls: a tolerance does not need 60 digits.
 
 A number is also read from points that are themselves off by e, on bodies that turn with |omega| <= W and
-|alpha| <= A (V, B: the largest speed and acceleration against the chassis, L: the car's size, for what moves
-without turning; what the chassis adds to every point alike turns nothing):
+|alpha| <= A. V and B are the largest speed and acceleration relative to the chassis, and L is the car's size,
+for bodies that move without turning; the motion that the chassis adds to every point alike turns no body:
 
     position                e
     velocity                e_1 = sqrt(3) e (W + V / L)
@@ -35,22 +35,23 @@ without turning; what the chassis adds to every point alike turns nothing):
     turning of a body       2 e_1 / h and 2 e_2 / h, h the least height of the triangle of its three points
     an angle                both ends of its line off by e, through the line's length
 
-and each is rounded once where it is handed over, and once where the chassis' part of it is added.
+and each number is rounded once when it is returned, and once when the part of the chassis is added.
 
-Of a model that is known to solve equations for its rates, these equations are missed as well: those of the
-order k by e_k / e times as much as those of the pose, as if delta changed. Of the order d that makes
+Some models are known to solve equations for their rates. These equations then have a residual as well: for
+the order k it is e_k / e times the residual of the pose, as if delta changed. For the order d this adds
 
     sum_k C(d, k) (e_k / e) |dp^(d-k)|,      k = 1 .. d,
 
-with dp^(j) what missing the equations by a constant delta makes of the order j of a point; and likewise of
-the rates of the numbers of the car.
+with dp^(j) the effect of a constant delta on the derivative of order j of a point. The rates of the numbers
+of the car are treated likewise.
 
-The derivatives are those of the pose itself. Within the reach of delta the Jacobian changes; with
-r = |sum_i |C'^-1 dC'_i||, the largest relative change (maximum norm), it may lose so much that a first order
-is too little: near a fold y ~ sqrt(d) and d ~ delta, where r = delta / (2 d), the derivatives of position,
-velocity and so on grow by (1 - 2 r) to the power -1/2, -3/2 and so on. By the mean value theorem these
-factors cover the rest. At r = 1/2 the pose may be beyond the fold, or another one (as in Kantorovich's
-condition for Newton's method): from LIMIT on the accuracy says nothing of that instant, and it is not tested.
+These derivatives hold at the pose itself. Within +-delta the Jacobian changes; let
+r = |sum_i |C'^-1 dC'_i|| be the largest relative change (maximum norm). A first-order estimate may then be
+too small. Near a fold, where an input reaches an extreme, y ~ sqrt(d) and d ~ delta, where r = delta / (2 d):
+the derivatives of position, velocity and so on grow by (1 - 2 r) to the power -1/2, -3/2 and so on. By the
+mean value theorem these factors cover the higher orders. At r = 1/2 the pose may be beyond the fold, or in
+another assembly (as in Kantorovich's condition for Newton's method). From LIMIT on the accuracy gives no
+bound at the instant, and the instant is not tested.
 """
 
 from __future__ import annotations
@@ -96,18 +97,18 @@ from validate.reference.vectors import Scalar, Vector, each
 
 Array = NDArray[np.float64]
 
-LIMIT = 0.45  # of r: beyond it a first order says nothing of the pose
-FLATTEST = 1e-3  # of the size: beside a triangle that is flatter a solver takes other points of the body
-OFF_THE_POSE = 1e-6  # of the size: a pose that the reference's equations move by more is none of theirs
-MOST_STEPS = 8  # of Newton's method, which doubles its digits
-AT_ONCE = 1024  # instants: a matrix of each row's change of the Jacobian is held for each
+LIMIT = 0.45  # of r: above it a first-order estimate gives no bound
+FLATTEST = 1e-3  # least height of a body's triangle / size: a solver would use other points of a flatter body
+OFF_THE_POSE = 1e-6  # of the size: if Newton's step is larger, the reference has no pose near the points
+MOST_STEPS = 8  # of Newton's method, which doubles the digits in each step
+AT_ONCE = 1024  # instants in a block: each needs a matrix for each row's change of the Jacobian
 ROOT_3 = sqrt(3.0)
 Way = tuple[str, str | None]
-"""The prefix of a part, and what derivatives are taken by in it."""
+"""The prefix of a part of the mechanism, and the input or time by which derivatives are taken."""
 
 
 def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
-    """What a solver of an accuracy, mm, may be off by in a scene, at pointcoord's poses of it.
+    """Error bounds of a solver with a stated accuracy, mm, in a scene, at pointcoord's poses.
 
     Raises:
         FormulationError: the scene cannot be solved.
@@ -116,7 +117,7 @@ def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
 
 
 def places_in(scene: Scene) -> Mapping[str, Array]:
-    """Where pointcoord places every point of a scene, (N, 3), mm.
+    """Position of every point of a scene by pointcoord, (N, 3), mm.
 
     Raises:
         FormulationError: the scene cannot be solved.
@@ -133,14 +134,13 @@ def accuracy_at(
     laws: Mapping[str, Array],
     solves_rates: bool = False,
 ) -> Accuracy:
-    """The same at poses that are solved already.
+    """Error bounds of a solver with a stated accuracy, at poses that are already solved.
 
     Args:
-        accuracy: mm; of each instant, (N,), or of all.
-        places: where every point is, (N, 3), mm.
-        laws: every input with its time derivatives, (N, orders); of poses alone these are 0.
-        solves_rates: whether rates are known to be solved from equations, which are missed as those of the
-            pose are.
+        accuracy: mm, for each instant, (N,), or one for all.
+        places: position of every point, (N, 3), mm.
+        laws: every input with its time derivatives, (N, orders); zero derivatives for poses alone.
+        solves_rates: whether the rates are known to be solved from equations, whose residual is then added.
     """
     design = Design.from_plain(scene.mechanism.plain(tuple(scene.inputs)))
     held = _Held(scene, design, solves_rates)
@@ -150,7 +150,7 @@ def accuracy_at(
     for low in range(0, count, AT_ONCE):
         some = slice(low, low + AT_ONCE)
         at = {name: place[some] for name, place in places.items()}
-        # At a pose that is none, numbers of which nothing is said may divide by nothing.
+        # At instants without a pose the numbers, which get no bound, may divide by zero.
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             parts.append(held.at(off[some], at, {name: law[some] for name, law in laws.items()}))
     claims = {
@@ -166,11 +166,11 @@ def accuracy_at(
 
 @dataclass(frozen=True)
 class _Motion:
-    """A motion through the poses, and what missing each equation makes of it.
+    """A motion through the poses, and the effect of a residual of each equation on it.
 
     Attributes:
-        rates: the unknowns with their derivatives, arrays (N,).
-        off: likewise, duals whose slopes are by row, (rows, N).
+        rates: the unknowns with their time derivatives, arrays (N,).
+        off: the same as duals, with slopes by the residual of each row, (rows, N).
     """
 
     known: Known
@@ -179,18 +179,19 @@ class _Motion:
 
     @classmethod
     def of(cls, known: Known, values: Sequence[Array], inverse: Array, missed: Array) -> _Motion:
-        """From the poses, the inverse of C' there, and by how much each equation is missed, (N, rows)."""
+        """From the poses, the inverse of C' there, and the residual of each equation, (N, rows)."""
         rates = with_rates(values, known, by_doubles(inverse))
-        # Missing a row by delta moves the unknowns by a column of the inverse.
+        # A residual of one row moves the unknowns along a column of the inverse.
         slopes = motion_of_a_miss(np.einsum("nij,nj->ijn", inverse, missed), rates, inverse, known)
         return cls(known, rates, with_slopes(rates, slopes))
 
 
 class _Held:
-    """A car whose points are off by a little.
+    """A car whose points are slightly off.
 
     Attributes:
-        size: of the car in units of the design. heights: of the bodies' points, likewise.
+        size: size of the car, in units of the design.
+        heights: greatest of the least heights of the triangles of a body's points, by body, in these units.
     """
 
     def __init__(self, scene: Scene, design: Design, solves_rates: bool) -> None:
@@ -202,7 +203,7 @@ class _Held:
         known = [name for name in asked_of_the_car(scene) if name.rpartition(".")[2] in EFFECTS]
         self.of_car = numbers_of(design, known)
         needs = {(p, need) for number in self.of_car for p in number.corners for need in number.effect.needs}
-        # Each point has columns of its own: only those that a number is made of.
+        # Each point needs its own columns, so only points that enter a number are kept.
         whole = {prefix: drawn_car(design, float, prefix) for prefix, _ in sorted(needs)}
         self.drawn = {
             prefix: replace(
@@ -222,7 +223,7 @@ class _Held:
         }
 
     def at(self, accuracy: Array, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
-        """The claims at some instants, from where every point is, (N, 3), mm, and the inputs."""
+        """The error bounds at some instants, from the positions of all points, (N, 3), mm, and inputs."""
         off = accuracy / self.unit
         known = known_in_doubles(self.design, laws, len(off))
         still = values_only(known)
@@ -234,7 +235,7 @@ class _Held:
         orders = range(known.derivatives + 1)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in orders]
         ways = {(prefix, number.effect.along) for number in self.of_car for prefix in number.corners}
-        # The derivatives by an input are the rates of a motion that drives it alone, at 1 a unit of time.
+        # Derivatives by an input are the rates of a motion with this input at rate 1 and all others at rest.
         along = {
             (prefix, way): motion
             if way == TIME
@@ -251,7 +252,7 @@ class _Held:
         return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
 
     def _driven_along(self, prefix: str, along: str, laws: Mapping[str, Array]) -> Known:
-        """The inputs where they are, and one that moves; a slide by the design's own lengths."""
+        """All inputs at their values, with one moving at rate 1; a rack at one unit of the design."""
         held = {n: np.stack([law[:, 0], np.zeros(len(law))], axis=-1) for n, law in laws.items()}
         driver = held[drivers(self.design, prefix)[along]]
         driver[:, 1] = self.unit if along == RACK else 1.0
@@ -260,9 +261,9 @@ class _Held:
     def _pose(
         self, places: Mapping[str, Array], known: Known
     ) -> tuple[list[Array], Array, Array, NDArray[np.bool_]]:
-        """The unknowns, the inverse of their Jacobian, it, and where the equations have no pose nearby.
+        """The unknowns, the inverse of their Jacobian, the Jacobian, and the instants without a pose nearby.
 
-        A model at fault has its points elsewhere, and is held to the right pose, a few Newton steps away.
+        The points of a faulty model are off; the bounds hold at the right pose, a few Newton steps away.
         """
         local = local_places(self.design, places, known)
         count = len(next(iter(places.values())))
@@ -275,7 +276,7 @@ class _Held:
             blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
             values = values + step
             matrix = jacobian_of(list(values), known)
-            # Where a last step changes the Jacobian so much, doubles cannot tell the pose.
+            # Where a step changes the Jacobian so much, doubles do not determine the pose.
             blind |= ~(np.abs(inverse @ (matrix - before)).sum(axis=-1).max(axis=-1) < LIMIT)
             if not blind.any():
                 break
@@ -285,7 +286,7 @@ class _Held:
         return list(values), inverse_of(matrix), matrix, blind
 
     def _missed(self, places: Mapping[str, Array], matrix: Array, known: Known) -> Array:
-        """By how much points that are off by 1 in each coordinate miss each equation, (N, rows).
+        """Residual of each equation if points are off by 1 in each coordinate, (N, rows).
 
         With the worst signs, in local lengths.
         """
@@ -303,12 +304,14 @@ class _Held:
     def _per_length(
         self, points: Mapping[str, Vector], turns: Mapping[str, Sequence[Vector]], count: int, orders: int
     ) -> list[Array]:
-        """What a point that is off by 1 makes of its own place and its derivatives, each (N,), beside it.
+        """Error of a place read from a point that is off by 1, and of its derivatives e_d / e, each (N,).
 
-        Of a rotation R with R' = Omega R, |R^(d+1)| <= sum_k C(d, k) |Omega^(k)| |R^(d-k)|.
+        For a rotation R with R' = Omega R, |R^(d+1)| <= sum_k C(d, k) |Omega^(k)| |R^(d-k)|.
 
         Args:
-            points: of jets of at least so many orders. turns: of every body, likewise. count: N.
+            points: of jets with at least `orders` derivatives.
+            turns: angular velocity and so on of every body, as many.
+            count: N.
         """
         found, turned, spins = [np.ones(count)], [np.ones(count)], list[Array]()
         base = points[self.design.plain["bodies"][CHASSIS][0]]
@@ -330,11 +333,11 @@ class _Held:
 
         @cache
         def moved(name: str, order: int) -> Array:
-            """What missing the equations by a constant makes of a derivative of a point."""
+            """Error of a derivative of a point from a constant residual of the equations."""
             return _off(part_of(points[name], order), count) * growth[order][:, None]
 
         def solved_for(name: str, order: int) -> Array | float:
-            """What missing those of rates makes of it."""
+            """Further error of the derivative from the residual of the equations for rates."""
             orders = range(1, order + 1) if self.solves else ()
             return sum(comb(order, k) * per_length[k][:, None] * moved(name, order - k) for k in orders)
 
@@ -348,7 +351,7 @@ class _Held:
             if d >= len(growth):
                 continue  # the inputs' own derivatives are not known so far
             if of == "point":
-                # Once where it is handed over, and once where the chassis' part of it is added.
+                # Rounded once when the number is returned, and once when the part of the chassis is added.
                 added = UNIT_ROUNDOFF * np.abs(values_of(part_of(chassis, d), count)) if d else far
                 claims[quantity] = {
                     n: self.unit
@@ -380,9 +383,7 @@ class _Held:
         growth: Sequence[Array],
         along: Mapping[tuple[str, str], _Motion],
     ) -> dict[str, Array]:
-        """Of every number of the car: what the pose makes of it, and the points that it is made of, which are
-        off themselves.
-        """
+        """Error bounds of the numbers of the car, from the error of the pose and of the points of each."""
         places = [jet.value for jet in motion.off]
         cars: dict[Way, Car] = {
             (p, None): self._car(p, off, places, motion.known, growth) for p in self.drawn
@@ -401,7 +402,7 @@ class _Held:
             effect = number.effect
             value = effect.evaluate(*(cars[prefix, effect.along] for prefix in number.corners))
             claim = np.abs(slope_of(value)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(value))
-            # A number that does not exist here is a rounding over a rounding to a model that gives one.
+            # Where a number does not exist (0/0), a model may still give a quotient of rounding errors.
             found[number.name] = np.where(np.isfinite(claim), self.unit**effect.power * claim, NOTHING)
         return found
 
@@ -414,9 +415,9 @@ class _Held:
         growth: Sequence[Array],
         per_length: Array | None = None,
     ) -> Car:
-        """A part's car, each of whose points is off by itself; where it moves, that moves it otherwise too.
+        """A part's car, with each point off independently; if the car moves, the rates of points are off too.
 
-        The points of all parts have columns, so that numbers can be made of two.
+        The points of all parts have columns, so that a number can combine two parts.
         """
         places = tuple(dict.fromkeys(name for drawn in self.drawn.values() for name in drawn.points))
         bodies = [self.design.role(f"{one}{KNUCKLE}") for one in self.drawn]
@@ -424,7 +425,7 @@ class _Held:
         count = 3 * (len(places) + 2 * len(bodies))
 
         def apart(place: Vector, number: int, off: Array, rate: Array) -> Vector:
-            """A point, or a line of a body, off by so much in each coordinate, and its slopes likewise."""
+            """A point, or a line of a body, off by `off` in each coordinate, and its rate by `rate`."""
             own = partial(_with_own, first=3 * number, count=count)
             if per_length is None:
                 return own(place, off, growth=growth[0])
@@ -440,7 +441,7 @@ class _Held:
         turns = per_length is not None and body in self.design.mechanism.frames
         first = len(places) + 2 * bodies.index(body)
         for i, line in enumerate(known.equations.frame_of(pose, body) if turns else (), first):
-            # A body turns by what its points are off over its least height, at both ends.
+            # A body turns by the error of its points / its least height, at both ends.
             length = 2.0 * _lengths(values_of(each(value_of, line), len(off))) / self.heights[body]
             lines.append(apart(line, i, off * length, rate * length))
         frame = (lines[0], lines[1]) if lines else None
@@ -449,7 +450,7 @@ class _Held:
 
 
 def _height(a: Array, b: Array, c: Array) -> float:
-    """The least height of a triangle; 0 of three points at one place."""
+    """The least height of a triangle; 0 if its three points coincide."""
     area = float(np.linalg.norm(np.cross(b - a, c - a)))
     longest = max(float(np.linalg.norm(side)) for side in (b - a, c - a, c - b))
     return area / longest if longest > 0.0 else 0.0
@@ -471,7 +472,7 @@ def _change(motion: _Motion, inverse: Array) -> Array:
 
 
 def _with_missed_rates(unknown: Dual, per_length: Array) -> Dual:
-    """With as many further slopes, of the rate alone: equations for rates are missed likewise."""
+    """With as many further slopes, of the rate alone: effects of residuals of the equations for rates."""
     value, rate = unknown.value, unknown.slope
     missed = [
         np.concatenate(both)
@@ -481,7 +482,7 @@ def _with_missed_rates(unknown: Dual, per_length: Array) -> Dual:
 
 
 def _with_own(place: Vector, off: Array, first: int, count: int, growth: Array) -> Vector:
-    """A point with `count` further slopes: each coordinate off by so much, from the number `first` on."""
+    """A point with `count` further slopes; the slopes of its coordinates, `off`, begin at number `first`."""
     coordinates = []
     for axis, coordinate in enumerate(place):
         value = np.broadcast_to(value_of(coordinate), growth.shape)
@@ -496,7 +497,7 @@ def _with_own(place: Vector, off: Array, first: int, count: int, growth: Array) 
 
 
 def _off(vector: Vector, count: int) -> Array:
-    """The sum of the slopes' sizes, (N, 3)."""
+    """The sum of the absolute values of the slopes, (N, 3)."""
     return np.stack([np.broadcast_to(np.sum(np.abs(slope_of(x)), axis=0), count) for x in vector], axis=-1)
 
 

@@ -1,6 +1,6 @@
-"""The mechanism as a tree of joints with loops, in Pinocchio (relative coordinates) and in outside programs.
+"""The mechanism as a tree of joints with loops, in Pinocchio (relative coordinates), MuJoCo and Exudyn.
 
-MuJoCo and Exudyn are outside witnesses, which share no mechanics with any of ours.
+MuJoCo and Exudyn are independent programs: their mechanics share nothing with our models.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from validate.peers.motion import Poses
 from validate.peers.motion import numbers as numbers_of
 from validate.peers.program import Program
 
-# Rad and car sizes: far above rounding, and its square far below. A correction that small leaves none.
+# Of Newton corrections, in rad and car sizes. It is far above rounding, and its square far below: after a
+# correction of this size the next one would be less than rounding.
 TOLERANCE = 1e-10
 
 
@@ -28,7 +29,7 @@ def linkage_in(scene: Scene) -> Linkage:
     """The car of a scene.
 
     Raises:
-        NoAnswer: its points make no linkage.
+        NoAnswer: its points do not form a linkage.
     """
     return linkage_of(scene.mechanism.plain(tuple(scene.inputs)))
 
@@ -38,7 +39,7 @@ class InTree:
     """A program as a formulation.
 
     Attributes:
-        program: makes a linkage one of the program's own models.
+        program: makes the program's model of a linkage.
     """
 
     name: str
@@ -48,13 +49,13 @@ class InTree:
         """Solve a scene at its instants.
 
         Raises:
-            FormulationError: a pose is not reached, or the drawing is no such car.
+            FormulationError: a pose is not reached, or the drawing cannot be closed to this car.
         """
         problem = Problem.of(scene)
 
         def solution(poses: Poses) -> Solution:
             known = inputs.first(len(poses.inputs))
-            with np.errstate(over="ignore"):  # what is too large has no claim either
+            with np.errstate(over="ignore"):  # a number that overflows has no error bound either
                 rates = program.rates(poses, known.series)
                 found = numbers_of(linkage, known, poses, rates, asked_of_the_car(scene))
             return problem.solution(self.name, found, linkage.accuracy(poses.last_step))
@@ -71,7 +72,7 @@ class InTree:
             program = self.program(linkage)
             closed = program.closed(TOLERANCE)
             require_the_drawn_car(scene, linkage.moved(closed.places))
-            # An input that is far too large leads to no pose, which is found out by overflow.
+            # An input that is far too large has no pose; the program notices by overflow.
             with np.errstate(over="ignore", invalid="ignore"):
                 poses = program.poses(inputs.values, TOLERANCE, closed)
             return solution(poses)

@@ -1,8 +1,8 @@
-r"""Our own numbers at the rows of a file: over time by the motion, over inputs and travels pose by pose.
+r"""Our own numbers at the rows of a file: over time from the motion, over inputs and travels pose by pose.
 
-A travel is an input of the same car: one that holds the height of its point in place of the input that moves
-that point most. So rows over travels are rows over inputs. A pose is the one that is reached from the
-drawing; where the travel turns back there is none beyond.
+A travel is treated as an input of the same car: the height of its point is driven, instead of the input that
+moves the point most. So rows over travels are rows over inputs. The pose of a row is the pose that is reached
+from the drawing; beyond an extreme of the travel there is no pose.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Numbers = dict[str, dict[str, Array]]
 
-# How far an input goes to either side of the drawing at most: an angle, and a length in parts of the car's
-# size. No suspension goes farther, and a slip in one row must not cost a search.
+# Largest range of an input to either side of the drawing: an angle, and a length relative to the car's size.
+# No suspension moves farther, and a mistyped row must not cause a long search.
 WIDEST = {"rad": 1.2, "mm": 0.5}
-LITTLE = 1e-3  # part of that by which an input is moved to see what it moves
+LITTLE = 1e-3  # part of this range by which an input is moved to find out what it moves
 
 
 @dataclass(frozen=True)
@@ -44,10 +44,11 @@ class Found:
     """Our numbers at the rows of a file.
 
     Attributes:
-        numbers, bounds: by quantity and name, (N, 3) or (N,); NaN where there is no pose.
-        reached: at which rows there is a pose, (N,).
-        reasons: by row, why there is none.
-        inputs: at each row, (N,); over time that.
+        numbers, bounds: numbers and their error bounds, by quantity and name, (N, 3) or (N,); NaN at rows
+            without a pose.
+        reached: which rows have a pose, (N,).
+        reasons: why a row has no pose, by row.
+        inputs: values of the inputs at each row, (N,); over time, only the time.
     """
 
     numbers: Numbers
@@ -59,14 +60,14 @@ class Found:
 
 @dataclass(frozen=True)
 class Driven:
-    """The car of a scene, driven by what the rows of a file are taken by.
+    """The car of a scene, driven by the independent columns of a file.
 
     Attributes:
-        scene: it asks for all points and for the effects that the file's columns need.
-        own: where it is driven by a travel, the same by the scene's own inputs, by which its drawing closes.
-        columns: the input of each independent column; time itself over time.
-        held: inputs that the map holds, or the scene at another value than drawn.
-        notes: inputs that the file does not give, in words.
+        scene: the scene, asked for all points and for the effects that the file's columns need.
+        columns: the input of each independent column, or the time.
+        own: if a travel drives the car: the same scene with its own inputs, with which its drawing closes.
+        held: inputs that are fixed by the map, or by the scene at another value than drawn.
+        notes: the inputs that the file does not give, in words.
     """
 
     scene: Scene
@@ -77,11 +78,11 @@ class Driven:
 
     @classmethod
     def of(cls, scene: Scene, measured: Measured) -> Driven:
-        """A scene by what a file gives and holds, and by the drawing for the rest.
+        """The car, with inputs from the file and its map, and the drawing for all others.
 
         Raises:
-            FileError: a travel without what it needs, or of which no input can be solved for.
-            PointcoordError: the hardpoints make no mechanism, or a travel's drawing cannot be closed.
+            FileError: data for a travel are missing, or no input is left to reach it.
+            PointcoordError: the hardpoints do not form a mechanism, or the drawing cannot be closed.
         """
         scene = _asked(scene, measured)
         columns = tuple(s.meaning.drives for s in measured.independent)
@@ -90,7 +91,7 @@ class Driven:
         given = (*columns, *measured.held)
         travels = [name for name in given if name.startswith(f"{TRAVEL}.")]
         if len(travels) > 1:
-            problem = f"{' and '.join(travels)} are travels of the same rows"
+            problem = f"{' and '.join(travels)} are several travels in the same rows"
             raise FileError(measured.source, "", problem, "one travel, given or held")
         driven = _driven_by(scene, travels[0], given, measured) if travels else scene
         car = cls(driven, columns, scene if travels else None, measured.held)
@@ -102,23 +103,23 @@ class Driven:
             value, by = car.drawn[name], ""
             if (law == law[0]).all() and law[0] != value:
                 held[name] = value = float(law[0])
-                how, by = "at ", "the scene does, and "
+                how, by = "at ", "as in the scene, because "
             unit = topology.input_units[name]
             notes.append(f"{name} is held {how}{value:.6g} {unit}: {by}the file does not give it")
         return replace(car, held=held, notes=tuple(notes))
 
     @property
     def over_time(self) -> bool:
-        """Whether rows are instants of the scene's own motion."""
+        """Whether the rows are instants of the scene's own motion."""
         return self.columns == (TIME,)
 
     def redrawn(self, offsets: Mapping[str, float]) -> Driven:
-        """The same of a car with hardpoints moved.
+        """The car with hardpoints moved.
 
         Args:
-            offsets: of coordinates, mm.
+            offsets: offset of each moved coordinate, mm.
         Raises:
-            SceneError: the hardpoints make no mechanism.
+            SceneError: the hardpoints do not form a mechanism.
         """
         scene = designs_of(self.scene, offsets=offsets).design(0)
         own = None if self.own is None else designs_of(self.own, offsets=offsets).design(0)
@@ -126,41 +127,41 @@ class Driven:
 
     @cached_property
     def solver(self) -> PoseSolver:
-        """Of the car's poses."""
+        """The solver of the car's poses."""
         return PoseSolver(self.scene, scene_mechanism(self.scene))
 
     @cached_property
     def closing(self) -> PoseSolver:
-        """The same by the scene's own inputs."""
+        """The solver of the poses with the scene's own inputs."""
         return self.solver if self.own is None else PoseSolver(self.own, scene_mechanism(self.own))
 
     @property
     def travel(self) -> str:
-        """The input that is a travel; empty if none is."""
+        """The input that is a travel; empty if there is none."""
         given = () if self.own is None else (*self.columns, *self.held)
         return next((name for name in given if name.startswith(f"{TRAVEL}.")), "")
 
     @cached_property
     def drawn(self) -> Mapping[str, float]:
-        """The inputs of the closed drawing, which all others have, and from which a travel counts."""
+        """The inputs of the closed drawing: used for inputs that are not given; travels count from here."""
         found = {name: float(value) + 0.0 for name, value in self.solver.mechanism.drawn_inputs.items()}
         if self.travel:
             found[self.travel] = float(self._risen(self.closing.mechanism, self.closing.closed.y))
         return found
 
     def _risen(self, mechanism: Mechanism, y: Array) -> Array:
-        """How much higher the point of a travel is in a pose, (..., size), than drawn, (...), mm."""
-        # As an input it counts from the drawing as it stands, which need not close.
+        """Height of the point of a travel in a pose, y (..., size), above its drawn height, (...), mm."""
+        # As an input a travel counts from the drawing before it is closed.
         part, point = self.scene.mechanism, self.travel.partition(".")[2]
         there = {name: place * mechanism.unit[..., None] for name, place in mechanism.places(y).items()}
         return _height(part, point, there) - _height(part, point, mechanism.drawn_places)
 
     def level(self, name: str) -> float:
-        """From where an input's column counts: a travel from the closed drawing."""
+        """The input at the zero of its column: for a travel that of the closed drawing, otherwise 0."""
         return self.drawn[name] if name == self.travel else 0.0
 
     def inputs(self, values: Sequence[Array]) -> tuple[dict[str, Array], dict[int, str]]:
-        """Every input at values of the columns of inputs, each (N,), and why a row has none."""
+        """Every input at values of the independent columns, each (N,), and why a row is refused."""
         count, given = len(values[0]), {**self.held, **dict(zip(self.columns, values, strict=True))}
         found = {name: np.full(count, value) for name, value in self.drawn.items()}
         found |= {name: np.full(count, value) + self.level(name) for name, value in given.items()}
@@ -168,14 +169,14 @@ class Driven:
         for name, (low, high) in self.sensible.items():
             value = found[name]
             inside = (value >= low) & (value <= high)
-            told = f"is out of reach, {low:.6g} to {high:.6g} being looked at"
-            reasons |= {int(i): f"{name} = {value[i]:.10g} {told}" for i in np.flatnonzero(~inside)}
+            why = f"is out of reach; searched from {low:.6g} to {high:.6g}"
+            reasons |= {int(i): f"{name} = {value[i]:.10g} {why}" for i in np.flatnonzero(~inside)}
             found[name] = np.where(inside, value, self.drawn[name])
         return found, reasons
 
     @cached_property
     def sensible(self) -> dict[str, tuple[float, float]]:
-        """Between which values inputs have a meaning and are no slip."""
+        """Plausible range of each input, within the values that are mathematically possible."""
         mechanism, found = self.solver.mechanism, {}
         for drive in mechanism.topology.drives:
             name, wide = drive.input, _widest(mechanism, drive.input)
@@ -189,15 +190,15 @@ class Driven:
 
     @cached_property
     def motion(self) -> Motion:
-        """The scene's own."""
+        """The motion of the scene."""
         return simulate(self.scene)
 
     def at(self, values: Sequence[Array], tolerance: float | None = None, bounded: bool = True) -> Found:
         """Our numbers at values of the independent columns, each (N,).
 
         Args:
-            tolerance: of poses, mm; the scene's own unless given.
-            bounded: whether each number is to have its bound.
+            tolerance: tolerance of poses, mm; the scene's own if not given.
+            bounded: whether to compute the error bounds of the numbers.
         """
         if self.over_time:
             return self._over_time(values[0], bounded)
@@ -206,12 +207,12 @@ class Driven:
     def _over_time(self, times: Array, bounded: bool) -> Found:
         start, stop = self.scene.time.start, self.scene.time.stop
         reached: Bools = (times >= start) & (times <= stop)
-        told = f"is outside the scene's time, {start:.10g} to {stop:.10g} s"
-        reasons = {int(i): f"t = {times[i]:.10g} s {told}" for i in np.flatnonzero(~reached)}
+        why = f"is outside the scene's time, {start:.10g} to {stop:.10g} s"
+        reasons = {int(i): f"t = {times[i]:.10g} s {why}" for i in np.flatnonzero(~reached)}
         found = Found({}, {}, reached, reasons, {TIME: times})
         if not reached.any():
             return found
-        # Samples want their instants in order and once each.
+        # Samples need instants in ascending order, each once.
         instants, rows = np.unique(times[reached], return_inverse=True)
         samples = self.motion.at(instants)
         proven = self.motion.proof_of(samples, rates=True).proven if bounded else {}
@@ -225,7 +226,7 @@ class Driven:
         tolerance: float | None = None,
         bounded: bool = False,
     ) -> Found:
-        """The same at inputs, pose by pose; where there is a reason there is no pose."""
+        """Our numbers at values of the inputs, pose by pose; a row with a reason gets no pose."""
         poses = self.solver.solve(inputs, tolerance)
         failed = {row: f"is out of reach: {error}" for row, error in poses.failures.items()}
         reached = poses.solved
@@ -238,13 +239,13 @@ class Driven:
         return replace(found, bounds=self.within(found, np.where(reached, off, 0.0)))
 
     def slopes(self, found: Found, coordinates: Sequence[str]) -> Numbers:
-        """What our numbers change by with drawn coordinates, (coordinates, N, 3) or (coordinates, N), per mm.
+        """Derivatives of our numbers by drawn coordinates, (coordinates, N, 3) or (coordinates, N), per mm.
 
-        An input that the file gives is the same in every design, but a travel counts from the design's own
-        drawing; one that nothing gives or holds is as drawn. NaN where there is no pose.
+        An input that the file gives has the same value in every design, but a travel counts from the drawing
+        of the design. An input that is neither given nor held is as drawn. NaN at rows without a pose.
 
         Raises:
-            AssemblyError: as `slopes_of_poses`.
+            AssemblyError: see `slopes_of_poses`.
         """
         rows, scene = found.reached, self.scene
         inputs = {name: value[rows] for name, value in found.inputs.items()}
@@ -254,7 +255,7 @@ class Driven:
             given = (*self.columns, *self.held)
             drawn = [name for name in self.drawn if name not in given]
             slopes = slopes_of_poses(self.solver, inputs, coordinates, drawn, self._levels(coordinates))
-        # Where each row is among those that have a pose.
+        # Index of each row among the rows with a pose.
         at = np.maximum(np.cumsum(rows) - 1, 0)
         return {
             quantity: {
@@ -265,7 +266,7 @@ class Driven:
         }
 
     def _levels(self, coordinates: Sequence[str]) -> dict[str, Array]:
-        """What a travel's level changes by with drawn coordinates, (coordinates,), mm per mm."""
+        """Derivatives of a travel's level by drawn coordinates, (coordinates,), mm per mm."""
         if not self.travel:
             return {}
         by_hardpoints = ByHardpoints(self.closing.readout, moves_of(self.closing.scene, coordinates))
@@ -273,11 +274,11 @@ class Driven:
         return {self.travel: slope_of(self._risen(by_hardpoints.moved, closed.states[0]))[:, 0]}
 
     def within(self, found: Found, off: Array) -> Numbers:
-        """How far numbers may be off whose points are off by so much, (N,), mm.
+        """Error bounds of numbers whose points are off by up to `off`, (N,), mm.
 
-        NaN where that may be another pose.
+        NaN where points this far off may belong to another pose.
         """
-        # Their packages are an extra.
+        # Imported here: these modules need an optional package.
         from validate.formulations.input_rates import laws_of
         from validate.formulations.stated_accuracy import accuracy_at
 
@@ -300,7 +301,7 @@ class Driven:
 
 
 def row_by_row(scene: Scene, inputs: Mapping[str, Array]) -> Scene:
-    """A scene that is at inputs, each (N,), one row after the other, a second apart."""
+    """A scene that passes through values of inputs, each (N,), one row per second."""
     content = scene.model_dump(exclude_none=True, exclude={"points"})
     content["inputs"] = {name: _from_row_to_row(values) for name, values in inputs.items()}
     count = len(next(iter(inputs.values())))
@@ -309,7 +310,7 @@ def row_by_row(scene: Scene, inputs: Mapping[str, Array]) -> Scene:
 
 
 def _from_row_to_row(values: Array) -> dict[str, Any]:
-    """A law that has these values at whole seconds; a straight one, which is solved soonest, if it may be."""
+    """A law with these values at whole seconds; linear if the values are, which is the fastest to solve."""
     times, first = np.arange(float(len(values))), float(values[0])
     step = float(values[-1] - values[0]) / max(len(values) - 1, 1)
     if np.abs(values - (first + step * times)).max() <= 4.0 * EPS * np.abs(values).max():
@@ -320,7 +321,7 @@ def _from_row_to_row(values: Array) -> dict[str, Any]:
 def at_either_end(
     values: Sequence[Array], offs: Sequence[Array]
 ) -> Iterator[tuple[int, tuple[list[Array], list[Array]]]]:
-    """By the place of each column that is rounded: all values, with its own at either end of the rounding."""
+    """For each rounded column: its index, and all values with this column at both ends of its rounding."""
     for i, off in enumerate(offs):
         if off.any():
             below, above = ([*values[:i], values[i] + side * off, *values[i + 1 :]] for side in (-1.0, 1.0))
@@ -328,13 +329,13 @@ def at_either_end(
 
 
 def ours_of(series: Series, numbers: Mapping[str, Mapping[str, Array]]) -> Array | None:
-    """What of our numbers, of their bounds or slopes, belongs to a column, (..., N); None if not known."""
+    """Our numbers, bounds or slopes for a column of the file, (..., N); None if not computed."""
     value, axis = numbers.get(series.meaning.quantity, {}).get(series.meaning.name), series.meaning.axis
     return value if value is None or axis is None else value[..., axis]
 
 
 def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Bools, rows: Any = slice(None)) -> Numbers:
-    """Numbers of some rows put where they belong, NaN elsewhere."""
+    """Numbers of some rows as arrays of all rows, NaN elsewhere."""
     found: Numbers = {}
     for quantity, part in numbers.items():
         found[quantity] = {}
@@ -346,13 +347,13 @@ def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Bools, rows: Any =
 
 
 def _widest(mechanism: Mechanism, name: str) -> float:
-    """How far an input goes to either side at most, rad or mm."""
+    """Largest range of an input to either side of the drawing, rad or mm."""
     unit = mechanism.topology.input_units[name]
     return WIDEST[unit] * (float(mechanism.unit) if unit == "mm" else 1.0)
 
 
 def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:
-    """A scene that drives a travel in place of the input that moves it most."""
+    """A scene that drives a travel instead of the input that moves its point most."""
     part, point = scene.mechanism, travel.partition(".")[2]
     topology, radius = part.topology, part.wheel_radius
     table: dict[str, Any] = {"height": point}
@@ -369,7 +370,7 @@ def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measur
     rising = topology.wheel_centre if point == CONTACT else point
     solved = _strongest(scene, rising, [name for name in topology.required_inputs if name not in given])
     if not solved:
-        problem = f"{travel} is to be reached by an input, and all are given"
+        problem = f"{travel} needs an input that is not given, and all inputs are given"
         raise FileError(measured.source, "", problem, "a travel, or the inputs")
     content = scene.model_dump(exclude_none=True)
     own = content["mechanism"]
@@ -384,7 +385,7 @@ def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measur
 
 
 def _height(part: MechanismPart, point: str, places: Mapping[str, Array]) -> Array:
-    """How high a point is, or the contact: the lowest point of a thin disc about the wheel's centre, mm."""
+    """Height of a point, mm, or of the contact: the lowest point of a thin disc about the wheel's centre."""
     up = np.array(part.up)
     if point != CONTACT:
         return np.asarray(places[point] @ up)
@@ -396,7 +397,7 @@ def _height(part: MechanismPart, point: str, places: Mapping[str, Array]) -> Arr
 
 
 def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
-    """The input by which a point rises most, each moved by the same part of its widest range."""
+    """The input that raises a point most, if each input is moved by the same part of its largest range."""
     mechanism, up, found = scene_mechanism(scene), np.array(scene.mechanism.up), {}
     solver, drawn = PoseSolver(scene, mechanism), mechanism.drawn_inputs
     for name in inputs:
@@ -413,6 +414,6 @@ def _asked(scene: Scene, measured: Measured) -> Scene:
     for quantity, name in dict.fromkeys(s.meaning.row for s in measured.numbers):
         names = {effect: numbers.get(quantity, ()) for effect, numbers in gives.items()}
         giving = [effect for effect, some in names.items() if some is None or name in some]
-        # Where the car has none of them, one says what is missing.
+        # If the car has no such effect, asking for one reports what the car lacks.
         effects |= dict.fromkeys([effect for effect in giving if effect in scene.mechanism.effects] or giving)
     return scene.model_copy(update={"points": None, "effects": tuple(effects)})

@@ -1,4 +1,4 @@
-"""The given points as exact fractions, in a frame of their own size, and the equations that they make."""
+"""The drawn points as exact fractions, scaled to their size, and the equations of the mechanism."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from validate.reference.jet import Jet
 from validate.reference.mechanism import Mechanism
 from validate.reference.vectors import Exact, Scalar, Vector, each, minus, times
 
-SAME_ROW = 1e-9  # of the largest: what is left of a row that others say already, in doubles
+SAME_ROW = 1e-9  # relative to the largest pivot: a row with a smaller pivot depends on others, in doubles
 
-# Every input, each (value, rate, acceleration) in fractions, or with more of its derivatives; rad or mm.
+# Every input by name: value, rate, acceleration and perhaps higher derivatives, in fractions; rad or mm.
 Driven = Mapping[str, Jet]
 
 
 @dataclass(frozen=True)
 class Known:
-    """What the equations take as given at one instant; scalars may be balls, floats, arrays or jets.
+    """The known data of the equations at one instant; scalars may be balls, floats, arrays or jets.
 
     Attributes:
-        mechanism: whose equations hold.
-        equations: in that kind of number.
-        numbers: w.
-        chassis: how the car as a whole is moved.
-        inputs: what w and the chassis follow, as jets by name, rad and mm.
+        mechanism: the mechanism of the equations.
+        equations: the equations in this kind of number.
+        numbers: the numbers w.
+        chassis: motion of the car as a whole.
+        inputs: the inputs, on which w and the motion of the chassis depend, as jets by name, rad and mm.
     """
 
     mechanism: Mechanism
@@ -52,28 +52,28 @@ class Known:
         inputs: Mapping[str, Jet],
         exact: Exact,
     ) -> Known:
-        """What inputs make of it, as jets of any kind of number, into which `exact` takes a fraction."""
+        """From the inputs as jets of any kind of number; `exact` converts a fraction to this kind."""
         plain, table, unit = mechanism.plain, mechanism.table, mechanism.unit
         chassis = ChassisMotion.of(plain, table, unit, inputs, exact)
         return cls(mechanism, equations, mechanism.numbers(inputs, exact), chassis, inputs)
 
     @property
     def derivatives(self) -> int:
-        """How many time derivatives of the inputs are known."""
+        """Number of known time derivatives of the inputs."""
         return max((len(jet.parts) for jet in self.inputs.values()), default=3) - 1
 
     def driven_at(self, name: str, rate: arb) -> Known:
-        """One input at a rate, rad/s or mm/s, and all else at rest, at the same instant; in balls."""
+        """The same instant with one input at a rate, rad/s or mm/s, and the others at rest; in balls."""
         inputs = {one: Jet(jet.value, rate if one == name else arb(0)) for one, jet in self.inputs.items()}
         return Known.of(self.mechanism, self.equations, inputs, as_ball)
 
     def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
-        """Of every moving body two vectors fixed in it, with the chassis moved."""
+        """Two vectors fixed in each moving body, by body, after the motion of the chassis."""
         frames = {name: self.equations.frame_of(unknown, name) for name in self.equations.frames}
         return {n: (self.chassis.turned(u), self.chassis.turned(v)) for n, (u, v) in frames.items()}
 
     def points_of(self, unknown: Sequence[Scalar]) -> dict[str, Vector]:
-        """Where every point is, with the chassis moved."""
+        """Position of every point, after the motion of the chassis."""
         return {name: self.chassis.moved(p) for name, p in self.equations.points_of(unknown).items()}
 
     def residual(self, unknown: Sequence[Scalar]) -> list[Scalar]:
@@ -83,21 +83,21 @@ class Known:
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """The mechanism as given, of a scene that is checked. Local coordinates are (p - origin) / unit, exact.
+    """The mechanism of a checked scene. Local coordinates are (p - origin) / unit, exact.
 
-    The shift and the unit keep balls tight whether the points lie 1e9 mm from the frame's origin or
-    the mechanism is 1e-3 or 1e6 mm in size.
+    The shift and the unit keep balls narrow even if the points lie 1e9 mm from the frame's origin or the
+    mechanism is 1e-3 or 1e6 mm in size.
 
     Attributes:
-        plain: the description, see `pointcoord/mechanisms/README.md`; its points are not read after this.
-        mechanism: its equations.
-        table: the points, by name, local.
+        plain: the description, see `pointcoord/mechanisms/README.md`; points are read from `table` instead.
+        mechanism: the equations.
+        table: the points by name, local.
         origin: the first point, mm.
         unit: a power of two near the mechanism's size, mm.
         corners, car: see `car_data`.
-        loads: of the corners that have one, by their prefix, force, N, and moment, N mm, of the ground on the
-            knuckle at its contact point.
-        chosen: the rows that are solved, as many as unknowns; the others depend on them as drawn.
+        loads: force, N, and moment, N mm, of the ground on the knuckle at its contact point, by prefix of the
+            corner; only for corners with a load.
+        chosen: the rows that are solved, as many as unknowns; the other rows depend on these as drawn.
     """
 
     plain: Mapping[str, Any]
@@ -112,11 +112,11 @@ class Design:
 
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any]) -> Design:
-        """Take over a description, mm.
+        """Read a description, mm.
 
         Raises:
-            NoReferenceError: a number is not finite, a rod or a body has no extent, or freedoms and inputs
-                are not as many.
+            NoReferenceError: a number is not finite, a rod or a body has no extent, or the inputs do not
+                determine all degrees of freedom.
         """
         table = {name: exact_vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
         up, right = exact_vector(plain["up"], "up"), exact_vector(plain["right"], "right")
@@ -132,24 +132,24 @@ class Design:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The points that this car has."""
+        """The names of the points of this car."""
         return tuple(self.table)
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """The inputs that it takes."""
+        """The names of the inputs."""
         return tuple(self.plain["inputs"])
 
     def role(self, name: str) -> Any:
-        """What a role names, or None."""
+        """The value of a role of the mechanism, or None."""
         return self.plain["roles"].get(name)
 
     def equations(self, number: Exact = as_ball) -> Equations:
-        """In one kind of number, unless given in balls at the present precision."""
+        """The equations in one kind of number; in balls at the present precision if not given."""
         return equations_in(self.mechanism, self.chosen, number)
 
     def driven(self, inputs: Mapping[str, Sequence[object]]) -> Driven:
-        """Inputs by name as fractions; one that is not named rests at zero."""
+        """Inputs by name as fractions; an input that is not given rests at zero."""
         count = max((len(law) for law in inputs.values()), default=3)
         return {
             name: Jet(*(as_fraction(part, f"inputs[{name!r}]") for part in inputs.get(name, (0,) * count)))
@@ -157,13 +157,13 @@ class Design:
         }
 
     def known(self, driven: Driven) -> Known:
-        """What the equations take as given, as jets of balls at the present precision, local."""
+        """The known data of the equations, as jets of balls at the present precision, local."""
         inputs = {name: balls(jet) for name, jet in driven.items()}
         return Known.of(self.mechanism, self.equations(), inputs, as_ball)
 
 
 def values_only(known: Known) -> Known:
-    """The same with the values of the jets, for the position equations."""
+    """The known data with the values of the jets only, for the position equations."""
     return replace(known, numbers=[jet.value for jet in known.numbers], chassis=known.chassis.still())
 
 
@@ -201,9 +201,10 @@ def _loads(plain: Mapping[str, Any]) -> dict[str, tuple[Vector, Vector]]:
 
 
 def _chosen(mechanism: Mechanism) -> tuple[int, ...]:
-    """As many rows as unknowns; of more than that those that stand most clearly apart as drawn.
+    """As many rows as unknowns; of redundant rows those that are most clearly independent as drawn.
 
-    Rows are taken in turn, each time the one of which most is left beside those taken (QR with pivots).
+    Rows are taken one by one, each time the row with the largest part independent of those taken (QR with
+    pivoting).
     """
     rows, size = len(mechanism.rows), mechanism.size
     if rows < size:
@@ -221,6 +222,6 @@ def _chosen(mechanism: Mechanism) -> tuple[int, ...]:
     triangle, taken = qr(matrix.T / np.linalg.norm(matrix, axis=1), mode="r", pivoting=True)
     rank = int((np.abs(np.diag(triangle)) > SAME_ROW).sum())
     if rank < size:
-        allowed = f"inputs and joints that leave no freedom; {size - rank} are left as drawn"
+        allowed = f"inputs and joints that leave no degree of freedom; {size - rank} are left as drawn"
         raise NoReferenceError("the equations", f"are {rank} independent rows for {size} unknowns", allowed)
     return tuple(sorted(int(row) for row in taken[:size]))

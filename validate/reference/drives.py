@@ -7,12 +7,12 @@ r"""Kinds of input: their rows, the numbers w in these rows, and the values of w
     turn of a steering wheel  s = w                             travel = rack_per_turn angle / (2 pi)
     height of a point         P . direction = w
     contact height            centre . g + w4 - s = w5,  s^2 + (r m / l)^2 = r^2,  m = (centre - inner) . g,
-                              l their distance, r the wheel's radius, and over the chassis g = up, w4 = 0;
-                              over the ground g = (w1, w2, w3) and w4 such that a place p of the chassis is
-                              p . g + w4 high when the car is moved
+                              l the distance of centre and inner, r the wheel's radius.
+                              Over the chassis: g = up, w4 = 0. Over the ground: g = (w1, w2, w3), and w4
+                              such that the height of a place p of the moved chassis is p . g + w4
     distance of two points    |P - Q|^2 = w,                    w = distance^2
 
-All lengths are local (see `design`), and so is the drawing.
+All lengths and the drawing are in local coordinates (see `design`).
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     mechanism.row(name, dot(minus(mechanism.place(end), mechanism.place(pivot)), along) - mechanism.number())
 
     def angle(numbers: Sequence[arb]) -> arb:
-        # By cosine and sine: an arc cosine loses its digits if the arm is along the direction. The direction
-        # is a unit vector only to rounding, so the difference may be just below zero.
+        # From cosine and sine, because an arc cosine loses digits if the arm is along the direction. The
+        # direction is a unit vector only up to rounding, so the difference may be just below zero.
         beside = (as_ball(d2) - numbers[0] * numbers[0]).nonnegative_part()
         return arb.atan2(beside.sqrt(), numbers[0])
 
@@ -66,13 +66,13 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
     e, nn = across(n)[0], dot(n, n)
     turning, held = mechanism.bodies[body].turned(e), mechanism.bodies[on]
     products = [dot(turning, held.turned(v)) for v in (e, cross(n, e))]
-    if on != CHASSIS:  # each is quadratic itself, and so an unknown
+    if on != CHASSIS:  # each product is quadratic, so it becomes an unknown to keep the row quadratic
         for i, product in enumerate(tuple(products)):
             (products[i],) = mechanism.unknowns(1, partial(_of_unknowns, product))
             mechanism.row(name, products[i] - product)
     sine, cosine = mechanism.number(), mechanism.number()
     mechanism.row(name, products[0] * sine - products[1] * cosine)
-    # At the angle itself g1 cos + g2 sin / |n| is positive; half a turn from it negative.
+    # At the right angle theta, g1 cos(theta) + g2 sin(theta) / |n| is positive; half a turn off, negative.
     mechanism.positive.append(products[0] * cosine * nn + products[1] * sine)
 
     def numbers(value: Jet, exact: Exact) -> list[Jet]:
@@ -103,7 +103,7 @@ def _steers(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
 
 
 def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scalar:
-    """Travel of a rack per rad of the steering wheel, rack_per_turn / (2 pi), mm, in a kind of number."""
+    """Travel of a rack per rad of the steering wheel, rack_per_turn / (2 pi), mm, in any kind of number."""
     quarter = angle(exact(Fraction(1)), exact(Fraction(0)))
     return exact(as_fraction(plain["rack_per_turn"], "rack_per_turn")) / (4 * quarter)
 
@@ -116,8 +116,8 @@ def _slid(
     for slide in slides:
         shares, along, squared = mechanism.lines[slide]
         mechanism.row(name, shares[0] - mechanism.number())
-        told = mechanism.plain["slides"][slide]
-        off = minus(mechanism.table[told["points"][0]], mechanism.table[told["through"]])
+        spec = mechanism.plain["slides"][slide]
+        off = minus(mechanism.table[spec["points"][0]], mechanism.table[spec["through"]])
         drawn.append(dot(off, along) / dot(along, along))
         lengths.append(squared)
 
@@ -134,7 +134,7 @@ def _slid(
 
 
 def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    """It is measured in mm from the drawing."""
+    """The height of a point, measured in mm from the drawing."""
     along, unit = directions(mechanism.plain)[spec.get("along", "up")], mechanism.unit
     drawn = dot(mechanism.table[spec["height"]], along)
     mechanism.row(name, dot(mechanism.place(spec["height"]), along) - mechanism.number())
@@ -147,7 +147,10 @@ def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
 
 
 def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    """Over the ground along the true up; in the chassis' frame the chassis' inputs turn this direction."""
+    """The height of the contact point. Over the ground the height is along the true vertical.
+
+    The inputs of the chassis turn the vertical relative to the chassis.
+    """
     inner, centre = spec["contact"]
     plain, table, unit, first = mechanism.plain, mechanism.table, mechanism.unit, mechanism.count
     up, r = directions(plain)["up"], Fraction(plain["wheel_radius"]) / unit

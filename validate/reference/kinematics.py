@@ -19,28 +19,30 @@ Solved = Callable[[Sequence[Scalar]], Sequence[Scalar]]
 def with_rates(
     values: Sequence[Scalar], known: Known, solved: Solved, derivatives: int | None = None
 ) -> list[Jet]:
-    """The unknowns with rates, as jets of any kind of number, local.
+    """The unknowns with time derivatives, as jets of any kind of number, local.
 
     C(y(t), t) = 0 differentiated once and twice gives  C' y' = -C_t  and  C' y'' = -rest, the paper's
-    eqs. (19) and (22), and so on, as far as the inputs are known. The right-hand sides are C evaluated with
-    jets whose unknown part is zero.
+    eqs. (19) and (22), and so on, as far as derivatives of the inputs are known. The right-hand sides are C
+    evaluated with jets whose unknown derivative is zero.
 
     Args:
         solved: gives -C'^-1 times a column.
-        derivatives: their number; by default as many as are known for the inputs.
+        derivatives: number of derivatives; by default as many as are known for the inputs.
     """
     zero, moving = values[0] * 0, [Jet(value) for value in values]
     for order in range(1, 1 + (known.derivatives if derivatives is None else derivatives)):
         rows = known.residual([Jet(*jet.parts, zero) for jet in moving])
-        # A row without moving parts is a plain number.
+        # A row that does not move is a plain number, without derivatives.
         rest = [row.part(order) if isinstance(row, Jet) else zero for row in rows]
         moving = [Jet(*jet.parts, rate) for jet, rate in zip(moving, solved(rest), strict=True)]
     return moving
 
 
 def by_balls(enclosure: Sequence[arb], known: Known) -> Solved:
-    """Solves with the inverse of the Jacobian over the enclosure; `known` with the values of the jets.
+    """Solves with the inverse of the Jacobian over the enclosure.
 
+    Args:
+        known: with the values of the jets only.
     Raises:
         NotDecidedError: the Jacobian over the enclosure may be singular.
     """
@@ -52,22 +54,22 @@ def by_balls(enclosure: Sequence[arb], known: Known) -> Solved:
 
 
 def body_turns(solved: Sequence[Jet], known: Known) -> dict[str, list[Vector]]:
-    """Angular velocity, acceleration and so on of every moving body, rad/s, rad/s^2."""
+    """Angular velocity, angular acceleration and so on of every moving body, rad/s, rad/s^2."""
     return {name: body_rates(*frame, known.derivatives) for name, frame in known.frames_of(solved).items()}
 
 
 def body_rates(a: Vector, b: Vector, derivatives: int = 2) -> list[Vector]:
-    r"""Angular velocity and acceleration of the body that carries two vectors (jets), not parallel.
+    r"""Angular velocity, acceleration and so on of a body, from two vectors fixed in it (jets), not parallel.
 
     With the frame e = (a, b, n), n = a x b, and its reciprocal g (g_i . e_j = 1 if i = j else 0),
     e_i' = omega x e_i gives  sum_i g_i x e_i' = 2 omega,  and
-    e_i'' - omega x e_i' = alpha x e_i gives alpha in the same way, and so on: of the order n
+    e_i'' - omega x e_i' = alpha x e_i gives alpha in the same way, and so on. For the order n
     e_i^(n+1) - sum_{k<n} C(n, k) omega^(k) x e_i^(n-k) = omega^(n) x e_i.
-    The only divisor is |n|^2. The printed quotient v65 x v75 / (v65 . r75) is 0/0 whenever omega lies
-    in the plane of the points.
+    The only divisor is |n|^2. The paper's printed quotient v65 x v75 / (v65 . r75) is 0/0 whenever omega
+    lies in the plane of the points.
 
     Returns:
-        omega, rad/s, alpha, rad/s^2, and as many more as derivatives are wanted, as vectors of balls.
+        omega, rad/s, alpha, rad/s^2, and so on, `derivatives` vectors of balls.
     """
     frame = (a, b, cross(a, b))
     e = [part_of(vector, 0) for vector in frame]

@@ -5,11 +5,11 @@ half widths r and any matrix A (here nearly the inverse Jacobian), let
 
     eta >= |A F(x)|  and  M r >= |(I - A F'(x)) e - A (F'' d) e|  for all d, e in +- r.
 
-If eta + M r < r then F has exactly one zero in x +- r, it lies within eta + M r of x, and F' is regular on
-the whole box (R. Krawczyk 1969; R. E. Moore 1977; Neumaier, Interval Methods, 5.1); of complex numbers within
-discs. Where x, A and F are polynomials in a parameter u, so are A F and I - A F'; they are bounded for
-|u| <= h term by term, and the proof holds for each u by itself. Everything is evaluated in ball arithmetic,
-so it includes all rounding.
+If eta + M r < r, then F has exactly one zero in x +- r, the zero lies within eta + M r of x, and F' is
+regular on the whole box (R. Krawczyk 1969; R. E. Moore 1977; Neumaier, Interval Methods, 5.1). For complex
+numbers the box is a product of discs. If x, A and F are polynomials in a parameter u, so are A F and
+I - A F'. They are bounded for |u| <= h term by term, and the proof holds for each u separately. Everything is
+evaluated in ball arithmetic, so the proof includes all rounding.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from flint import acb, acb_mat, arb, arb_mat, arb_poly, ctx
 from validate.reference.errors import NotDecidedError
 from validate.reference.vectors import Scalar
 
-MOST_STEPS = 60  # from float accuracy quadratic convergence needs 5; the rest is for a distant guess
-HOPELESS = 4  # so many times as large as before: a step of Newton's method, or a width that is to settle
-TRIES = 6  # of the widths: they settle on what the equations make of them
-SETTLED = 0.125  # a last term of A that changes A F' by no more leaves room in M
+MOST_STEPS = 60  # quadratic convergence from double accuracy needs 5 steps; the rest is for a distant start
+HOPELESS = 4  # growth factor of a Newton step or of a box width, above which the iteration is given up
+TRIES = 6  # number of widths tried for a box
+SETTLED = 0.125  # the series of A ends before a term that changes A F' by less: M then stays small enough
 
 Entries = Sequence[tuple[int, int, arb_poly]]
 Matrix = Any
-"""Of balls, `arb_mat`, or of complex ones, `acb_mat`."""
+"""A matrix of balls, `arb_mat`, or of complex balls, `acb_mat`."""
 
 
 class Curve(ABC):
-    """Quadratic equations F(x, t) = 0 in x, as many as unknowns; t is a ball or a polynomial in balls."""
+    """Quadratic equations F(x, t) = 0, as many as unknowns x; t is a ball or a polynomial with balls."""
 
     @abstractmethod
     def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
@@ -44,14 +44,14 @@ class Curve(ABC):
 
     @abstractmethod
     def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
-        """F' as (row, column, entry), zeros left out."""
+        """F' as (row, column, entry), without zeros."""
 
     @abstractmethod
     def bend(self, change: Sequence[Scalar]) -> Matrix:
         """The change of F' for a change of x; F' is linear in x."""
 
     def matrix(self, x: Sequence[Scalar], t: Scalar) -> Matrix:
-        """F' in balls."""
+        """F' as a matrix of balls."""
         return matrix_of(len(x), self.entries(x, t))
 
 
@@ -60,9 +60,9 @@ class Contraction:
     """Data for the proof of boxes about a centre, or along a curve.
 
     Attributes:
-        missed: upper bounds on |A F|.
-        defect, inverse: I - A F' and A, enclosed.
-        bend: F'' d.
+        missed: eta, upper bounds on |A F|.
+        defect, inverse: enclosures of I - A F' and of A.
+        bend: the function F'' d of d.
     """
 
     missed: Sequence[arb]
@@ -72,18 +72,18 @@ class Contraction:
 
     @classmethod
     def at(cls, curve: Curve, centre: Sequence[Scalar], t: Scalar, inverse: Matrix) -> Contraction:
-        """About a centre."""
+        """For boxes about a centre."""
         missed = bounds(inverse * column(curve.rows(centre, t)))
         unit = matrix_of(len(centre), ((i, i, x * 0 + 1) for i, x in enumerate(centre)))
         return cls(missed, unit - inverse * curve.matrix(centre, t), inverse, curve.bend)
 
     @classmethod
     def along(cls, curve: Curve, about: Sequence[arb_poly], time: arb_poly, span: arb) -> Contraction:
-        """Along polynomials in u.
+        """For boxes along a curve, a polynomial in u.
 
         Args:
-            about, time: x and t.
-            span: of u, a ball about 0.
+            about, time: x and t as polynomials in u.
+            span: range of u, a ball about 0.
         Raises:
             NotDecidedError: F' is singular at u = 0, to the present precision.
         """
@@ -99,7 +99,7 @@ class Contraction:
         return cls([x.abs_upper() for x in missed], defects, inverses, curve.bend)
 
     def image(self, width: Sequence[arb]) -> list[arb]:
-        """eta + M r."""
+        """eta + M r, for half widths r."""
         box: list[Scalar] = [arb(0, r) for r in width]
         if isinstance(self.inverse, acb_mat):
             box = [acb(side, side) for side in box]
@@ -108,7 +108,7 @@ class Contraction:
         return [(eta + x).upper() for eta, x in zip(self.missed, spread, strict=True)]
 
     def settled(self) -> list[arb] | None:
-        """Half widths of a proven box, not much wider than necessary; None if none is found."""
+        """Half widths of a proven box, not much wider than necessary; None if no box is found."""
         width = [2 * x + arb(2) ** (-ctx.prec // 2) for x in self.missed]
         for _ in range(TRIES):
             image = self.image(width)
@@ -121,13 +121,15 @@ class Contraction:
 
 
 def newton(curve: Curve, start: Sequence[Scalar], t: Scalar) -> tuple[list[Scalar], Matrix]:
-    """Newton's method to the present precision: exact numbers, not yet a proof, and nearly the inverse there.
+    """Newton's method to the present precision, without a proof.
 
+    Returns:
+        The solution in exact numbers, and nearly the inverse of the Jacobian there.
     Raises:
         NotDecidedError: it does not converge, or the Jacobian is singular to the present precision.
     """
     x, last = [number.mid() for number in start], arb(2) ** ctx.prec
-    good_enough = arb(2) ** (-ctx.prec // 2)  # the next step's error is the square of this one's
+    good_enough = arb(2) ** (-ctx.prec // 2)  # the error after this step is about its square
     for _ in range(MOST_STEPS):
         inverse = middle_inverse(curve.matrix(x, t))
         step = (inverse * column(curve.rows(x, t))).entries()
@@ -142,9 +144,9 @@ def newton(curve: Curve, start: Sequence[Scalar], t: Scalar) -> tuple[list[Scala
 
 
 def _moving_inverse(entries: Entries, size: int, reach: arb) -> list[list[arb_poly]]:
-    """Nearly the inverse of a matrix of polynomials in u, of as many terms as |u| <= reach needs.
+    """Nearly the inverse of a matrix of polynomials in u, with as many terms as |u| <= reach needs.
 
-    From A J = I follow A_0 = J_0^-1 and A_k = -(A_0 J_k + ... + A_k-1 J_1) A_0.
+    A J = I gives A_0 = J_0^-1 and A_k = -(A_0 J_k + ... + A_k-1 J_1) A_0.
 
     Raises:
         NotDecidedError: J_0 is singular to the present precision.
@@ -168,7 +170,7 @@ def middle_inverse(matrix: Matrix) -> Matrix:
     """Nearly the inverse of a Jacobian, in exact numbers.
 
     Raises:
-        NotDecidedError: it is singular to the present precision.
+        NotDecidedError: the Jacobian is singular to the present precision.
     """
     try:
         return matrix.mid().inv().mid()
@@ -196,16 +198,16 @@ def bounds(matrix: Matrix) -> list[arb]:
 
 
 def largest(numbers: Sequence[Scalar]) -> arb:
-    """Greatest upper bound on the absolute values; not finite if one of them is not."""
+    """Largest of the upper bounds on the absolute values; not finite if one bound is not."""
     sizes: list[arb] = [number.abs_upper() for number in numbers]
     return reduce(arb.max, sizes)
 
 
 def less(image: Sequence[arb], width: Sequence[arb]) -> bool:
-    """Whether each is less than its width, proven."""
+    """Whether each entry is proven to be less than its width."""
     return all(x < r for x, r in zip(image, width, strict=True))
 
 
 def within(solution: Sequence[Scalar], centre: Sequence[Scalar], width: Sequence[arb]) -> bool:
-    """Whether a solution, enclosed, lies inside the box about a centre."""
+    """Whether an enclosed solution lies inside the box about a centre."""
     return less([(x - y).abs_upper() for x, y in zip(solution, centre, strict=True)], width)

@@ -1,4 +1,4 @@
-r"""The forces in rods and joints that loads on the wheels make, by virtual work.
+r"""The forces in rods and joints under loads on the wheels, by virtual work.
 
 The chassis and every driven input fix the mechanism. Exception: if a corner has a damper, the damper's length
 is fixed and the input that moves the wheel is free. A force f and a moment m act on the knuckle at the
@@ -6,14 +6,19 @@ contact point c. With q_j = f . dc/dy_j + m . dtheta/dy_j and the Jacobian C' of
 
     C'^T l = q
 
-gives the work l_i of the load per unit of violation of row i, with all other rows satisfied. So a rod of the
-length d, whose row |a - b|^2 - d^2 is violated by 2 d e where it is e longer, has the tension 2 d l. The rows
-p - p' of a ball joint are the gap between its halves: the joint pulls the body of p by -l, and the other by
-l. A hinge has these rows at one point of its line, and at another one the two products of p - p' with sides s
-that are square to the line: there it pulls by -(l s + l' s'). Along the line only one row holds, so that of
-the two forces along it the sum is known. The rows p - p' of a point p on a slide, p' its place on the line,
-pull p by -l: across the line, and along it where an input drives the share of the line that p' is at. The
-equations are those of the mechanism with rows for every joint and slide.
+gives the work l_i of the load per unit of violation of row i, with all other rows satisfied.
+
+- A rod of length d has the row |a - b|^2 - d^2. If the rod is longer by e, the row is violated by 2 d e, so
+  the tension is 2 d l.
+- The rows p - p' of a ball joint are the gap between its halves. The joint pulls the body of p by -l, and the
+  other body by l.
+- A hinge has these three rows at one point of its line. At the other point it has two rows: the products of
+  p - p' with two vectors s, s' perpendicular to the line. There the hinge pulls by -(l s + l' s'). Along the
+  line there is only one row, so only the sum of the two forces along the line is known.
+- A point p on a slide has the rows p - p', with p' its place on the line. They pull p by -l: across the line,
+  and along the line if an input drives the place of p' on the line.
+
+The equations are those of the mechanism with rows for every joint and slide.
 """
 
 from __future__ import annotations
@@ -43,25 +48,30 @@ Forces = dict[str, dict[str, Any]]
 
 
 def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: int) -> Forces:
-    """The forces at a pose, N, in balls, to so many digits of the loads.
+    """The forces at a pose, N, in balls, to `digits` digits of the loads.
 
-    There are no forces if no load is given, if the car lacks what they need, or if the wheel is not held at
-    this pose, or hardly.
+    There are no forces if no load is given, if the car lacks data for them, or if the wheel is not supported
+    at this pose, or hardly.
 
     Args:
-        known: its rates are not used.
-        enclosure: of the unknowns.
+        known: known data of the equations; rates are not used.
+        enclosure: enclosure of the unknowns.
     Returns:
-        By quantity and name. Of `FORCES`
+        The forces by quantity and name. The quantities are `FORCES`:
 
-        rod_force, tension: of every rod by its name and of every fixed damper, `left.damper`.
-        joint_force, in the scene's axes: of every point that is a ball joint of just two bodies, or one of
-            both points of their hinge, and is on no slide: on the body of a role knuckle if it is one of
-            them, else on the one that the mechanism's file names first and that is not the chassis. Of a
-            hinge, which no input turns, what is across its line. Of every point of one body that is on one
-            slide likewise; of one of no body, which a rod pulls that is not of the slide alone, on the point.
-        hinge_thrust: of both points of a hinge along its line, from the first point, which names it, to the
-            second, as the body lists them.
+        rod_force: tension of every rod, by its name, and of every fixed damper, such as `left.damper`.
+        joint_force: force vectors in the scene's axes, by point:
+            - a point that is the ball joint of exactly two bodies, and is on no slide. The force acts on the
+              body with the role knuckle if it is one of the two; otherwise on the first body in the
+              mechanism's file that is not the chassis.
+            - both points of a hinge that no input turns: the force across the line of the hinge, on the same
+              body.
+            - a point of exactly one body on exactly one slide: the force on one of the two bodies, chosen in
+              the same way.
+            - a point of no body on one slide, if a rod pulls it that does not lie in the slide alone: the
+              force on the point.
+        hinge_thrust: sum of the forces of a hinge along its line, by its first point. It is positive from
+            the first point to the second, in the order of the body's list.
     """
     forces: Forces = {quantity: {} for quantity in FORCES}
     if not (design.loads and _can_be_had(design)):
@@ -122,7 +132,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
 
 
 def _can_be_had(design: Design) -> bool:
-    """Whether no row depends on others, and each loaded or sprung corner has what its forces are made of."""
+    """Whether no row is redundant, and each corner with a load or a damper has the data for its forces."""
     if len(design.chosen) < len(design.mechanism.rows):
         return False
     for prefix in design.corners:
@@ -135,7 +145,7 @@ def _can_be_had(design: Design) -> bool:
 
 @lru_cache(maxsize=64)
 def _held(design: Design) -> Mechanism:
-    """The mechanism with rows for all its joints, and dampers held for the inputs that move the wheels."""
+    """The mechanism with rows for all joints; fixed dampers replace the inputs that move their wheels."""
     held = compiled(design.plain, design.table, design.unit, hangs=False)
     for name, (row, ends) in _dampers(design, held).items():
         apart = minus(*(held.places[end] for end in ends))
@@ -144,7 +154,7 @@ def _held(design: Design) -> Mechanism:
 
 
 def _dampers(design: Design, mechanism: Mechanism) -> dict[str, tuple[int, Sequence[str]]]:
-    """Of each corner that has one the damper's row, in place of the one of an input, and its ends."""
+    """The row and the ends of each damper, by prefix of the corner; it replaces the row of an input."""
     return {
         prefix: (mechanism.driving[drivers(design, prefix)[TRAVEL]], design.role(prefix + DAMPER))
         for prefix in design.corners
@@ -153,7 +163,7 @@ def _dampers(design: Design, mechanism: Mechanism) -> dict[str, tuple[int, Seque
 
 
 def _joints(design: Design) -> dict[tuple[str, ...], str]:
-    """The body that the force of each ball joint or hinge is given on, by the points that it lists of it."""
+    """The ball joints and hinges with a force: the body that it acts on, by the points of the joint."""
     bodies: Mapping[str, Sequence[str]] = design.plain["bodies"]
     on_slides = {point for slide in design.plain["slides"].values() for point in slide["points"]}
     turned = {spec.get("angle") for spec in design.plain["inputs"].values()}
@@ -169,7 +179,7 @@ def _joints(design: Design) -> dict[tuple[str, ...], str]:
 
 
 def _sliding(design: Design) -> dict[str, bool]:
-    """Of each point on a turning slide whose force is known, whether it is given on the line's body."""
+    """The points on turning slides with a known force; True if the force acts on the body of the line."""
     plain, found = design.plain, dict[str, bool]()
     for name, slide in plain["slides"].items():
         elsewhere = {p for other, own in plain["slides"].items() if other != name for p in own["points"]}
@@ -184,7 +194,7 @@ def _sliding(design: Design) -> dict[str, bool]:
 
 
 def _felt_by(design: Design, bodies: Sequence[str]) -> str:
-    """Of two bodies the one that the force is given on."""
+    """The body of two on which the force is given."""
     knuckles = {design.role(prefix + KNUCKLE) for prefix in design.corners}
     moving = [body for body in bodies if body != CHASSIS]
     return next((body for body in moving if body in knuckles), moving[0])

@@ -2,26 +2,26 @@ r"""A mechanism's description, compiled: its equations C(y, w) = 0, every one at
 
 The unknowns y are, in local coordinates (see `design`) and relative to the chassis:
 
-    of a body hinged on the chassis     c, s      turned about n, the line of its two points there:
+    a body hinged on the chassis        c, s      rotation about n, the line of its two points there:
                                                   v -> n (n.v)/n^2 + c (v - n (n.v)/n^2) + s (n x v)
-    of any other body                   c1 c2 c3  the columns of its matrix R,
-    and if no point of it is placed yet p         the place of its first point
-    of a point on a slide               s         where on the line, p = through + s line
-    of a free point                     p         where it is, unless a slide of the chassis says so
-    of a contact height, or an angle between two moving bodies, one or two numbers more: see `drives`
+    any other body                      c1 c2 c3  the columns of its matrix R,
+    and if none of its points is placed p         the position of its first point
+    a point on a slide                  s         its place on the line, p = through + s line
+    a free point                        p         its position, unless it is on a slide of the chassis
+    a contact height, or an angle between two moving bodies: one or two further numbers, see `drives`
 
 and the rows are
 
-    n^2 s^2 + c^2 = 1,  ci . cj = 1 if i = j else 0      a body turns and does not deform
-    p = p'                                               a point of two bodies is one point, three rows
+    n^2 s^2 + c^2 = 1,  ci . cj = 1 if i = j else 0      a body rotates and does not deform
+    p = p'                                               two bodies share a point, three rows
     R u . (p - p') = R v . (p - p') = 0                  the second point of a hinge, two rows; u, v across it
     |a - b|^2 = d^2                                      a rod
-    p = through + s R line                               a point on a slide; if it may not turn, of u and v
-                                                         across the line  R u . R' v - R v . R' u = 0
-    and those of the inputs: see `drives`
+    p = through + s R line                               a point on a slide; if the slide may not turn also
+                                                         R u . R' v - R v . R' u = 0, u, v across the line
+    and the rows of the inputs: see `drives`
 
 A body that shares a point with an earlier body is placed by that point, so its position is not an unknown,
-unless every joint shall have its own rows (see `loads`). The numbers w are functions of the inputs. All data
+unless each joint is to have its own rows (see `loads`). The numbers w are functions of the inputs. All data
 of the drawing are exact.
 """
 
@@ -67,11 +67,12 @@ class Drive:
     """An input of a mechanism.
 
     Attributes:
-        numbers: the numbers w of the values of all inputs, rad or mm, as jets of any kind of number, and of
-            what makes a fraction one of that kind.
-        drawn: these numbers as drawn.
-        input_of: the input itself, rad or mm, from its numbers; for an angle from the drawing the least one.
-        turns: whether it is an angle that may be any number of turns.
+        numbers: gives the numbers w. Its arguments are the values of all inputs, rad or mm, as jets of any
+            kind of number, and a function that converts a fraction to this kind.
+        drawn: gives the numbers w as drawn.
+        input_of: gives the input, rad or mm, from its numbers w; for an angle from the drawing the angle of
+            least magnitude.
+        turns: whether the input is an angle without limit, of any number of turns.
     """
 
     numbers: Callable[[Mapping[str, Jet], Exact], Sequence[Jet]]
@@ -82,55 +83,61 @@ class Drive:
 
 @dataclass(frozen=True)
 class Body:
-    """A body in the equations: the columns of its matrix R, and where it takes the origin of the drawing."""
+    """A body in the equations: the columns of its matrix R, and the position of the drawing's origin."""
 
     columns: Columns
     origin: Vector
 
     @classmethod
     def of(cls, columns: Columns, drawn: Vector, place: Vector) -> Body:
-        """The body that has a point of the drawing at a place."""
+        """The body that moves the point `drawn` of the drawing to `place`."""
         return cls(columns, minus(place, cls(columns, place).turned(drawn)))
 
     def turned(self, v: Vector) -> Vector:
-        """Direction of a vector fixed in the body."""
+        """A vector fixed in the body, rotated with it."""
         x, y, z = (times(column, part) for column, part in zip(self.columns, v, strict=True))
         return plus(plus(x, y), z)
 
     def place(self, drawn: Vector) -> Vector:
-        """Position of a point of the body."""
+        """Position of a point of the body, from its drawn position."""
         return plus(self.origin, self.turned(drawn))
 
 
 class Mechanism:
-    """The compiled description.
+    """The compiled description of a mechanism.
 
     Attributes:
-        size: unknowns, y0 and so on; symbols of the numbers w are -1, -2 and so on, see `polynomial`.
-        rows: C(y, w), each with what it says.
-        frames: of every moving body two vectors fixed in it and not parallel.
-        positive: products that are positive in an assembly: where not, a hinge is mounted the wrong way round
-            or an angle is off by half a turn. On a way none of them passes zero at a regular pose, and no
-            matrix R becomes a mirror image: its rows hold from the drawing on.
-        readers: give the unknowns of assembled points, one after the other.
-        drives: by input, what its numbers w are; chassis motions are not among them.
-        driving: of each of these the row that its numbers are in, the last of them if there are several.
-        rods: of each the row of its length.
-        joints: of each point whose place two bodies say in rows the body, place - place of the other, and the
-            first of the three rows.
-        sliding: of each point on a slide the first of the three rows that say where it is on the line.
-        closing: of the second point of each hinge that has such rows the first of the two more rows that make
-            it one, and what each of them takes the product of place - place with.
-        lines: of each slide where its points are on the line, its direction as drawn, and the square of its
+        size: number of unknowns y; symbols of the numbers w are -1, -2 and so on, see `polynomial`.
+        count: number of numbers w.
+        rows: C(y, w), each row with a name.
+        frames: two vectors fixed in each moving body, not parallel, by body.
+        positive: products that are positive in an assembly; otherwise a hinge is mounted the wrong way round,
+            or an angle is off by half a turn. Along a path no product passes zero at a regular pose. No
+            matrix R becomes a mirror image, because its rows hold from the drawing on.
+        readers: functions that read the unknowns from assembled points, one after the other.
+        drives: the numbers w of each input, without the motions of the chassis.
+        driving: the row with the numbers of each of these inputs, the last row if there are several.
+        rods: the row of each rod's length.
+        joints: the three rows of each point that is shared by two bodies and has such rows: the body whose
+            place less the place of the other body is in the rows, and the number of the first row.
+        sliding: the number of the first of the three rows of each point on a slide.
+        closing: the two further rows of each hinge with such rows, by its second point: the number of the
+            first row, and the two vectors whose products with place - place are in the rows.
+        lines: each slide: the places of its points on the line, its direction as drawn, and the square of its
             length.
+        free: positions of the points that are not points of a body.
+        bodies: the bodies in the equations.
+        holder: the body of each point, the first if there are several.
     """
 
     def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool = True) -> None:
-        """Take over bodies, slides and rods, their points from `table`, local.
+        """Compile bodies, slides and rods.
 
         Args:
-            hangs: whether a body hangs on a point or a hinge of one before it, and a free point on a line of
-                the chassis; else each joint and slide has its rows.
+            table: the points, local.
+            unit: unit of the local coordinates, mm.
+            hangs: whether an earlier body places a body by a shared point or hinge, and a line of the chassis
+                places a free point, without rows. Otherwise each joint and slide has its own rows.
         """
         self.plain, self.table, self.unit, self.hangs = plain, table, unit, hangs
         self.size, self.count = 0, 0
@@ -162,11 +169,11 @@ class Mechanism:
 
     @cached_property
     def places(self) -> dict[str, Vector]:
-        """Of every point, relative to the chassis."""
+        """Position of every point, relative to the chassis."""
         return {name: self.place(name) for name in self.table}
 
     def numbers(self, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
-        """The numbers w of all inputs, of jets of any kind of number and a fraction in that kind."""
+        """The numbers w from all inputs as jets of any kind of number; `exact` converts a fraction to it."""
         return [w for drive in self.drives.values() for w in drive.numbers(inputs, exact)]
 
     @property
@@ -175,10 +182,11 @@ class Mechanism:
         return [w for drive in self.drives.values() for w in drive.drawn()]
 
     def unknown_of(self, points: Table, numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:
-        """The unknowns of assembled points, relative to the chassis, in their kind of number.
+        """The unknowns from assembled points, relative to the chassis, in the kind of number of the points.
 
         Args:
-            numbers: w. exact: a fraction in that kind.
+            numbers: the numbers w.
+            exact: converts a fraction to this kind of number.
         """
         unknown: list[Scalar] = []
         for read in self.readers:
@@ -187,29 +195,29 @@ class Mechanism:
 
     @property
     def drawn_unknown(self) -> list[arb]:
-        """The unknowns of the points as drawn, exact numbers: what they do not meet is theirs to close."""
+        """The unknowns from the points as drawn, in exact numbers; the drawing need not satisfy the rows."""
         places = {name: each(as_ball, place) for name, place in self.table.items()}
         return [arb(number).mid() for number in self.unknown_of(places, self.drawn_numbers, as_ball)]
 
     def handed(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> bool:
-        """Whether a zero that a drawing leads to is an assembly, proven: no hinge is the wrong way round."""
+        """Whether a solution reached from a drawing is proven an assembly: no hinge the wrong way round."""
         values = ordered(unknown, numbers)
         return all(polynomial(one).of_kind(as_ball).at(values) > 0 for one in self.positive)
 
     def unknowns(self, count: int, read: Reader) -> list[Polynomial]:
-        """New ones; `read` gives their values from points, the unknowns before them and the numbers w."""
+        """Add unknowns; `read` gives their values from points, the unknowns before them and the numbers w."""
         first = self.size
         self.size += count
         self.readers.append(read)
         return [Polynomial.symbol(first + i) for i in range(count)]
 
     def number(self) -> Polynomial:
-        """A new number w."""
+        """Add a number w."""
         self.count += 1
         return Polynomial.symbol(-self.count)
 
     def row(self, name: str, row: Scalar) -> None:
-        """One equation: what is named is 0."""
+        """Add a row: the expression is 0."""
         self.rows.append((name, polynomial(row)))
 
     def _vanish(self, name: str, apart: Vector) -> int:
@@ -219,7 +227,7 @@ class Mechanism:
         return len(self.rows) - 3
 
     def place(self, point: str) -> Vector:
-        """Where a point is."""
+        """Position of a point, relative to the chassis."""
         if point in self.holder:
             return self.bodies[self.holder[point]].place(self.table[point])
         if point not in self.free:
@@ -243,8 +251,7 @@ class Mechanism:
     def _add_body(self, name: str) -> None:
         points: list[str] = self.plain["bodies"][name]
         shared = {other: [p for p in points if p in self.plain["bodies"][other]] for other in self.bodies}
-        # A hinge is recognised by its two points: bodies with two points come first, and of these the
-        # chassis.
+        # A hinge is two shared points: bodies that share two points come first, the chassis before others.
         ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
         if len(shared[CHASSIS]) == 2 and self.hangs:
             columns, tied = self._hinged(name, *shared[CHASSIS]), {*shared[CHASSIS]}
@@ -284,7 +291,7 @@ class Mechanism:
         self.positive.append(dot(self.bodies[other].turned(axis), self.bodies[name].turned(axis)))
 
     def _hinged(self, name: str, a: str, b: str) -> Columns:
-        """A body on a hinge of the chassis."""
+        """The columns of a body on a hinge of the chassis."""
         n, start = near_one(minus(self.table[b], self.table[a])), self.table[a]
         if n is None:
             raise NoReferenceError(f"the hinge of {name}", f"has {a} and {b} in one place", "a line")
@@ -294,7 +301,7 @@ class Mechanism:
         g = beside[seen]
         if dot(g, g) == 0:
             raise NoReferenceError(f"the points of {name}", "are all on one line", "a point beside the hinge")
-        h = times(cross(g, n), Fraction(1) / nn)  # from the hinge to the point seen, square to it
+        h = times(cross(g, n), Fraction(1) / nn)  # from the hinge to the point, perpendicular to the hinge
         cosine, sine = times(h, 1 / dot(h, h)), times(g, 1 / dot(g, g))
 
         def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
@@ -311,12 +318,12 @@ class Mechanism:
         return turned(X), turned(Y), turned(Z)
 
     def _loose(self, name: str, points: Sequence[str]) -> Columns:
-        """A body that hangs on a point, or on none."""
+        """The columns of a body that is not on a hinge of the chassis."""
         ends = {(p, q): minus(self.table[p], self.table[q]) for p, q in combinations(points, 2)}
         squared = {pair: dot(end, end) for pair, end in ends.items()}
 
         def spread(edges: tuple[tuple[str, str], tuple[str, str]]) -> float:
-            """|k x m|^2 / (|k|^2 + |m|^2): errors of two edges turn a body the less the greater this is."""
+            """|k x m|^2 / (|k|^2 + |m|^2): the greater, the less do errors of two edges rotate a body."""
             k, m = edges
             both, part = squared[k] + squared[m], dot(ends[k], ends[m])
             return float(squared[k] * squared[m] - part * part) / (float(both) or 1.0)
@@ -327,7 +334,7 @@ class Mechanism:
         area = dot(normal, normal)
         if area == 0:
             raise NoReferenceError(f"the points of {name}", "are all on one line", "a triangle")
-        # Rows that give 1 with one, two and the normal, each 0 with the others.
+        # The reciprocal vectors of `one`, `two` and `normal`.
         duals = [times(g, 1 / area) for g in (cross(two, normal), cross(normal, one), normal)]
 
         def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
@@ -342,10 +349,10 @@ class Mechanism:
         return columns
 
     def _add_slide(self, name: str, slide: Mapping[str, Any]) -> None:
-        """Points on a line of a body."""
+        """Add the points on a line of a body."""
         body, through = slide["body"], slide["through"]
         along = directions(self.plain).get(slide["along"])
-        # A direction of the car is a unit vector to its rounding; a line towards a point is as long as it is.
+        # A direction of the car is a unit vector up to rounding; a line towards a point has its drawn length.
         squared = Fraction(1)
         if along is None:
             along = near_one(minus(self.table[slide["along"]], self.table[through]))
@@ -366,7 +373,7 @@ class Mechanism:
             shares.append(share)
             there = plus(start, times(line, share))
             if self.hangs and body == CHASSIS and point not in self.holder and point not in self.free:
-                self.free[point] = there  # its place needs no unknowns besides
+                self.free[point] = there  # its position needs no further unknowns
             else:
                 self.sliding[point] = self._vanish(f"{point} on {name}", minus(self.place(point), there))
         self.lines[name] = (shares, along, squared)
@@ -374,7 +381,7 @@ class Mechanism:
             self._hold(name, slide, along)
 
     def _hold(self, name: str, slide: Mapping[str, Any], along: Vector) -> None:
-        """A sliding joint that may not turn."""
+        """Add the row of a slide that may not turn."""
         one = self.bodies[slide["body"]]
         points = set(slide["points"])
         holders = [b for b in self.bodies if b != slide["body"] and points <= set(self.plain["bodies"][b])]
@@ -382,8 +389,8 @@ class Mechanism:
             raise NoReferenceError(f"slides.{name}: turns", "is False", "points of one other body")
         other = self.bodies[holders[0]]
         (u, v), (u2, v2) = ([body.turned(side) for side in across(along)] for body in (one, other))
-        # The axis of the turn from the one body to the other has no component along the line: what is drawn
-        # off it is turned onto it by the smallest rotation.
+        # The axis of the rotation between the two bodies has no component along the line. So a body that is
+        # drawn off the line is rotated onto it by the smallest rotation.
         self.row(f"turn of {name}", dot(u, v2) - dot(v, u2))
         self.positive.append(dot(u, u2))
 
@@ -394,5 +401,5 @@ def of_kind(vector: Vector, number: Exact) -> Vector:
 
 
 def at(vector: Vector, values: Sequence[Scalar]) -> Vector:
-    """The values of a vector of polynomials."""
+    """The value of a vector of polynomials."""
     return each(lambda one: one.at(values), vector)

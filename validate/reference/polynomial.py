@@ -1,6 +1,6 @@
-"""Exact polynomials of at most second degree, with which the equations are written once, as vector algebra.
+"""Exact polynomials of at most second degree: the equations are written once in them, as vector algebra.
 
-The unknowns are the symbols 0, 1 and so on, the numbers w of the inputs are -1, -2 and so on.
+The unknowns are the symbols 0, 1 and so on; the numbers w of the inputs are the symbols -1, -2 and so on.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ Monomial = tuple[int, ...]  # at most two symbols, in ascending order
 
 @dataclass(frozen=True)
 class Polynomial:
-    """A sum of products of at most two symbols, with exact coefficients, or in one kind of number.
+    """A sum of products of at most two symbols; coefficients are exact, or in another kind of number.
 
-    The exact ones are flint's fractions: Python's take some twenty times as long to add and to multiply.
+    Exact coefficients are flint's fractions: Python's take some twenty times as long to add and multiply.
     """
 
     terms: Mapping[Monomial, Scalar]
 
     @classmethod
     def symbol(cls, number: int) -> Polynomial:
-        """One symbol."""
+        """The polynomial that is one symbol."""
         return cls({(number,): fmpq(1)})
 
     def __add__(self, other: Scalar) -> Polynomial:
@@ -50,7 +50,7 @@ class Polynomial:
     __rmul__ = __mul__
 
     def derivative(self, symbol: int) -> Polynomial:
-        """By one symbol."""
+        """The derivative by one symbol."""
         terms: dict[Monomial, Scalar] = {}
         for monomial, coefficient in self.terms.items():
             if symbol in monomial:
@@ -60,12 +60,12 @@ class Polynomial:
         return Polynomial(terms)
 
     def of_kind(self, number: Exact) -> Polynomial:
-        """With coefficients in another kind of number, a constant last."""
+        """The polynomial with coefficients in another kind of number; a constant term comes last."""
         ordered = sorted(self.terms.items(), key=lambda term: -len(term[0]))
         return Polynomial({monomial: number(coefficient) for monomial, coefficient in ordered})
 
     def at(self, values: Sequence[Scalar]) -> Scalar:
-        """Its value in the kind of number of the values, even where no symbol is in it; see `of_kind`."""
+        """The value, in the kind of number of `values` even without any symbols; see `of_kind`."""
         total: Scalar = None
         for monomial, coefficient in self.terms.items():
             if len(monomial) == 2:
@@ -79,14 +79,14 @@ class Polynomial:
 
 
 def polynomial(number: Scalar) -> Polynomial:
-    """An exact number as a polynomial; a polynomial is itself."""
+    """An exact number as a polynomial; a polynomial is returned as it is."""
     if isinstance(number, Polynomial):
         return number
     return Polynomial({(): fmpq(number.numerator, number.denominator)} if number else {})
 
 
 def ordered(unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
-    """Values in the order of their symbols; the negative symbols of w are indices from the end."""
+    """Values that can be indexed by symbol: the negative symbols of w count from the end."""
     return [*unknown, *reversed(numbers)]
 
 

@@ -1,1 +1,1 @@
-"""Other people's solvers: called with plain data, and held to the accuracy that they state."""
+"""Users' solvers: called with plain data, and compared with tolerances from the accuracy that they state."""

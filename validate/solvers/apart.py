@@ -1,15 +1,15 @@
-"""A solver in a process of its own: it may hang, crash or end itself, and the run goes on without it.
+"""Runs a user's solver in a child process: the solver may hang, crash or exit, and the run goes on.
 
-A solver of somebody's is code that this project knows nothing of. In the run's own process a segmentation
-fault, an `os._exit` or a loop without end would take with it what is computed of all scenes; a time limit
-could not be kept either, since nothing can interrupt a library that does not return. So the program asks it
-in a child, which costs half a second once. The child imports the solver once and keeps it for all scenes. One
-that crashes or is stopped is made anew for the next scene: what it knew is lost, and with it only that scene.
+A user's solver is unknown code. In the process of the run, a segmentation fault, an `os._exit` or an endless
+loop would lose the results of all scenes, and a time limit could not be enforced, because nothing can
+interrupt a library that does not return. So the program calls the solver in a child process, which costs half
+a second once. The child imports the solver once and keeps it for all scenes. A solver that crashes or is
+stopped is started again for the next scene: its state is lost, but only one scene has no answer.
 
-Requests and answers go through a pipe; what the solver prints goes to standard error, and where it reads
-standard input there is none. The child's process group is ended with it, so that what a solver started does
-not stay behind. From Python (`check`, the pytest plugin) a
-solver is called where it is: a function that lives there cannot be sent elsewhere.
+Requests and answers go through a pipe. Output of the solver goes to standard error; its standard input is
+empty. The process group of the child is ended with the child, so that no process of the solver remains. From
+Python (`check`, the pytest plugin) a solver is called in the same process: a local function cannot be sent to
+another process.
 """
 
 from __future__ import annotations
@@ -32,19 +32,20 @@ from validate.plain_text import shown
 from validate.solvers.load import solver_at
 from validate.solvers.plain import Solve, SolverFailed, no_mapping, raised_at, read_only, said
 
-LIMIT = 600.0  # s, an answer: no motion of a suspension takes so long
-PARTING = 2.0  # s, that a child is given to end by itself
+LIMIT = 600.0  # s, for an answer: no motion of a suspension takes that long
+PARTING = 2.0  # s, for a child to end by itself
 
-# What the child says first: how it went, or that it says nothing more. Then what there is to say of it.
+# The kinds of messages from the child; a message is a pair of kind and data. ENDED: no further message.
 FOUND, NONE, ANSWER, FAILED, ENDED = "found", "no solver", "answer", "failed", "ended"
 BUILTIN = (str, bytes, bool, int, float, complex, type(None))
 
 
 class Apart:
-    """A solver by its module and name there, in a child process.
+    """A solver in a child process.
 
     Attributes:
-        place: such as `package.module:Solver`. limit: s, that each answer may take; its import, once, LIMIT.
+        place: module and name, such as `package.module:Solver`.
+        limit: time limit of each answer, s; the import may take LIMIT, or `limit` if that is longer.
     """
 
     def __init__(self, place: str, with_traceback: bool = False, limit: float = LIMIT) -> None:
@@ -74,7 +75,7 @@ class Apart:
         """Wait until the child has imported the solver.
 
         Raises:
-            UsageError: there is none, it cannot be imported, or that takes longer than LIMIT.
+            UsageError: there is no such solver, it cannot be imported, or the import takes too long.
         """
         if self._found:
             return
@@ -83,7 +84,7 @@ class Apart:
         kind, rest = self._said(max(self.limit, LIMIT))
         if kind == ENDED:
             problem = f"the solver {shown(self.place)!r} cannot be imported: {rest}"
-            raise UsageError(f"{problem}; mend the module")
+            raise UsageError(f"{problem}; fix the module")
         if kind == NONE:
             self._end(idle=True)
             raise UsageError(rest)
@@ -93,13 +94,13 @@ class Apart:
         """Ask the solver.
 
         Raises:
-            SolverFailed: it raised an error, answered with no mapping, crashed or took too long.
+            SolverFailed: it raised an error, did not return a mapping, crashed or took too long.
         """
         try:
             self.found()
         except UsageError as error:
-            raise SolverFailed(f"made anew after it ended: {error}") from error
-        # That it has ended is found when its answer is awaited.
+            raise SolverFailed(f"started again after it ended: {error}") from error
+        # If the child has ended, waiting for its answer reports it.
         with suppress(OSError):
             self._pipe.send(given)
         kind, rest = self._said(self.limit)
@@ -109,26 +110,26 @@ class Apart:
         return found
 
     def _said(self, limit: float) -> tuple[str, Any]:
-        """What the child says next; or in words why it will say nothing more, and then it is ended."""
+        """The next message from the child; ENDED and the reason if there is none; the child is then ended."""
         try:
             if not wait([self._pipe, self._process.sentinel], min(limit, TIMEOUT_MAX)):
                 why = f"it took longer than {limit:g} s and was stopped; --solver-timeout S allows more"
             else:
-                # An answer that is cut off in the middle is an end like any other.
+                # An incomplete answer is treated as the end of the child.
                 with suppress(Exception):
                     answer: tuple[str, Any] = self._pipe.recv()
                     return answer
                 self._process.join(PARTING)
                 why = _ended(self._process.exitcode)
         except BaseException:
-            # Ctrl-C while it works ends it too.
+            # Ctrl-C ends a working child too.
             self._end(idle=False)
             raise
         self._end(idle=False)
         return ENDED, why
 
     def _end(self, idle: bool) -> None:
-        """End it and what it started; an idle one by the end of its requests, so that it can close files."""
+        """End the child and its processes. An idle child first ends by itself, so that it can close files."""
         if not self._runs:
             return
         self._runs = self._found = False
@@ -143,7 +144,7 @@ class Apart:
 
 
 def _ended(status: int | None) -> str:
-    """How a process ended without an answer, by its exit status."""
+    """How a process with this exit status ended without an answer."""
     if status is None:
         return "its process closed its output without an answer"
     if status >= 0:
@@ -153,7 +154,7 @@ def _ended(status: int | None) -> str:
 
 
 def serve(pipe: Connection[Any, Any], place: str, with_traceback: bool) -> None:
-    """What the child does: import the solver that it is told, and answer until nobody asks any more."""
+    """The main function of the child: import the solver, and answer until the pipe is closed."""
     if sys.platform != "win32":
         os.setsid()
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
@@ -168,28 +169,28 @@ def serve(pipe: Connection[Any, Any], place: str, with_traceback: bool) -> None:
         while True:
             pipe.send(_answer(solve, pipe.recv()))
     except EOFError:
-        return  # nobody asks any more: the run has ended, however it ended
+        return  # the run has closed the pipe: it has ended
     except OSError:
-        os._exit(1)  # the solver has closed what it may not
+        os._exit(1)  # the solver has closed the pipe
 
 
 def _answer(solve: Solve, given: dict[str, Any]) -> tuple[str, object]:
     try:
-        answer: object = solve(read_only(given))  # pickle forgets that arrays cannot be written to
+        answer: object = solve(read_only(given))  # arrays are writeable again after unpickling
         if not isinstance(answer, Mapping):
             return FAILED, (no_mapping(answer), "")
         return ANSWER, _plain(answer)
-    # Whatever it is, the child lives on: Ctrl-C does not reach it, so that even that is the solver's own.
+    # The child goes on after any error. Ctrl-C does not reach it: a KeyboardInterrupt is the solver's own.
     except BaseException as error:
         return FAILED, (said(error), raised_at(error))
 
 
 def _plain(answer: Any) -> Any:
-    """An answer without classes that only its own process knows: other libraries' arrays become numpy's."""
+    """An answer without classes that only the child can import: arrays of other libraries become numpy's."""
     if isinstance(answer, Mapping):
         return {key if type(key) in BUILTIN else str(key): _plain(part) for key, part in answer.items()}
     if type(answer) in BUILTIN or isinstance(answer, np.ma.MaskedArray):
-        return answer  # what is masked is to be told
+        return answer  # masked entries are reported later
     with suppress(Exception):
         array = np.asarray(answer)
         if array.dtype != object:

@@ -1,4 +1,4 @@
-"""A solver held to what it claims, from Python."""
+"""Compares a user's solver with a formulation, from Python."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ AGAINST = "pointcoord"
 def check(
     solver: object, scene: Scene | str, accuracy: float = ACCURACY, against: str | Formulation = AGAINST
 ) -> Outcome:
-    """Hold a solver to a formulation, within what its stated accuracy makes of every number.
+    """Compare a solver with a formulation; the tolerance of each number follows from the stated accuracy.
 
     Args:
         solver: a function of one mapping, or an object or class with a method `solve` (see `solvers.plain`).
-        scene: or the name or path of one.
-        accuracy: how exactly it places every point, mm, as it says itself.
-        against: the name of a formulation, or one.
+        scene: a scene, or its name or path.
+        accuracy: accuracy of every point as the solver states it, mm.
+        against: a formulation, or its name.
     Returns:
-        The comparison, with what would explain that it disagrees in `explanations`.
+        The comparison; possible explanations of a disagreement are in `explanations`.
     Raises:
-        UsageError: `solver` is none, or `accuracy` is no length above 0.
+        UsageError: `solver` is not a solver, or `accuracy` is not a length above 0.
         FormulationError: the solver raises an error, or the other formulation refuses the scene.
-        SceneError: there is no such scene, or it is wrong.
+        SceneError: the scene does not exist or is wrong.
 
     >>> def knows_camber(given):
     ...     return {"camber": [0.0 for _ in given["instants"]]}
@@ -43,20 +43,20 @@ def check(
     outcome = compare(taken, one, against)
     if not outcome.disagreements:
         return outcome
-    # Imported here: most runs have nothing to explain.
+    # Imported here: most runs have no disagreement.
     from validate.diagnosis import explain_outcome
 
     return replace(outcome, explanations=explain_outcome(taken, outcome))
 
 
 def required_accuracy(accuracy: float) -> float:
-    """An accuracy as it is.
+    """The accuracy as a float.
 
     Raises:
-        UsageError: it is no length above 0.
+        UsageError: it is not a length above 0.
     """
     if not (math.isfinite(accuracy) and accuracy > 0.0):
-        raise UsageError(f"an accuracy of {accuracy!r} mm is none; give a length above 0, such as 1e-6")
+        raise UsageError(f"the accuracy is {accuracy!r} mm; give a length above 0, such as 1e-6")
     return float(accuracy)
 
 

@@ -1,4 +1,4 @@
-"""A solver by where it stands, such as `package.module:Solver`; what it prints does not mix with results."""
+"""Imports a user's solver, such as `package.module:Solver`, and keeps its output out of the results."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ FORM = "give MODULE:NAME, such as package.module:Solver"
 
 
 def solver_at(place: str, with_traceback: bool = False) -> Solve:
-    """A solver by its module and its name there; modules are looked for in the current directory first.
+    """The solver at MODULE:NAME; modules are searched for in the current directory first.
 
     Args:
-        with_traceback: show on standard error where in its files it raises an error.
+        with_traceback: print the traceback of errors of the solver on standard error.
     Raises:
-        UsageError: there is no such module or name, or the module cannot be imported.
+        UsageError: the module or name does not exist, or the module cannot be imported.
     """
     what = f"the solver {shown(place)!r}"
     module_name, colon, name = place.partition(":")
@@ -35,8 +35,8 @@ def solver_at(place: str, with_traceback: bool = False) -> Solve:
     if a_file or not colon or not all(word.isidentifier() for word in words):
         as_module = module_name.removesuffix(".py").strip("./").replace("/", ".")
         hint = f"; try {as_module}:{name or 'NAME'}" if a_file else ""
-        raise UsageError(f"{what} is not written as a module and a name in it; {FORM}{hint}")
-    with what_it_prints_aside(), _told(with_traceback):
+        raise UsageError(f"{what} is not a module and a name in it; {FORM}{hint}")
+    with what_it_prints_aside(), _traceback_shown(with_traceback):
         found: object = _module(what, module_name)
         for word in name.split("."):
             if not hasattr(found, word):
@@ -47,14 +47,14 @@ def solver_at(place: str, with_traceback: bool = False) -> Solve:
         function = as_function(found, what)
 
     def solve(given: Mapping[str, Any]) -> Mapping[str, Any]:
-        with what_it_prints_aside(), _told(with_traceback):
+        with what_it_prints_aside(), _traceback_shown(with_traceback):
             return function(given)
 
     return solve
 
 
 def _module(what: str, name: str) -> ModuleType:
-    """The module, as `python -m` would find it."""
+    """The module, searched for as by `python -m`."""
     here = str(Path.cwd())
     if here not in sys.path:
         sys.path.insert(0, here)
@@ -62,11 +62,11 @@ def _module(what: str, name: str) -> ModuleType:
         return import_module(name)
     except ModuleNotFoundError as error:
         if error.name is not None and (name == error.name or name.startswith(f"{error.name}.")):
-            problem = f"{what} is in a module {error.name!r} that is not found"
-            raise UsageError(f"{problem}; looked for in {here} and where Python's packages are") from error
+            problem = f"{what}: the module {error.name!r} is not found"
+            raise UsageError(f"{problem}; searched in {here} and in Python's packages") from error
         raise UsageError(f"{what} cannot be imported: {said(error)}{_at(error)}; install it") from error
     except (Exception, SystemExit) as error:
-        raise UsageError(f"{what} cannot be imported: {said(error)}{_at(error)}; mend the module") from error
+        raise UsageError(f"{what} cannot be imported: {said(error)}{_at(error)}; fix the module") from error
 
 
 def _at(error: BaseException) -> str:
@@ -76,7 +76,7 @@ def _at(error: BaseException) -> str:
 
 @contextmanager
 def what_it_prints_aside() -> Iterator[None]:
-    """Brings to standard error what is printed meanwhile, by Python or by a library below it."""
+    """Redirects standard output to standard error, for Python and for libraries that it calls."""
     kept = None
     with suppress(OSError, ValueError, AttributeError):
         sys.stdout.flush()
@@ -92,7 +92,7 @@ def what_it_prints_aside() -> Iterator[None]:
 
 
 @contextmanager
-def _told(wanted: bool) -> Iterator[None]:
+def _traceback_shown(wanted: bool) -> Iterator[None]:
     try:
         yield
     except (Exception, SystemExit):

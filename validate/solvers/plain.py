@@ -1,27 +1,27 @@
-"""Anybody's solver as a formulation: plain data in, plain data out, no import of this project.
+"""A user's solver as a formulation: plain data in, plain data out, no import of this project.
 
-A solver is a function of one argument, or an object with a method `solve` of one argument, or a class without
-arguments that makes one. What it is given is a mapping (lengths in mm, angles in rad, times in s; arrays are
-numpy's, its own copies, and cannot be written to):
+A solver is a function of one argument, an object with a method `solve` of one argument, or a class without
+arguments that makes such an object. Its argument is a mapping (lengths in mm, angles in rad, times in s;
+arrays are read-only copies, of numpy):
 
     suspension  "macpherson", "double_wishbone"; closure, such as "drawn" (see the README); side of the car
     up, right   unit vectors of the car's axes, [x, y, z]
-    points      where the hardpoints are drawn, {name: [x, y, z]}
-    carried     names of the points that ride on the knuckle without holding it
-    wheel_radius, rack_per_turn    mm, or None where the scene does not say it
-    car, loads  what the scene says of the whole car and of loads at its wheels, mm, N, N mm; empty if nothing
+    points      hardpoints as drawn, {name: [x, y, z]}
+    carried     names of the points that are fixed to the knuckle but carry no joint
+    wheel_radius, rack_per_turn    mm, or None if the scene does not give them
+    car, loads  data of the whole car, and loads at its wheels, mm, N, N mm; empty if the scene has none
     instants    (N,)
-    inputs      {name: {"position": (N,), "velocity": (N,), "acceleration": (N,)}} of those that the scene
-                drives and of what can move the chassis, though it rests; and "jerk" and so on, if such are
-                asked for
-    asked       what is compared, {quantity: [names]}
+    inputs      {name: {"position": (N,), "velocity": (N,), "acceleration": (N,)}} of every input that the
+                scene drives, and of the inputs of the chassis even if it is at rest; also "jerk" and so on if
+                the scene asks for such derivatives
+    asked       the numbers that are compared, {quantity: [names]}
 
-It answers with a mapping of what it has, any part of what is asked, as arrays or lists:
+The answer is a mapping with any part of the requested numbers, as arrays or lists:
 
     {"position": {"wheel_centre": (N, 3)}, "velocity": {...}, "wheel": {"camber": (N,)}}
 
-A number that the whole car has, such as camber, may also stand by itself: {"camber": (N,)}. A solver that has
-other instants than it was given, of which some are among these, names them: {"instants": (M,), ...}.
+A number of the whole car, such as camber, may also be given directly: {"camber": (N,)}. A solver that answers
+at other instants returns them: {"instants": (M,), ...}. At least one must be an instant that was given.
 """
 
 from __future__ import annotations
@@ -50,15 +50,16 @@ Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
 INSTANTS = "instants"
 METHOD = "solve"
-ALIKE = 0.8  # of their letters, of names of which one is the other misspelt: "iterations" is no acceleration
+ALIKE = 0.8  # similarity from which a name counts as misspelt; "iterations" is not "acceleration" misspelt
 HERE, IMPORTING = Path(__file__).parent, Path(importlib.__file__).parent
 
 
 class SolverFailed(Exception):
-    """A solver raised an error, or answered with nothing that can be compared.
+    """A solver raised an error, or its answer cannot be compared.
 
     Attributes:
-        problem: what went wrong, in one line, with the solver's own words. where: its own file and line.
+        problem: what went wrong, in one line, with the solver's message.
+        where: file and line in the solver's code.
     """
 
     def __init__(self, problem: str, where: str = "") -> None:
@@ -68,8 +69,8 @@ class SolverFailed(Exception):
 
 
 def given_to_solver(scene: Scene) -> dict[str, Any]:
-    """A scene as plain data, in the form that the top of this file tells; new arrays at every call."""
-    # The many digits that laws are rounded from are an extra; this module is imported without it.
+    """A scene as plain data, see the top of this file; new arrays at every call."""
+    # Imported here: the laws need an optional package, and this module must be importable without it.
     from validate.formulations.input_rates import laws_of
 
     part, instants = scene.mechanism, scene.instants.copy()
@@ -97,7 +98,7 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
 
 
 def read_only(given: dict[str, Any]) -> dict[str, Any]:
-    """Data whose arrays cannot be written to."""
+    """The same data; its arrays are made read-only in place."""
     for part in given.values():
         if isinstance(part, np.ndarray):
             part.flags.writeable = False
@@ -107,10 +108,10 @@ def read_only(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def as_function(solver: object, name: str) -> Solve:
-    """What to call of a solver.
+    """The function of a solver.
 
     Raises:
-        UsageError: it is nothing that can be called and has no method `solve`, or it cannot be made.
+        UsageError: the solver is not callable and has no method `solve`, or its class needs arguments.
     """
     if isinstance(solver, type):
         try:
@@ -121,32 +122,32 @@ def as_function(solver: object, name: str) -> Solve:
     method = getattr(solver, METHOD, None)
     found = method if callable(method) else solver
     if not callable(found):
-        problem = f"{name} is of type {type(solver).__name__}, which is no solver"
+        problem = f"{name} is of type {type(solver).__name__}, which is not a solver"
         raise UsageError(f"{problem}; give a function, or an object or a class with a method {METHOD!r}")
     return cast("Solve", found)
 
 
 def said(error: BaseException) -> str:
-    """An error in its own words, with its class, in one line."""
+    """The class and the message of an error, in one line."""
     words = " ".join(str(error).split())
     return f"{type(error).__name__}: {words}" if words else type(error).__name__
 
 
 def no_mapping(answer: object) -> str:
-    """What is wrong with an answer that is none."""
+    """The message for an answer that is not a mapping."""
     what = "None" if answer is None else f"data of type {type(answer).__name__}"
-    return f"it answers with {what}; needed: a mapping of what it has"
+    return f"it returns {what}; needed: a mapping of the numbers that it has"
 
 
 @dataclass(frozen=True)
 class PlainSolver:
-    """Anybody's solver, held to the accuracy that it states.
+    """A user's solver with the accuracy that it states.
 
     Attributes:
-        name: in tables and messages.
+        name: name in tables and messages.
         function: see the top of this file.
-        accuracy: how exactly it says it places every point, mm; what that makes of each number is derived in
-            `formulations.stated_accuracy`.
+        accuracy: stated accuracy of every point, mm; `formulations.stated_accuracy` derives the error bound
+            of each number from it.
     """
 
     name: str
@@ -154,10 +155,10 @@ class PlainSolver:
     accuracy: float
 
     def solve(self, scene: Scene) -> Solution:
-        """Ask the solver, and say how far off its numbers may be.
+        """Call the solver, and add the error bounds of its numbers.
 
         Raises:
-            FormulationError: the solver raises an error (SolverFailed), or answers with no mapping.
+            FormulationError: the solver raises an error (SolverFailed), or does not return a mapping.
         """
         given = given_to_solver(scene)
         try:
@@ -170,13 +171,13 @@ class PlainSolver:
             raise FormulationError(self.name, SolverFailed(no_mapping(answer)))
         numbers, notes, faults = _numbers(self.name, answer, scene)
         times = self._times(answer, scene)
-        accuracy, untold = self._accuracy(scene)
-        # Of times that are none of the scene's nothing is compared.
+        accuracy, why_not = self._accuracy(scene)
+        # Times that are not instants of the scene are not compared.
         places = np.clip(np.searchsorted(scene.instants, times), 0, len(scene.instants) - 1)
-        return Solution(self.name, times, numbers, accuracy.at(places), (*notes, *untold), faults)
+        return Solution(self.name, times, numbers, accuracy.at(places), (*notes, *why_not), faults)
 
     def _accuracy(self, scene: Scene) -> tuple[Accuracy, tuple[str, ...]]:
-        """What is claimed at the scene's instants; nothing, and why, of a scene without a reference."""
+        """The error bounds at the scene's instants; if they cannot be derived, no bounds and a note why."""
         from validate.formulations.stated_accuracy import accuracy_for
         from validate.reference import NoReferenceError
 
@@ -184,7 +185,7 @@ class PlainSolver:
             return replace(accuracy_for(scene, self.accuracy), stated=self.accuracy), ()
         except (FormulationError, SceneError, NoReferenceError) as error:
             every = np.ones(len(scene.instants), dtype=bool)
-            note = f"no tolerance can be derived for {self.name}, so that nothing is tested: {error}"
+            note = f"no tolerance can be derived for {self.name}, so nothing is tested: {error}"
             return Accuracy(np.ones(len(every)), blind=every, stated=self.accuracy), (note,)
 
     def _times(self, answer: Mapping[str, Any], scene: Scene) -> Array:
@@ -194,12 +195,12 @@ class PlainSolver:
             times = np.asarray(answer[INSTANTS], dtype=float)
         except (ValueError, TypeError) as error:
             raise FormulationError(
-                self.name, SolverFailed(f"its {INSTANTS} are no numbers ({error})")
+                self.name, SolverFailed(f"its {INSTANTS} are not numbers ({error})")
             ) from error
         if times.ndim != 1 or not np.isin(times, scene.instants).any():
-            problem = f"its {INSTANTS} have the shape {times.shape} and none of the scene's among them"
+            problem = f"its {INSTANTS} have the shape {times.shape} and include no instant of the scene"
             raise FormulationError(
-                self.name, SolverFailed(f"{problem}; give (M,) of those that it was given")
+                self.name, SolverFailed(f"{problem}; needed: shape (M,), with instants that were given")
             )
         return times
 
@@ -207,7 +208,7 @@ class PlainSolver:
 def _numbers(
     who: str, answer: Mapping[str, Any], scene: Scene
 ) -> tuple[dict[str, dict[str, Any]], tuple[str, ...], tuple[str, ...]]:
-    """What was asked for, of all that was answered; a line for what was not; one for what cannot be used."""
+    """The requested numbers of an answer, notes on numbers not requested, and faults of unusable data."""
     asked, known = asked_numbers(scene), known_names(scene.mechanism.topology)
     every = (*known, *(name for q, names in known.items() if QUANTITIES[q].of == "car" for name in names))
     of_the_car = {n: q for q, names in asked.items() if QUANTITIES[q].of == "car" for n in names}
@@ -215,7 +216,7 @@ def _numbers(
     notes: list[str] = []
     faults: list[str] = []
     for key, part in answer.items():
-        # Some numbers of the car are called as their quantity is.
+        # A quantity of the car may have a number of the same name.
         if key in of_the_car and not (key in asked and isinstance(part, Mapping)):
             found.setdefault(of_the_car[key], {})[key] = part
         elif key in asked and isinstance(part, Mapping):
@@ -224,37 +225,37 @@ def _numbers(
                     found.setdefault(key, {})[name] = array
                 else:
                     what = f"{QUANTITIES[key].words} of {shown(name)}"
-                    told = faults if _misspelt(name, known[key]) else notes
-                    told.append(_left_out(who, what, name, asked[key]))
+                    lines = faults if _misspelt(name, known[key]) else notes
+                    lines.append(_ignored(who, what, name, asked[key]))
         elif key in asked:
             faults.append(
-                f"{who}: {key} is of type {type(part).__name__}; needed: arrays by name; it is left out"
+                f"{who}: {key} is of type {type(part).__name__}; needed: arrays by name; it is ignored"
             )
         elif key != INSTANTS:
-            told = faults if _misspelt(key, every) else notes
-            told.append(_left_out(who, shown(key), key, (*asked, *of_the_car)))
+            lines = faults if _misspelt(key, every) else notes
+            lines.append(_ignored(who, shown(key), key, (*asked, *of_the_car)))
     return found, tuple(notes), tuple(faults)
 
 
 def _misspelt(name: object, known: Collection[str]) -> bool:
-    """Whether a name is one of the known ones misspelt; else it may be another."""
+    """Whether a name is unknown but similar to a known one."""
     return name not in known and bool(get_close_matches(str(name).lower(), known, n=1, cutoff=ALIKE))
 
 
-def _left_out(who: str, what: str, name: object, there: Iterable[str]) -> str:
+def _ignored(who: str, what: str, name: object, there: Iterable[str]) -> str:
     names = tuple(there)
     hint = meant(str(name), names)
-    return f"{who} gives {what}, which the scene does not ask for{hint}; it is left out" + (
+    return f"{who} gives {what}, which the scene does not ask for{hint}; it is ignored" + (
         "" if hint else f"; asked for: {', '.join(names)}"
     )
 
 
 def raised_at(error: BaseException) -> str:
-    """The file and line that raised, of the solver's own if the call got so far."""
+    """The file and line of the solver's code that raised; empty if no code of the solver was reached."""
     own = [f for f in traceback.extract_tb(error.__traceback__) if not _ours(f.filename)]
     return f"{Path(own[-1].filename).name}:{own[-1].lineno}" if own else ""
 
 
 def _ours(file: str) -> bool:
-    """Whether a file is of this folder, or Python's own that imports: neither is the solver's."""
+    """Whether a file belongs to this folder or to Python's import system, and not to the solver."""
     return file.startswith("<frozen importlib") or Path(file).parent in (HERE, IMPORTING)

@@ -1,1 +1,1 @@
-"""What tests of other people's solvers are written with."""
+"""Assertions and scenes for tests of a user's solver."""

@@ -1,5 +1,5 @@
-"""What a test asserts of a solver: its numbers lie within what its stated accuracy makes of each of them, and
-it gives none where there is no pose.
+"""Assertions for tests of a solver: its numbers agree within tolerances that follow from its stated accuracy,
+and it gives no numbers at instants without a pose.
 """
 
 from __future__ import annotations
@@ -23,17 +23,19 @@ from validate.solvers.check import ACCURACY, AGAINST, required_accuracy
 from validate.solvers.plain import PlainSolver, as_function, given_to_solver
 
 WHO = "the states"
-# What is said of a test's own arguments; anything else that is raised is a defect of this package.
+# Errors that concern the arguments of a test; any other error is a defect of this package.
 TOLD = (AssertionError, PointcoordError, FormulationError, NoReferenceError, UsageError)
-MOST_ROWS, MOST_EXPLANATIONS = 8, 3  # in a message; how many more rows there are is said
+MOST_ROWS, MOST_EXPLANATIONS = 8, 3  # in a message; the number of further rows is stated
 
 
 class NotTested(AssertionError):
-    """Nothing disagrees, but the stated accuracy says nothing of some of the numbers that are given.
+    """No number disagrees, but for some of the given numbers the stated accuracy gives no tolerance.
 
     Attributes:
-        scene: its name. accuracy: as it was stated, mm. numbers: what is not tested, in words.
-        agree: how many others do.
+        scene: name of the scene.
+        accuracy: stated accuracy, mm.
+        numbers: the numbers that are not tested, in words.
+        agree: number of rows that agree.
     """
 
     def __init__(self, scene: str, accuracy: float, numbers: Sequence[str], agree: int) -> None:
@@ -42,8 +44,8 @@ class NotTested(AssertionError):
         self.numbers = tuple(numbers)
         self.agree = agree
         super().__init__(
-            f"not tested in {scene!r}: {', '.join(numbers)}; an accuracy of {accuracy:g} mm says nothing of "
-            f"them, for the scene is too near a singular pose for it ({agree} others agree); state a finer "
+            f"not tested in {scene!r}: {', '.join(numbers)}; an accuracy of {accuracy:g} mm gives no "
+            f"tolerance, because the scene is too near a singular pose ({agree} others agree); state a finer "
             "accuracy, or leave this scene out"
         )
 
@@ -58,27 +60,27 @@ def assert_agrees(
     against: str | Formulation | Solution = AGAINST,
     needed: Collection[str] = (),
 ) -> Outcome:
-    """Hold numbers to a formulation, within what the stated accuracy makes of each of them.
+    """Compare numbers with a formulation; the tolerance of each follows from the stated accuracy.
 
     Args:
-        states: what a solver answers with, any part of what the scene asks for, by quantity and name (see
+        states: the answer of a solver, any part of what the scene asks for, by quantity and name (see
             `solvers.plain`).
-        scene: that was solved, or its name or path.
-        accuracy: how exactly the solver places every point, mm, as it says itself.
-        against: the name of a formulation, or one, or a solution of this scene, such as the reference's.
-        needed: what must be given, all that the scene asks for of it: quantities, such as "velocity", or
-            numbers of the car, such as "camber". Anything else may be missing.
+        scene: the scene that was solved, or its name or path.
+        accuracy: accuracy of every point as the solver states it, mm.
+        against: a formulation or its name, or a solution of this scene, such as the reference's.
+        needed: names of quantities, such as "velocity", or of numbers of the car, such as "camber", that must
+            be given completely, as far as the scene asks for them. All others may be missing.
     Returns:
-        All comparisons; its notes say what was given that the scene does not ask for.
+        All comparisons; its notes name the numbers that are given but that the scene does not ask for.
     Raises:
-        AssertionError: a number disagrees, or nothing that is asked for is given but points that stay where
-            they are drawn. The message says which quantity of what, the difference, the tolerance and the
-            instant, and what would explain it. Or a number has another shape than its kind, or a misspelt
-            name, or what is needed is missing: a comparison would leave it out and judge the rest.
-        NotTested: this accuracy says nothing of some of them, and nothing disagrees.
-        UsageError: `accuracy` is no length above 0.
-        FormulationError: the states are no mapping, or the other formulation refuses the scene.
-        SceneError: there is no such scene, or it is wrong.
+        AssertionError: a number disagrees, or only points that stay where they are drawn are given. The
+            message states the number, the difference, the tolerance, the instant and possible explanations.
+            Also raised for a wrong shape, a misspelt name or a missing number that is `needed`, which a
+            comparison would ignore.
+        NotTested: the accuracy gives no tolerance for some of the numbers, and none disagrees.
+        UsageError: `accuracy` is not a length above 0.
+        FormulationError: `states` is not a mapping, or the other formulation refuses the scene.
+        SceneError: the scene does not exist or is wrong.
 
     >>> assert_agrees({"camber": [0.0] * 131}, "bounce")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
@@ -93,7 +95,7 @@ def assert_agrees(
         outcome = compare_solutions(taken, one.solve(taken), against, name)
     else:
         outcome = compare(taken, one, against, name)
-    if faults := (*outcome.faults, *_lacking(outcome, needed)):
+    if faults := (*outcome.faults, *_missing(outcome, needed)):
         raise AssertionError("; ".join(faults))
     if outcome.disagreements:
         raise AssertionError(_disagreement(taken, outcome, exact))
@@ -109,18 +111,20 @@ def assert_agrees(
 def assert_refuses(
     solver: object, scene: Scene | str, raises: type[Exception] | tuple[type[Exception], ...] = Exception
 ) -> None:
-    """See that a solver does not answer where a scene has no pose.
+    """Check that a solver gives no answer at the instants at which a scene has no pose.
 
-    It may raise an error, leave out these instants, or have a NaN among its numbers at each of them. That
-    there is no pose is proven by the reference.
+    The solver may raise an error, leave these instants out, or give NaN for at least one number at each of
+    them. The reference proves that there is no pose.
 
     Args:
         solver: a function of one mapping, or an object or class with a method `solve` (see `solvers.plain`).
-        scene: with instants that have no pose, or its name or path.
-        raises: what it raises to refuse; another error is none, and comes through.
+        scene: a scene with instants that have no pose, or its name or path.
+        raises: the errors that count as a refusal; other errors are not caught.
     Raises:
-        AssertionError: all that it gives at such an instant are numbers; or it gives nothing.
-        UsageError: `solver` is none. SceneError: there is no such scene, or every instant has a pose.
+        AssertionError: all numbers at such an instant are finite, the answer cannot be used or contains no
+            requested number, or every instant of the scene has a pose.
+        UsageError: `solver` is not a solver.
+        SceneError: the scene does not exist or is wrong.
     """
     __tracebackhide__ = True
     function = as_function(solver, "the solver")
@@ -128,7 +132,7 @@ def assert_refuses(
     name = scene if isinstance(scene, str) else taken.title or "the scene"
     without = _without_pose(taken)
     if not without:
-        raise AssertionError(f"every instant of {name!r} has a pose; hold the numbers there by assert_agrees")
+        raise AssertionError(f"every instant of {name!r} has a pose; compare the numbers by assert_agrees")
     plain = given_to_solver(taken)
     try:
         answer = function(plain)
@@ -149,24 +153,24 @@ def assert_refuses(
     if answered:
         raise AssertionError(
             f"the solver answers {name!r} at t = {answered[0]:.9g} s, where there is no pose: "
-            f"{without[answered[0]]}; let it raise an error there, or give NaN"
+            f"{without[answered[0]]}; it should raise an error there, or give NaN"
         )
 
 
-def _lacking(outcome: Outcome, needed: Collection[str]) -> Iterator[str]:
-    """What is needed of states and not there, a line each."""
+def _missing(outcome: Outcome, needed: Collection[str]) -> Iterator[str]:
+    """One line for each name in `needed` of which numbers are missing."""
     for need in needed:
         rows = [row for row in outcome.rows if need in (row.quantity, row.name)]
         if not rows:
             known = dict.fromkeys(word for row in outcome.rows for word in (row.quantity, row.name))
-            yield f"{need!r} is needed, and the scene does not ask for it{meant(str(need), known)}"
+            yield f"{need!r} is needed, but the scene does not ask for it{meant(str(need), known)}"
         elif names := [row.name for row in rows if row.verdict == "not given"]:
             of = "" if names == [need] else f" of {', '.join(names)}"
-            yield f"{need} is needed and missing{of}"
+            yield f"{need} is needed, but {WHO} give none{of}"
 
 
 def _without_pose(scene: Scene) -> dict[float, str]:
-    """The instants of a scene that have none, each with the reason."""
+    """The instants of a scene that have no pose, each with the reason."""
     found = {}
     for time in scene.instants.tolist():
         try:
@@ -181,21 +185,21 @@ def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:
     wrong = sorted(outcome.disagreements, key=lambda row: -row.share)
     agree = sum(row.verdict == "agrees" for row in outcome.rows)
     lines = [
-        f"{WHO} disagree with {other} in {outcome.scene!r}: {len(wrong)} of {len(wrong) + agree} numbers "
-        f"that are tested are off by more than an accuracy of {accuracy:g} mm makes of them",
+        f"{WHO} disagree with {other} in {outcome.scene!r}: {len(wrong)} of {len(wrong) + agree} tested "
+        f"numbers are off by more than the tolerances that follow from an accuracy of {accuracy:g} mm",
         *(f"  {told_row(row)}" for row in wrong[:MOST_ROWS]),
     ]
     if len(wrong) > MOST_ROWS:
         lines.append(f"  and {len(wrong) - MOST_ROWS} more")
     explained = explain_outcome(scene, outcome)[:MOST_EXPLANATIONS]
-    lines += [f"  what would explain it: {one.words}" for one in explained]
+    lines += [f"  possible explanation: {one.words}" for one in explained]
     lines += [f"  note: {note}" for note in outcome.notes]
     return "\n".join(lines)
 
 
 def _nothing(outcome: Outcome) -> str:
     asked = ", ".join(dict.fromkeys(row.quantity for row in outcome.rows))
-    lines = [f"{WHO} hold nothing that {outcome.scene!r} asks for: {asked}"]
+    lines = [f"{WHO} contain nothing that {outcome.scene!r} asks for: {asked}"]
     if any(row.verdict == "agrees" for row in outcome.rows) or outcome.faults:
-        lines = [f"{WHO} say nothing of {outcome.scene!r}: {outcome.why_no_verdict}"]
+        lines = [f"{WHO} give no verdict for {outcome.scene!r}: {outcome.why_no_verdict}"]
     return "\n".join([*lines, *(f"  note: {note}" for note in outcome.notes)])

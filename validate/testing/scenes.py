@@ -1,4 +1,4 @@
-"""Scenes that a test of a solver runs over: the built-in ones, and what is hard for any solver."""
+"""Scenes for tests of a solver: the built-in scenes, and hard cases."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from validate.hard.catalogue import CASES
 
 NEAR = 1e-3
 
-# Hard cases that no solver can be asked: what is no scene, for it is refused when it is read; a mechanism
-# with a link too many or too few, and others that a solver may refuse as well as answer, and be right.
+# Hard cases that do not suit a solver: invalid scenes, which are refused when they are read; and scenes that
+# a solver may rightly refuse or answer, such as a mechanism with a link too many or too few.
 NOT_ASKED = frozenset(case.name for case in CASES if not (case.answered or case.without_pose))
 
 
@@ -25,18 +25,18 @@ def scenes_to_try(
     closure: str | None = None,
     near: float | None = NEAR,
 ) -> dict[str, Scene]:
-    """Scenes by the names that tests over them get.
+    """Scenes for a test, by the names that the test cases get.
 
     Args:
-        names: of built-in or hard scenes, paths, or scenes themselves; all built-in ones if not given.
-        hard: whether the hard cases are added: every one that is one scene and has an answer.
-        suspension: scenes of this shipped mechanism only, such as "double_wishbone".
-        closure: scenes whose drawing closes in this way only, such as "drawn".
-        near: how near to its singular place each hard case is taken: at the value of its parameter that is
-            nearest to this, of those where there is an answer. None: at each of them.
+        names: names of built-in scenes or hard cases, paths, or scenes; all built-in scenes if not given.
+        hard: whether to add every hard case that is a single scene and has an answer.
+        suspension: only scenes of this shipped mechanism, such as "double_wishbone".
+        closure: only scenes with this closure of the drawing, such as "drawn".
+        near: distance from the singular pose of a hard case: the scene is made with the value of its
+            parameter that is nearest to this and has an answer. None: with each such value.
     Raises:
-        SceneError: there is no such scene, or it is wrong.
-        ValueError: there is no such suspension or closure, or `near` is no number above 0.
+        SceneError: a scene does not exist or is wrong.
+        ValueError: the suspension or closure does not exist, or `near` is not a number above 0.
     """
     cases = {case.name: case for case in CASES if case.answered}
     found: dict[str, Scene] = {}
@@ -59,16 +59,16 @@ def impossible_scenes(
     closure: str | None = None,
     near: float | None = NEAR,
 ) -> dict[str, Scene]:
-    """Hard cases in which some instants have no pose, by the names that tests over them get.
+    """Hard cases in which some instants have no pose, by the names that the test cases get.
 
-    Args: as for `scenes_to_try`; all such cases without names.
+    Args: as for `scenes_to_try`; all such cases if no names are given.
     Raises:
-        ValueError: there is no such case, suspension or closure, or `near` is no number above 0.
+        ValueError: the case, suspension or closure does not exist, or `near` is not a number above 0.
     """
     cases = {case.name: case for case in CASES if case.without_pose}
     for name in names:
         if name not in cases:
-            raise ValueError(f"{name!r} is no case without a pose; there are: {', '.join(cases)}")
+            raise ValueError(f"{name!r} is not a case without a pose; there are: {', '.join(cases)}")
     found: dict[str, Scene] = {}
     for name, case in cases.items():
         if not names or name in names:
@@ -77,10 +77,10 @@ def impossible_scenes(
 
 
 def _loaded(name: str) -> Scene:
-    """A scene by its name or path; of a hard case without an answer, why."""
+    """A scene by its name or path; raises if the name is a hard case without an answer."""
     if name in NOT_ASKED:
         raise ValueError(
-            f"the hard case {name!r} cannot be asked of a solver: it is no scene, or one that may be refused"
+            f"the hard case {name!r} does not suit a solver: it is not a scene, or a solver may refuse it"
         )
     cases = {case.name: case for case in CASES}
     if name in cases:
@@ -95,10 +95,10 @@ def _loaded(name: str) -> Scene:
 
 
 def _taken(case: Case, values: Sequence[float], near: float | None) -> Iterator[tuple[str, Scene]]:
-    """The scenes of a case, each named with its value."""
+    """The scenes of a hard case, each named with the value of its parameter."""
     if near is not None:
         if not (math.isfinite(near) and near > 0.0):
-            raise ValueError(f"near={near!r} is no number above 0; give one such as {NEAR:g}, or None")
+            raise ValueError(f"near={near!r} is not a number above 0; give one such as {NEAR:g}, or None")
         values = [min(values, key=lambda v: abs(math.log(abs(v) / near)) if v else math.inf)]
     for value in values:
         name = f"{case.name} at {value:g}"
@@ -106,12 +106,12 @@ def _taken(case: Case, values: Sequence[float], near: float | None) -> Iterator[
 
 
 def _of_kind(scenes: Mapping[str, Scene], suspension: str | None, closure: str | None) -> dict[str, Scene]:
-    """Those of a mechanism and a closure."""
+    """The scenes with the given mechanism and closure."""
     if suspension is not None and suspension not in shipped():
-        raise ValueError(f"suspension={suspension!r}: there is none; there are: {', '.join(shipped())}")
+        raise ValueError(f"suspension={suspension!r} does not exist; there are: {', '.join(shipped())}")
     closures = dict.fromkeys(name for one in shipped() for name in mechanism_file(one).closures)
     if closure is not None and closure not in closures:
-        raise ValueError(f"closure={closure!r}: there is none; there are: {', '.join(closures)}")
+        raise ValueError(f"closure={closure!r} does not exist; there are: {', '.join(closures)}")
     return {
         name: scene
         for name, scene in scenes.items()

@@ -107,7 +107,7 @@ def test_what_is_not_given_or_not_tested_is_skipped_with_the_reason() -> None:
     assert message.startswith("not given: mine gives no position of lower_arm_front, ")
     assert messages["camber"] == ["not given: mine gives no wheel angle"]
     assert messages["velocity of wheel_centre"][0] == (
-        "not tested: the tolerance rests on the error bound of mine, and is too wide to test the other one"
+        "not tested: the tolerance is limited by the error bound of mine; it is too wide to test the other"
     )
     assert messages["acceleration of wheel_centre"][0] == (
         "not tested: mine: acceleration of wheel_centre: its accuracy is not given"

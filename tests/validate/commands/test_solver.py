@@ -29,7 +29,7 @@ RACK += "    return {'position': {'tie_rod_inner': place}}\n"
 # What becomes of a strut with it; a double wishbone it answers.
 ENDS = {
     "crashes": ("os.kill(os.getpid(), 11)", "was ended by SIGSEGV"),
-    "answers": ("return None", "it answers with None; needed: a mapping"),
+    "answers": ("return None", "it returns None; needed: a mapping"),
     "reads": ("input()", "EOFError"),
 }
 HANGS = {"hangs": "while True: pass"}
@@ -88,7 +88,7 @@ def test_a_solver_s_numbers_decide_and_what_it_does_not_give_is_listed(
     # A coarser accuracy is what it would have to state, and says nothing of anything.
     assert run("wrong", "off-axis-strut.toml", "--accuracy", "1e6", "-q") == 3
     (line,) = capfd.readouterr().err.splitlines()
-    assert "no verdict: no number that is given is tested; camber, toe: not tested: " in line
+    assert "no verdict: none of the numbers given is tested; camber, toe: not tested: " in line
 
 
 def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_summary(
@@ -122,14 +122,14 @@ def test_json_is_alone_on_standard_output(solvers: Path) -> None:
 @pytest.mark.parametrize(
     ("solver", "words", "said"),
     [
-        ("own.nowhere:solve", "", "'own.nowhere' that is not found"),
+        ("own.nowhere:solve", "", "the module 'own.nowhere' is not found"),
         ("own.right:solv", "", "(did you mean 'solve'?)"),
         ("own.raises:Twice", "", "cannot be made without arguments: TypeError"),
         ("own.odd:solve", "", "ZeroDivisionError: division by zero at odd.py:1"),
-        ("own.unread:solve", "", "SyntaxError: '(' was never closed (unread.py, line 1); mend the module"),
+        ("own.unread:solve", "", "SyntaxError: '(' was never closed (unread.py, line 1); fix the module"),
         ("own/right.py:solve", "", "try own.right:solve"),
         ("", "", "give MODULE:NAME"),
-        ("math:pi", "", "is of type float, which is no solver"),
+        ("math:pi", "", "is of type float, which is not a solver"),
         ("own.right:solve", "--accuracy 0", "give a length above 0"),
         ("own.right:solve", "--solver-timeout 0", "allowed: a positive, finite number"),
         ("own.right:solve", "--solver-timeout 5 --in-process", "leave one of them out"),

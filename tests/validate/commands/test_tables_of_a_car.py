@@ -165,7 +165,7 @@ def test_forces_that_a_scene_asks_for_stand_in_its_tables(
         # Wheels that are not steered to the same side have no turning circle.
         ("axle-opposed", "iso", "165 numbers compared: 165 agree."),
         # The scene holds the arm elsewhere than drawn.
-        ("steer", "paper", "arm_angle is held at 1.5708 rad: the scene does, and the file does not give it"),
+        ("steer", "paper", "arm_angle is held at 1.5708 rad: as in the scene"),
     ],
 )
 def test_a_table_of_all_that_a_car_has_agrees_with_the_car(

@@ -69,7 +69,7 @@ SURE = Accuracy(ONES)
 @pytest.mark.parametrize(
     ("numbers", "said"),
     [
-        ({"speed": {"wheel_centre": WHEEL}}, "mine: 'speed' is no quantity and is left out; there are: pos"),
+        ({"speed": {"wheel_centre": WHEEL}}, "mine: 'speed' is not a quantity and is ignored; there are: "),
         ({"position": [WHEEL]}, "mine: position given as list; needed: arrays by name"),
         ([WHEEL], "mine: its numbers given as list; needed: arrays by name"),
         (

@@ -74,7 +74,7 @@ def test_the_corrected_scene_is_read_back_and_leaves_what_the_fit_said(
     words = ["double-wishbone", "--data", data, "--free", *FREE, "-o", scene, "--json", found, "--csv", rows]
     assert run(*words) is ExitStatus.AGREE
     said = capsys.readouterr()
-    assert "unique near here" in said.out
+    assert "the answer is unique nearby" in said.out
     # It takes a while: something is said at once, and in the end what the scene can be held to.
     assert said.err.startswith("pointcoord: note: double-wishbone: 2 coordinates are fitted to 18 numbers")
     try_this = said.out.splitlines()[-1].partition("try: ")[2]
@@ -246,7 +246,7 @@ def test_what_a_prior_knows_better_than_the_file_is_not_known_from_the_file(
     fit = fitted(CAR, data, CENTRE, prior=times * known, accuracy=accuracy)
     assert [one.deviation for one in fit.combinations] == pytest.approx([known] * 3, rel=1e-9)
     assert (not fit.unseen) is settled
-    assert ("settle every combination" in said_of_fit(fit, "x", "y").text) is settled
+    assert ("determine every combination" in said_of_fit(fit, "x", "y").text) is settled
 
 
 @pytest.mark.parametrize("noise", [0.0, 4.0])
@@ -297,7 +297,7 @@ def test_a_correction_ends_on_its_bound_and_the_others_are_fitted_to_it_there() 
     assert [at for at, one in fit.coordinates.items() if one.on_bound] == ["upper_ball_joint.z"]
     assert fit.coordinates["upper_ball_joint.z"].correction == pytest.approx(-4.0, abs=1e-9)
     assert "on its bound" in said_of_fit(fit, "x", "y").text
-    assert any("beyond the bounds" in words for words in warnings_of_fit(fit))
+    assert any("on the bound of" in words for words in warnings_of_fit(fit))
     held = designs_of(misread, offsets={"upper_ball_joint.z": -4.0}).design(0)
     alone = fitted(held, data, FREE[1:], bounds=4.0)
     other, alone = fit.coordinates[FREE[1]], alone.coordinates[FREE[1]]

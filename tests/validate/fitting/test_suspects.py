@@ -88,7 +88,7 @@ def test_a_car_that_explains_its_file_has_no_suspects() -> None:
     found = found_in("double-wishbone", curves("double-wishbone", {}))
     assert found.drawn
     assert not found.tried
-    assert "nothing to look for" in said_of_suspects(found, "car", "x.csv").text
+    assert "no hardpoint is suspect" in said_of_suspects(found, "car", "x.csv").text
 
 
 def test_rounding_leaves_as_much_as_explains_but_for_one_file_in_a_thousand() -> None:

@@ -74,9 +74,9 @@ def test_wrong(reference, assert_agrees):
 """
     done = run(tmp_path, text, "-rs")
     assert "1 failed, 2 passed, 1 skipped" in done.stdout, done.stdout + done.stderr
-    assert "an accuracy of 1000 mm says nothing of them" in done.stdout
+    assert "an accuracy of 1000 mm gives no tolerance" in done.stdout
     assert "disagree with reference in" in done.stdout
-    assert "what would explain it: velocity: the other sign" in done.stdout
+    assert "possible explanation: velocity: the other sign" in done.stdout
 
 
 def test_every_built_in_scene_and_named_hard_case_is_one_test(tmp_path: Path) -> None:
@@ -102,21 +102,21 @@ def test_one(scene):
         (mark("suspension_scenes", "bunce"), "did you mean 'bounce'?"),
         (
             mark("suspension_scenes", "link-twice"),
-            "cannot be asked of a solver: it is no scene, or one that may be refused",
+            "does not suit a solver: it is not a scene, or a solver may refuse it",
         ),
         (mark("suspension_scenes", "branches-met"), "without a pose; mark with impossible_scenes"),
         (
             mark("suspension_scenes", suspension="wishbone"),
-            "'wishbone': there is none; there are: andrews_squeezer, axle, ",
+            "'wishbone' does not exist; there are: andrews_squeezer, axle, ",
         ),
-        (mark("suspension_scenes", "arm-highest-held", near=0.0), "near=0.0 is no number above 0"),
+        (mark("suspension_scenes", "arm-highest-held", near=0.0), "near=0.0 is not a number above 0"),
         (
             mark("suspension_scenes", "steer", suspension="double_wishbone"),
             "no scene fits the mark; leave `suspension` out",
         ),
         (
             mark("impossible_scenes", "steer"),
-            "'steer' is no case without a pose; there are: reach-arm-",
+            "'steer' is not a case without a pose; there are: reach-arm-",
         ),
     ],
     ids=str,
@@ -174,7 +174,7 @@ def test_a_case_without_a_pose_is_answered_by_none_that_is_right() -> None:
     assert_refuses(lambda _: answer, scene)
     with pytest.raises(AssertionError, match="has the shape"):
         assert_refuses(lambda _: {"camber": [1.0, 2.0, 3.0, 4.0]}, scene)
-    with pytest.raises(AssertionError, match="it answers with None; needed: a mapping"):
+    with pytest.raises(AssertionError, match="it returns None; needed: a mapping"):
         assert_refuses(lambda _: None, scene)
 
 
