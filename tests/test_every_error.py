@@ -130,7 +130,7 @@ SAYS: dict[str, tuple[str, ...]] = {
     "AssemblyError": ("t = ", "wanted", "rack = ", "stopped at", "condition number", "bring 'rack' back"),
     "MotionTooLong": ("from 0 to 2.6 s", "segments; allowed: 5", "slow the inputs down", "'newton'"),
     "MotionTooRough": ("input 'arm_angle' changes too fast", "after t = 0.4999999", "'newton'"),
-    "MotionNotMapped": ("after t = 0 s", "arm_angle = 0.8", "the most patches", "'newton'"),
+    "MotionNotMapped": ("after t = 0 s", "arm_angle = 0.8", "the limit of patches", "'newton'"),
     "SingularConfiguration": ("in one line", "turn about that line is free", "move an input or a point"),
     "OutsideMotion": ("t = 2.7 s is outside", "allowed: 0 to 2.6 s"),
     "WrongArgument": ("ranges['arm_angle'] is (1.0, 0.9)", "allowed: two finite numbers", "the lower first"),

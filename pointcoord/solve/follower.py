@@ -10,7 +10,7 @@ A pose on the way is corrected only until Newton's method is proven to converge 
 step. Its residual is reduced along the rest of the path. Only the end is corrected to the tolerance.
 
 Two errors are left out. Rounding: within the root of EPS of a pose where two branches cross, rounding may
-hide the crossing. Truncation of a law, that of a rotation: for a step of h rad the truncation error is
+hide the crossing. Truncation of a law, that of a rotation: for a step of h rad at order p the error is
 d = h^(p + 1) / (p + 1)!. Where branches cross, the assemblies along the truncated law come within a root of d
 of both branches. A step past the crossing would have to be no longer than that root, but d is in proportion
 to a power of h above the square.

@@ -1,7 +1,7 @@
 r"""Proof of a step along a power series: the step follows one branch, and leads to one pose.
 
-Branches meet where C_u is singular. In a fold two branches end, and a determinant changes its sign. At a
-crossing, like that of the parallel and the crossed assembly of a crank and coupler in line, a series is
+Branches meet where C_u is singular. In a fold two branches meet and end, and a determinant changes its sign.
+At a crossing, like that of the parallel and the crossed assembly of cranks and couplers in line, a series is
 smooth and shows nothing. So every step of a path, of a motion in time and of a range of inputs is proven to
 meet no singular pose.
 
@@ -63,8 +63,8 @@ PARTS = (1, 4, 16)
 # Iterations towards the weights with the smallest norm; the factor by which a box may take more, because a
 # box cannot be made shorter; and a norm at which the iteration stops.
 WEIGHINGS, MORE, ENOUGH = 4, 2, 0.8
-# Below this value of EPS |X|^2 rounding cannot hide a branch: for coordinates near 1, omega |X| d is at most
-# about a thousand times EPS |X|^2.
+# Below this value of EPS |X|^2 rounding cannot hide a branch: for coordinates near 1 and a rounding error d
+# of a row, omega |X| d is at most about a thousand times EPS |X|^2.
 CLEAR = 1e-6
 
 
