@@ -442,8 +442,8 @@ def _hold_rows(patches: ProvenPatches) -> None:
     """Check everywhere on the patches that the left-out rows hold.
 
     A row has products of two coordinates, and each coordinate is a series of the map's order. So the row is
-    a polynomial of twice that order in each input. Between the Chebyshev nodes it is at most about four times
-    its largest value at the nodes (Lebesgue's constant).
+    a polynomial of twice that order in each input. Between the Chebyshev nodes it is at most about 4^p times
+    its largest value at the nodes, for p inputs (Lebesgue's constant, once for each input).
 
     Raises:
         MechanismError: a row is violated.
