@@ -254,11 +254,11 @@ def compare_solutions(
     missing: list[str] = []
     for quantity, names in (asked_numbers(scene) if asked is None else asked).items():
         parts = _parts(quantity, names, first, second)
-        lacking = dict(_missing(quantity, parts, first, second))
-        missing += lacking
+        absent = dict(_missing(quantity, parts, first, second))
+        missing += absent
         pair = Pair(quantity, (first, second), factor)
         for part in parts:
-            rows.append(_reasoned(_row(name, part, pair, instants, scene), lacking, notes, faults))
+            rows.append(_reasoned(_row(name, part, pair, instants, scene), absent, notes, faults))
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor, faults=faults)
 
 
@@ -274,32 +274,32 @@ def _missing(
     """One line for each kind of number that a solution does not give, with the names that are missing."""
     words = QUANTITIES[quantity].words
     for side in (one, two):
-        lacking = [part for part in parts if part not in side.numbers[quantity]]
-        if lacking and not side.numbers[quantity]:
-            yield f"{side.formulation} gives no {words}", lacking
-        elif lacking:
-            yield f"{side.formulation} gives no {words} of {', '.join(lacking)}", lacking
+        absent = [part for part in parts if part not in side.numbers[quantity]]
+        if absent and not side.numbers[quantity]:
+            yield f"{side.formulation} gives no {words}", absent
+        elif absent:
+            yield f"{side.formulation} gives no {words} of {', '.join(absent)}", absent
         for name in side.numbers[quantity]:
-            near = "" if name in parts else nearest(name, lacking)
+            near = "" if name in parts else nearest(name, absent)
             if near:
                 line = f"{side.formulation} gives {words} of {shown(name)}, which is ignored"
                 yield f"{line} (did you mean {near!r}?)", [near]
 
 
 def _reasoned(
-    row: Comparison, lacking: Mapping[str, Sequence[str]], notes: Sequence[str], faults: Sequence[str]
+    row: Comparison, absent: Mapping[str, Sequence[str]], notes: Sequence[str], faults: Sequence[str]
 ) -> Comparison:
     """Adds the reason to a row that is not tested or not given.
 
     Args:
-        lacking: lines on numbers that are not given, each with their names.
+        absent: lines on numbers that are not given, each with their names.
         notes, faults: notes and faults of the outcome.
     """
     about = f": {QUANTITIES[row.quantity].words} of {row.name}"
     if row.verdict == "not given":
         found = (
             [fault for fault in faults if f"{about} " in fault][:1]
-            or [line for line, names in lacking.items() if row.name in names]
+            or [line for line, names in absent.items() if row.name in names]
             or notes
             or ["no instant of the scene has a number"]
         )

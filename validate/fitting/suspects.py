@@ -80,8 +80,8 @@ class Suspects:
     @property
     def equal(self) -> tuple[Fit, ...]:
         """The best set that explains the file, and the sets that the file cannot tell from it."""
-        explaining, told = self.explaining, float(chdtri(1, 1.0 - CONFIDENCE))
-        return tuple(one for one in explaining if one.left - explaining[0].left <= told)
+        explaining, margin = self.explaining, float(chdtri(1, 1.0 - CONFIDENCE))
+        return tuple(one for one in explaining if one.left - explaining[0].left <= margin)
 
     @property
     def ended(self) -> bool:

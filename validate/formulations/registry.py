@@ -124,10 +124,10 @@ def second_there() -> tuple[str, str]:
 
 def missing(names: Iterable[str]) -> dict[str, str]:
     """The formulations among `names` whose packages are not installed, each with the message."""
-    lacking: dict[str, str] = {}
+    absent: dict[str, str] = {}
     for name in dict.fromkeys(names):
         try:
             formulation(name)
         except MissingLibrary as error:
-            lacking[name] = str(error)
-    return lacking
+            absent[name] = str(error)
+    return absent
