@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 # Smallest printed part of a combination, relative to its largest; if exact, all that two decimals show.
 SAID, SAID_EXACT = 0.2, 0.005
 # Singular values below this part of the largest are zero to accuracy: the relative rounding error of slopes
-# is EPS times the condition number of the pose, which reaches this only at a condition of 1e8, next to a lock.
+# is EPS times the condition number of the pose, which reaches this only at a condition of 1e8, near a lock.
 NOTHING = 2e-8
 COORDINATE = ("coordinate", *(one.name for one in fields(Coordinate)))
 # Residual in multiples of the rounding; above this a cause other than hardpoints is more likely.
