@@ -40,7 +40,7 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.few_entries import product_of_few_entries
+from pointcoord.numerics.few_entries import LARGE, product_of_few_entries
 from pointcoord.numerics.kantorovich import nearer_perron
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.multi_index import products
@@ -60,6 +60,9 @@ WHOLE = np.ones(1)
 ROOM = 0.9
 # Numbers of parts into which a segment is divided: the next number is tried if the one before proves nothing.
 PARTS = (1, 4, 16)
+# Powers of a series for which |X C_u(y_k)| is computed in a large map, where each takes a product of large
+# matrices; higher powers, which are small, count by |X| |C_u(y_k)|, all together.
+EXACT_OF_LARGE = 4
 # Iterations towards the weights with the smallest norm; the factor by which a box may take more, because a
 # box cannot be made shorter; and a norm at which the iteration stops.
 WEIGHINGS, MORE, ENOUGH = 4, 2, 0.8
@@ -200,10 +203,15 @@ def prove_box(
             proof = proven()
             left = proof.length < 1.0
         if left.any():
-            whole = np.zeros((len(moving) - 1, np.count_nonzero(left), y.shape[-1]))
-            whole[..., places] = moving[1:, left]
+            exact = min(EXACT_OF_LARGE, len(moving) - 1) if len(system.rows) >= LARGE else len(moving) - 1
+            whole = np.zeros((exact, np.count_nonzero(left), y.shape[-1]))
+            whole[..., places] = moving[1 : exact + 1, left]
             by_power = product_of_few_entries(inverse[left], system.jacobian(whole))
             change[left] = np.abs(by_power, out=by_power).sum(axis=0)
+            if exact < len(moving) - 1:
+                tail = np.zeros(whole.shape[1:])
+                tail[..., places] = np.abs(moving[exact + 1 :, left]).sum(axis=0)
+                change[left] += product_of_few_entries(magnitude[left], system.jacobian_uncertainty(tail))
             proof = proven()
         return proof
 
