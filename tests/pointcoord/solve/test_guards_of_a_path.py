@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from parabola import AT_ONE, PARABOLA
 
+from pointcoord.solve import proven_step
 from pointcoord.solve.follower import SMALLEST_STEP, follow
 from pointcoord.solve.proven_step import PARTS, ROOM, prove_box, prove_segment
 
@@ -20,17 +21,29 @@ def along_the_parabola(u: Array) -> Array:
     return series
 
 
-@given(u=st.floats(1e-3, 1e3), shares=st.tuples(*[st.floats(-1.0, 1.0)] * 3))
-def test_a_box_is_proven_as_far_as_the_condition_holds(u: float, shares: tuple[float, float, float]) -> None:
-    """X = 1 / (2 u) and omega = 1 / u; one unknown, so that no estimate loses anything."""
+@given(
+    u=st.floats(1e-3, 1e3),
+    shares=st.tuples(*[st.floats(-1.0, 1.0)] * 3),
+    exact=st.sampled_from([None, 1, 2, 3]),
+)
+def test_a_box_is_proven_as_far_as_the_condition_holds(
+    u: float, shares: tuple[float, float, float], exact: int | None
+) -> None:
+    """X = 1 / (2 u) and omega = 1 / u; one unknown, so that no estimate loses anything.
+
+    Nor does a large map's of the powers above `exact` by their magnitudes.
+    """
     series = along_the_parabola(u * np.array([1.0, *shares]))
     a, b, c = np.abs(shares)
     z, eta = a + b + c, (2.0 * a * c + b * b + 2.0 * b * c + c * c) / 2.0
     condition = z + float(np.sqrt(2.0 * eta))
     assume(abs(condition - ROOM) > 1e-9)
-    proof = prove_box(
-        PARABOLA, series[None, 0], series[:, None], slice(None), np.abs(series[1:, None]), np.zeros((1, 1))
-    )
+    sizes = np.abs(series[1:, None])
+    with pytest.MonkeyPatch.context() as patch:
+        if exact is not None:
+            patch.setattr(proven_step, "LARGE", 1)
+            patch.setattr(proven_step, "EXACT_OF_LARGE", exact)
+        proof = prove_box(PARABOLA, series[None, 0], series[:, None], slice(None), sizes, np.zeros((1, 1)))
     assert (proof.length == 1.0).tolist() == [condition < ROOM]
     # The other branch is twice as far as the fold, which is at least 1 - z of u away.
     assert proof.alone[0] * proof.weights[0, 0] <= (1.0 - z) * u * (1.0 + 1e-9) or condition > ROOM
