@@ -33,8 +33,8 @@ class Closing(ReadOnly):
 
     Attributes:
         movements: distance that each solved or carried point moves, by name, mm.
-        misses: distance by which the drawing violates each constraint that is a length, mm; only those above
-            rounding.
+        misses: distance of each point from the line that it slides on, as drawn, by "POINT on the LINE", mm;
+            only those above rounding.
         size: longest side of the box around the points, mm.
     """
 
@@ -72,7 +72,8 @@ class Closing(ReadOnly):
         """Largest movement, its point, and the constraints that the drawing violates, in one line."""
         if not self.moves:
             return f"the drawing closes: no point moves by more than {self.largest:.1g} mm"
-        why = ", ".join(f"{name} is off by {miss:.3g} mm" for name, miss in self.misses.items())
+        off = [(*name.split(" on the ", 1), miss) for name, miss in self.misses.items()]
+        why = ", ".join(f"{point} lies {miss:.3g} mm off the {line}" for point, line, miss in off)
         missed = f"; as drawn, {why}" if why else ""
         return f"closing the drawing moves {self.point} by {self.largest:.3g} mm{missed}"
 

@@ -36,7 +36,7 @@ def test_one_percent_of_the_size_is_the_limit_of_closing(make_scene: Callable[..
     assert simulate(scene).closing.largest == pytest.approx(0.0099 * size, rel=0.01)
     with pytest.raises(SceneError, match="another car") as caught:
         simulate(with_its_rod_end_aside(make_scene, 0.0101 * size))
-    assert "strut_rod_end on the strut axis" in caught.value.problem
+    assert "strut_rod_end lies 6.52 mm off the strut axis" in caught.value.problem
 
 
 def test_a_drawing_too_crooked_to_close_is_refused_as_a_drawing(
