@@ -88,7 +88,7 @@ def imported(folder: Path, text: str, name: str = "car.txt", **choices: Any) -> 
 
 def drawn(found: Imported) -> dict[str, tuple[float, ...]]:
     """The points of an imported scene."""
-    return {point.name: tuple(float(number) for number in point.place) for point in found.points}
+    return {point.name: tuple(float(number) for number in point.place) for point in found.drawing.points}
 
 
 def lotus_report(points: Points = WISHBONE.mechanism.points, static: Mapping[str, float] = STATIC) -> str:

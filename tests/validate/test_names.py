@@ -66,7 +66,7 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
         "written_scene.py": {"wheel_centre"},
         "one_wheel.py": {"wheel_centre", "camber", "toe", "axle"},
         "hardpoints.py": {"camber", "toe"},
-        "mjcf_mechanism.py": {"knuckle", "travel", "wheel_travel"},
+        "mjcf.py": {"knuckle", "travel", "wheel_travel"},
         "motion.py": {"wheel_centre"},
     }
     assert NAMES[kind]

@@ -20,9 +20,8 @@ from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.fitting.fit import fit_hardpoints
 from validate.fitting.problem import BOUNDS, PRIOR, Problem
-from validate.fitting.suspect_words import said_of_suspects
+from validate.fitting.report import corrected_text, report_of_fit, report_of_suspects
 from validate.fitting.suspects import suspected
-from validate.fitting.words import corrected_text, said_of_fit
 from validate.measured.mapping import map_to_fill_in, read_results
 from validate.output.console import Console
 from validate.output.document import Head, json_text
@@ -56,28 +55,30 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         measured = read_results(options.data, options.map, scene)
         limits = options.bounds, options.prior, options.accuracy
         problem = Problem.of(scene, measured, options.free, *limits)
-        numbers, source = len(problem.used), measured.source
+        numbers, source = len(problem.spread), measured.source
         task = "tested as suspects with" if options.suspects else "fitted to"
         many = f"{len(problem.free)} coordinates are {task} {numbers} numbers"
         console.note(f"{name}: {many}; this may take a while")
         if options.suspects:
             suspects = suspected(problem, progress)
-            said = said_of_suspects(suspects, name, source)
+            report = report_of_suspects(suspects, name, source)
         else:
             fit = fit_hardpoints(problem, told=progress)
-            said, corrected = said_of_fit(fit, name, source), corrected_text(fit, name, source)
-    console.say(said.text)
-    for note in (*measured.notes, *said.notes):
+            report, corrected = report_of_fit(fit, name, source), corrected_text(fit, name, source)
+    console.say(report.text)
+    for note in (*measured.notes, *report.notes):
         console.note(f"{name}: {note}")
-    for warning in said.warnings:
+    for warning in report.warnings:
         console.warn(f"{name}: {warning}")
     if options.output is not None:
         console.put(options.output, corrected, "the corrected scene")
     if options.json is not None:
-        document = Head.of(said.kind, options.command).document(said.data(name, source), said.status, True)
-        console.put(options.json, json_text(document), said.what)
+        document = Head.of(report.kind, options.command).document(
+            report.data(name, source), report.status, True
+        )
+        console.put(options.json, json_text(document), report.what)
     if options.csv is not None:
-        console.put(options.csv, said.table, said.what)
+        console.put(options.csv, report.table, report.what)
     if options.output not in (None, "-"):
         step = shlex.join(["pointcoord", "validate", *again, options.output])
         console.say(f"{shown(options.output)} is written; try: {shown(step)}")
@@ -85,7 +86,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         first = suspects.explaining[0].coordinates
         step = shlex.join(["pointcoord", "fit", options.scene, *again, "--free", *first])
         console.say(f"to correct the first: {shown(step)} -o corrected.toml")
-    return said.status
+    return report.status
 
 
 COMMANDS = {

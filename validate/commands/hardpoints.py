@@ -11,7 +11,7 @@ from validate.closed_drawing import warnings_of
 from validate.commands.pages import Command
 from validate.commands.usage import TOML, place_of_result, to_be_filled_in
 from validate.exit_status import ExitStatus
-from validate.hardpoint_files.axes import DIRECTIONS
+from validate.hardpoint_files.contents import DIRECTIONS
 from validate.hardpoint_files.format import formats
 from validate.hardpoint_files.importing import Imported, import_hardpoints, names_of
 from validate.hardpoint_files.one_wheel import NAMED, PARTS, SIDES, Choices
@@ -39,8 +39,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
     for warning in warnings_of(found.scene, found.stands.closing):
         console.warn(f"{name}: {warning}")
-    if found.others:
-        others = some_of([shown(point.source) for point in found.others], NAMED)
+    if found.drawing.others:
+        others = some_of([shown(point.source) for point in found.drawing.others], NAMED)
         console.note(f"{name}: points not recognised: {others}")
     wrong = [check for check in found.angles if check.verdict == "disagrees"]
     for check in wrong:
@@ -55,14 +55,14 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 def _report(name: str, found: Imported) -> Iterator[str]:
     """The lines of the report: the format of the file, its points and its angles."""
     part = found.scene.mechanism
-    width = max(len(point.name) for point in found.points)
-    wide = max(len(point.written) for point in found.points)
+    width = max(len(point.name) for point in found.drawing.points)
+    wide = max(len(point.written) for point in found.drawing.points)
     kind = f"a {part.type} of the {part.side} wheel" if part.type else "a new mechanism"
     yield f"{name}: {found.format.words}, read as {kind}"
-    yield from (f"  {fact}" for fact in found.facts)
-    for point in found.points:
+    yield from (f"  {fact}" for fact in found.drawing.facts)
+    for point in found.drawing.points:
         yield f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"
-    yield from (f"  point not recognised: {shown(point.source)}" for point in found.others)
+    yield from (f"  point not recognised: {shown(point.source)}" for point in found.drawing.others)
     for check in found.angles:
         there = f"the file prints {check.printed:g} deg, its points give {check.drawn:z.4f}"
         yield f"  {check.name}: {there}: {check.verdict}"

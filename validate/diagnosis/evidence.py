@@ -1,16 +1,17 @@
-"""The evidence of a diagnosis: given numbers, the trusted (`held`) numbers, and the allowed differences.
+"""The evidence of a diagnosis, and a possible fault of its numbers.
 
-Numbers are stored by row: a pair of a quantity and a point, body or angle.
+Evidence is the given numbers, the trusted (`held`) numbers, and the allowed differences. Numbers are stored
+by row: a pair of a quantity and a point, body or angle.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -173,22 +174,16 @@ class Evidence:
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
         """The evidence of all rows that both solutions give, with the tolerances of their comparison."""
         times, one, two = given_by_both(given, held, scene.instants)
-        pairs = {quantity: Pair(quantity, (one, two), outcome.factor) for quantity in one.numbers}
-        rows = [Row(q, name) for q, pair in pairs.items() for name in pair.names]
-        trusted = {row: two.numbers[row.quantity][row.name] for row in rows}
-        disagree = {Row(row.quantity, row.name) for row in outcome.disagreements}
-        return cls(
-            scene=scene,
-            times=times,
-            given={row: one.numbers[row.quantity][row.name] for row in rows},
-            held=trusted,
-            allowed={
-                row: pairs[row.quantity].held(row.name).allowed.reshape(trusted[row].shape) + SMALLEST
-                for row in rows
-            },
-            wrong=tuple(row for row in rows if row in disagree),
-            solved=Solved(scene),
-        )
+        pairs = [Pair(quantity, (one, two), outcome.factor) for quantity in one.numbers]
+        rows = {Row(pair.quantity, name): pair for pair in pairs for name in pair.names}
+        trusted, theirs = ({row: of.numbers[row.quantity][row.name] for row in rows} for of in (two, one))
+        allowed = {
+            row: pair.held(row.name).allowed.reshape(trusted[row].shape) + SMALLEST
+            for row, pair in rows.items()
+        }
+        disagree = {(row.quantity, row.name) for row in outcome.disagreements}
+        wrong = tuple(row for row in rows if row in disagree)
+        return cls(scene, times, theirs, trusted, allowed, wrong, Solved(scene))
 
     def at(self, places: slice | NDArray[np.intp], theirs: slice | None = None) -> Evidence:
         """The evidence at some instants; the given numbers are taken at `theirs` instead, if given."""
@@ -219,8 +214,8 @@ class Evidence:
         return replace(self, held=held, allowed=allowed, wrong=wrong)
 
     def undone(self, rows: Collection[Row], undo: Callable[[Row, Array], Array]) -> Evidence:
-        """The evidence with a fault undone in the given numbers of some rows and of their quantities'
-        vectors.
+        """The evidence with a fault undone in the given numbers of some rows, and in the vectors of their
+        quantities.
 
         Its wrong rows are those that still disagree.
         """
@@ -233,20 +228,15 @@ class Evidence:
         wrong = (row for row, held in self.held.items() if there.left(row, held, self.allowed[row]) > 1.0)
         return replace(there, wrong=tuple(wrong))
 
-    def in_words(self, row: Row, amount: Array) -> str:
-        """An amount with the unit of a row."""
-        text = ", ".join(f"{c:.6g}" for c in np.ravel(amount))
-        return f"{f'({text})' if np.ndim(amount) else text} {self.units.get(row, row.unit)}"
-
     def off_by(self, row: Row) -> Array:
         """The allowed differences of a row, including the errors of the given numbers."""
         return np.asarray(self.allowed[row] + self.own.get(row, 0.0))
 
     def joined(self, rows: Sequence[Row]) -> tuple[Array, Array, Array]:
         """Held numbers, given numbers and allowed differences of rows, concatenated."""
+        of_rows = ((self.held[row], self.given[row], self.off_by(row)) for row in rows)
         held, given, off_by = (
-            np.concatenate([of(row).ravel() for row in rows])
-            for of in (self.held.__getitem__, self.given.__getitem__, self.off_by)
+            np.concatenate([part.ravel() for part in of]) for of in zip(*of_rows, strict=True)
         )
         return held, given, off_by
 
@@ -318,3 +308,60 @@ class Evidence:
             return self.known.get(point, self.held.get(row))
         motion = self.solved.motion if self.over_time else None
         return None if motion is None else np.asarray(motion.at(self.times).numbers[row.quantity][point])
+
+
+Stage = Literal["numbers", "motion", "drawing", "last"]
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One fault with its parameters.
+
+    Attributes:
+        words: the fault in words.
+        rows: the numbers that each row would have with the fault.
+        fitted: number of fitted parameters.
+        cost: how far-fetched it is, from the fitted parameters and the choices made.
+        key: identifies the fault within its kind; faults with equal keys are merged. The words, if None.
+        decimals: number of decimals of its amount; of equally far-fetched faults the rounder is preferred.
+        looser: whether the fault only widens the tolerance, such as rounding to printed digits.
+        whole: whether it concerns the whole car, so that rows that agree must also agree with the fault.
+        rests: whether it concerns points at rest, for which a single number is enough.
+        undo: removes the fault from given numbers of a row, if all numbers may have it besides another fault.
+        kind: the kind of fault; two kinds are joined by "and".
+        explains: once it is tested, the disagreeing rows that it explains.
+        leftover: the largest remaining difference / tolerance of these rows.
+    """
+
+    words: str
+    rows: Mapping[Row, WouldBe]
+    fitted: int = 0
+    cost: float = 1.0
+    key: Hashable = None
+    decimals: int = 0
+    looser: bool = False
+    whole: bool = False
+    rests: bool = False
+    undo: Callable[[Row, Array], Array] | None = None
+    kind: str = ""
+    explains: tuple[Row, ...] = ()
+    leftover: float = np.nan
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of fault.
+
+    Attributes:
+        name: name of the kind. suppose: yields possible faults of this kind for some evidence.
+        stage: "numbers" needs only arithmetic; "motion" solves the same car with another motion or closure;
+            "drawing" solves cars with another drawing; "last" explains little. Each is tried on rows that
+            earlier stages do not explain.
+        opens, closes: whether it may be the first or the second of two faults in the same numbers.
+    """
+
+    name: str
+    suppose: Callable[[Evidence], Iterator[Hypothesis]]
+    stage: Stage = "numbers"
+    opens: bool = False
+    closes: bool = False

@@ -17,34 +17,19 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from pointcoord import PointcoordError, Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Explanation, Outcome
-from validate.diagnosis.evidence import Evidence, Row, together
-from validate.diagnosis.hypothesis import Hypothesis, Kind, Stage
+from validate.diagnosis.evidence import Evidence, Hypothesis, Kind, Row, Stage, together
 from validate.diagnosis.kinds import KINDS
 
 # Limits of the number of instants for which a shift by one sample is tried together with another car: one
 # instant can be left out, and the two further searches take a second or two.
 FEWEST_LATE, MOST_LATE = 8, 2000
-
-
-@dataclass(frozen=True)
-class _Found:
-    """A fault that explains some rows.
-
-    Attributes:
-        rows: the disagreeing rows that it explains.
-        leftover: the largest remaining difference / tolerance of these rows.
-    """
-
-    hypothesis: Hypothesis
-    rows: tuple[Row, ...]
-    leftover: float
 
 
 def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
@@ -70,25 +55,23 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
         for kind, words, undone in _undone(evidence, found):
             for one in _ranked(_supposed(undone, "drawing")) if undone.wrong else ():
                 if not _open(undone, [one]):
-                    first = _in_words(undone, one)
-                    return (
-                        replace(first, words=f"{first.words}, and {words}", kind=f"{first.kind} and {kind}"),
-                    )
+                    both = replace(one, words=f"{one.words}, and {words}", kind=f"{one.kind} and {kind}")
+                    return (_in_words(undone, both),)
     return tuple(_in_words(evidence, one) for one in found)
 
 
-def _explained(evidence: Evidence) -> list[_Found]:
+def _explained(evidence: Evidence) -> list[Hypothesis]:
     """The faults that explain rows, the best first."""
     found = _supposed(evidence, "numbers")
-    cars: list[_Found] = []
+    cars: list[Hypothesis] = []
     stages: tuple[Stage, ...] = ("motion", "drawing")
     for stage in stages if evidence.other_cars and _elsewhere(evidence) else ():
         if _open(evidence, [*found, *cars]):
             cars += _supposed(evidence, stage)
     for one in _ranked(cars)[:1]:
         # Further faults in the numbers of this other car.
-        if left := tuple(row for row in evidence.wrong if row not in one.rows):
-            found += _supposed(evidence.after(one.hypothesis.rows, left), "numbers")
+        if left := tuple(row for row in evidence.wrong if row not in one.explains):
+            found += _supposed(evidence.after(one.rows, left), "numbers")
     found += cars
     if left := _open(evidence, found):
         found += _pairs(replace(evidence, wrong=left))
@@ -103,17 +86,17 @@ def _elsewhere(evidence: Evidence) -> bool:
     return not moving or any(row in evidence.wrong for row in moving)
 
 
-def _open(evidence: Evidence, found: Iterable[_Found]) -> tuple[Row, ...]:
+def _open(evidence: Evidence, found: Iterable[Hypothesis]) -> tuple[Row, ...]:
     """The wrong rows that are not explained yet."""
-    done = {row for one in found for row in one.rows}
+    done = {row for one in found for row in one.explains}
     return tuple(
         row for row in evidence.wrong if row not in done and evidence.clear(row, evidence.allowed[row])
     )
 
 
-def _supposed(evidence: Evidence, stage: Stage) -> list[_Found]:
+def _supposed(evidence: Evidence, stage: Stage) -> list[Hypothesis]:
     faults = (one for kind in KINDS if kind.stage == stage for one in _merged(kind, evidence))
-    return [found for one in faults if (found := _carried(evidence, one))]
+    return [found for one in faults if (found := _tested(evidence, one))]
 
 
 def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
@@ -128,31 +111,28 @@ def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
     return [one for one in merged.values() if one.rows]
 
 
-def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
-    """The rows that a fault explains; None if it explains none."""
+def _tested(evidence: Evidence, fault: Hypothesis) -> Hypothesis | None:
+    """The fault with the rows that it explains; None if it explains none."""
     left: dict[Row, float] = {}
     # Rows with small differences prove nothing, but are listed if the fault is in the whole car.
     barely: list[Row] = []
-    for row, (value, allowed) in hypothesis.rows.items():
+    for row, (value, allowed) in fault.rows.items():
         share = evidence.left(row, value, allowed)
         if share > 1.0:
-            if hypothesis.whole and row not in evidence.wrong:
+            if fault.whole and row not in evidence.wrong:
                 return None
         elif row in evidence.wrong:
-            if hypothesis.looser or evidence.clear(row, allowed):
+            if fault.looser or evidence.clear(row, allowed):
                 left[row] = share
-            elif hypothesis.whole:
+            elif fault.whole:
                 barely.append(row)
-    exact = [
-        row
-        for some in together(left)
-        if hypothesis.rests or evidence.distinct(some) > hypothesis.fitted
-        for row in some
-    ]
-    return _Found(hypothesis, (*exact, *barely), max(left[row] for row in exact)) if exact else None
+    groups = (some for some in together(left) if fault.rests or evidence.distinct(some) > fault.fitted)
+    exact = [row for some in groups for row in some]
+    leftover = max((left[row] for row in exact), default=0.0)
+    return replace(fault, explains=(*exact, *barely), leftover=leftover) if exact else None
 
 
-def _pairs(evidence: Evidence) -> Iterator[_Found]:
+def _pairs(evidence: Evidence) -> Iterator[Hypothesis]:
     """Two faults in the same numbers: the second is sought after the first is applied to trusted numbers."""
     for place, first in enumerate(KINDS):
         for one in _merged(first, evidence) if first.opens else ():
@@ -160,32 +140,29 @@ def _pairs(evidence: Evidence) -> Iterator[_Found]:
             if first.name == "unit":
                 after = replace(after, units=dict.fromkeys(after.held, "in its own unit"))
             for second in (kind for kind in KINDS[place + 1 :] if kind.closes):
-                if any(_carried(after.few, two) for two in _merged(second, after.few)):
-                    both = (_both(one, two) for two in _merged(second, after))
-                    yield from (found for two in both if (found := _carried(evidence, two)))
+                if any(_tested(after.few, two) for two in _merged(second, after.few)):
+                    for two in _merged(second, after):
+                        both = replace(
+                            two,
+                            words=f"{one.words}, and {two.words}",
+                            kind=f"{one.kind} and {two.kind}",
+                            fitted=one.fitted + two.fitted,
+                            cost=one.cost + two.cost + 1.0,
+                            looser=False,
+                        )
+                        if found := _tested(evidence, both):
+                            yield found
 
 
-def _both(one: Hypothesis, two: Hypothesis) -> Hypothesis:
-    return replace(
-        two,
-        words=f"{one.words}, and {two.words}",
-        kind=f"{one.kind} and {two.kind}",
-        fitted=one.fitted + two.fitted,
-        cost=one.cost + two.cost + 1.0,
-        looser=False,
-    )
-
-
-def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, str, Evidence]]:
-    """The evidence with a common fault of all numbers undone, which may hide another car; with kind and
-    words.
+def _undone(evidence: Evidence, found: Iterable[Hypothesis]) -> Iterator[tuple[str, str, Evidence]]:
+    """Kind and words of a common fault of all numbers that may hide another car, and the evidence without it.
 
     A fault is undone if some numbers show it. A fault of all angles, such as another unit, is undone if it
     reduces their differences. A shift by one sample is always tried.
     """
     opening = (one for kind in KINDS if kind.opens for one in _merged(kind, evidence))
     hidden = (one for one in opening if _may_hide(evidence, one))
-    for fault in (*(one.hypothesis for one in found), *hidden):
+    for fault in (*found, *hidden):
         if fault.undo is not None:
             yield fault.kind, fault.words, evidence.undone(fault.rows, fault.undo)
     for words, undone in _without_a_late_sample(evidence):
@@ -213,54 +190,48 @@ def _without_a_late_sample(evidence: Evidence) -> Iterator[tuple[str, Evidence]]
     yield "one sample early", evidence.at(slice(1, None), slice(None, -1))
 
 
-def _ranked(found: Iterable[_Found]) -> list[_Found]:
+def _ranked(found: Iterable[Hypothesis]) -> list[Hypothesis]:
     """The faults in order: more rows before fewer, simple before far-fetched, rounder amounts first."""
-
-    def place(one: _Found) -> tuple[float, ...]:
-        return -len(one.rows), one.hypothesis.cost, one.hypothesis.decimals, one.leftover
-
-    return sorted(found, key=place)
+    return sorted(found, key=lambda one: (-len(one.explains), one.cost, one.decimals, one.leftover))
 
 
-def _best(ranked: Iterable[_Found]) -> Iterator[_Found]:
+def _best(ranked: Iterable[Hypothesis]) -> Iterator[Hypothesis]:
     """The faults that explain a row that no better fault explains, or the same rows as simply."""
-    kept: list[_Found] = []
+    kept: list[Hypothesis] = []
     for one in ranked:
-        more = [other for other in kept if len(other.rows) > len(one.rows)]
+        rows = {*one.explains}
+        more = {row for other in kept if len(other.explains) > len(rows) for row in other.explains}
         implied = any(
-            {*one.rows} <= {*other.rows}
-            and (
-                other.hypothesis.cost < one.hypothesis.cost or other.hypothesis.words == one.hypothesis.words
-            )
+            rows <= {*other.explains} and (other.cost < one.cost or other.words == one.words)
             for other in kept
         )
-        if not implied and not {*one.rows} <= {row for other in more for row in other.rows}:
+        if not implied and not rows <= more:
             kept.append(one)
             yield one
 
 
-def _left_out(evidence: Evidence, found: _Found, quantity: str) -> bool:
+def _left_out(evidence: Evidence, fault: Hypothesis, quantity: str) -> bool:
     """Whether a quantity has rows that the fault does not explain, or that agree only without the fault."""
-    others = (row for row in evidence.held if row.quantity == quantity and row not in found.rows)
+    others = (row for row in evidence.held if row.quantity == quantity and row not in fault.explains)
     return any(
-        evidence.left(row, *found.hypothesis.rows[row]) > 1.0
-        if row in found.hypothesis.rows
+        evidence.left(row, *fault.rows[row]) > 1.0
+        if row in fault.rows
         else row in evidence.wrong or row.order == 0 or evidence.held[row].any()
         for row in others
     )
 
 
-def _in_words(evidence: Evidence, found: _Found) -> Explanation:
+def _in_words(evidence: Evidence, fault: Hypothesis) -> Explanation:
     quantities: list[str] = []
     parts: list[str] = []
     for quantity in evidence.wrong_quantities:
-        names = [row.name for row in found.rows if row.quantity == quantity]
+        names = [row.name for row in fault.explains if row.quantity == quantity]
         words, of_car = QUANTITIES[quantity].words, QUANTITIES[quantity].of == "car"
-        if names and not of_car and not _left_out(evidence, found, quantity):
+        if names and not of_car and not _left_out(evidence, fault, quantity):
             quantities.append(quantity)
             parts.append(words)
         elif names:
             quantities += [f"{quantity}.{name}" for name in names]
             parts.append(("" if of_car else f"{words} of ") + ", ".join(names))
-    words = f"{', '.join(parts)}: {found.hypothesis.words}"
-    return Explanation(words, found.hypothesis.kind, tuple(quantities), found.leftover)
+    words = f"{', '.join(parts)}: {fault.words}"
+    return Explanation(words, fault.kind, tuple(quantities), fault.leftover)

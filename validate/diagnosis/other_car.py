@@ -12,8 +12,16 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, simulate
 from pointcoord.numerics.rounding import EPS
-from validate.diagnosis.evidence import DECIMALS, Content, Evidence, Row, WouldBe, numbers_in, roundest
-from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.evidence import (
+    DECIMALS,
+    Content,
+    Evidence,
+    Hypothesis,
+    Row,
+    WouldBe,
+    numbers_in,
+    roundest,
+)
 
 Array = NDArray[np.float64]
 
@@ -28,9 +36,8 @@ PROMISING, NEARLY = 0.1, 2.0
 # reduces it by a large factor, down to the remainder.
 MANIFOLD = 0.5
 PARTS = (1.0, 0.25)  # shares of a step; the first that reduces the difference is taken
-# A rounder amount may leave so many times the difference of the fitted one. The least-squares fit of rounded
-# numbers leaves less than the intended amount: for 5 numbers and one parameter, less by a root of 5/4 on
-# average.
+# A rounder amount may leave so many times the difference of the fitted one. A least-squares fit of
+# rounded numbers leaves less than the intended amount: with 5 numbers, less by a root of 5/4 on average.
 KEPT = 1.5
 # A change is reported if it leaves at most so many times the difference that the best change leaves.
 POORER = 30.0
@@ -44,8 +51,7 @@ class Change:
         key: identifies the number.
         put: sets another value in the scene's content.
         words: the fault in words, from the other value.
-        slope: derivatives of the numbers of rows by it, at a few instants, concatenated; or a step for a
-            difference.
+        slope: derivatives of the numbers of rows by it, at a few instants, concatenated; or a step.
         ours: its value in the scene.
         farthest: largest change of the value.
         cost: how far-fetched a change is.
@@ -100,8 +106,7 @@ def _rows_of(evidence: Evidence, motion: Motion, later: float = 0.0) -> dict[Row
         quantity, name = row
         if name in samples.numbers[quantity]:
             value = np.array(samples.numbers[quantity][name])
-            # The error bound of the motion, doubled for the rounding of numbers in its laws, such as a fitted
-            # factor.
+            # The error bound of the motion, doubled for the rounding of numbers in its laws.
             bound = np.nan_to_num(proven[quantity][name], posinf=0.0)
             allowed = 2.0 * (evidence.rounded(row, value) + bound)
             if later:
@@ -119,10 +124,9 @@ def _decimals(amount: float) -> int:
 
 
 def _fitted(change: Change, evidence: Evidence, looked: Sequence[Row]) -> tuple[float, float] | None:
-    """The value that fits the numbers of some rows, rounded as far as they allow, and the remaining
-    difference.
+    """The value that fits the numbers of some rows, by the secant method, and the remaining difference.
 
-    By the secant method; None if much of the difference remains.
+    It is rounded as far as the numbers allow. None if much of the difference remains.
     """
     ours, theirs, off = evidence.joined(looked)
     start = change.ours
@@ -188,8 +192,7 @@ def otherwise(
 
 
 def any_of(evidence: Evidence, changes: Sequence[Change]) -> Iterator[Hypothesis]:
-    """Each of some changes alone, fitted to positions or angles; if none explains all of them, to all but
-    one.
+    """Each of some changes alone, fitted to positions or angles; if none explains all, to all but one.
 
     One number with a fault of its own would hide the change that the others show; positions in another unit
     would hide the change that angles show.

@@ -34,7 +34,8 @@ from scipy.optimize import least_squares, lsq_linear
 from scipy.special import ndtri, stdtrit
 
 from pointcoord import PointcoordError, Scene
-from validate.fitting.problem import Design, Problem
+from validate.fitting.problem import Problem
+from validate.measured.poses import Found
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -143,6 +144,11 @@ class Fit:
         return tuple(one for one in self.combinations if not one.seen)
 
     @property
+    def residual(self) -> float:
+        """The r.m.s. residual over the degrees of freedom, in standard deviations of the numbers."""
+        return math.sqrt(self.left / max(self.freedom, 1))
+
+    @property
     def rms(self) -> dict[str, tuple[float, float, int]]:
         """By unit: r.m.s. difference before and after, over all columns of the unit; number of numbers."""
         found = {}
@@ -170,7 +176,7 @@ def fit_hardpoints(
     rows, zero = problem.measured.rows, np.zeros(len(problem.free))
     designs, tried, failures = {zero.tobytes(): problem.start}, count(1), dict[str, None]()
 
-    def design(amounts: Array) -> Design:
+    def design(amounts: Array) -> Found:
         # Designs are kept: slopes are needed at the last one, or on a bound that is a rounding away from it.
         at = amounts.tobytes()
         if at not in designs:
@@ -184,9 +190,8 @@ def fit_hardpoints(
         try:
             there = design(amounts)
             misfit = problem.misfit(there)
-            if len(lost := np.flatnonzero(problem.used & ~np.isfinite(there.numbers)) % len(rows)):
-                reason = there.found.reasons.get(int(lost[0]), "no number")
-                failures[f"{rows[lost[0]]}: {reason}"] = None
+            for _, row in np.argwhere(problem.used & ~np.isfinite(problem.numbers(there)))[:1].tolist():
+                failures[f"{rows[row]}: {there.reasons.get(row, 'no number')}"] = None
         except PointcoordError as error:
             failures[str(error)] = None
         return np.concatenate([misfit, amounts / prior])
@@ -257,7 +262,7 @@ def _known(matrix: Array) -> tuple[Array, Array]:
 def _columns(problem: Problem, before: Array, after: Array) -> tuple[Fitted, ...]:
     """The columns of the file, from the misfits before and after, each (used,)."""
     measured = problem.measured
-    which = np.repeat(np.arange(len(measured.numbers)), len(measured.rows))[problem.used]
+    which, _ = np.nonzero(problem.used)
     found = list[Fitted]()
     for i, s in enumerate(measured.numbers):
         here = which == i

@@ -25,7 +25,7 @@ from pointcoord import Scene, designs_of
 from pointcoord.sweeping.designs import coordinates_of
 from validate.errors import UsageError
 from validate.measured.mapping import Measured
-from validate.measured.poses import Driven, Found, at_either_end, ours_of
+from validate.measured.poses import Driven, Found, columns_of, swings
 from validate.measured.tolerances import out_of_reach
 from validate.tables.errors import FileError
 
@@ -44,31 +44,6 @@ TIGHT = 1e-12  # mm, tolerance of poses
 
 
 @dataclass(frozen=True)
-class Design:
-    """A car at the rows of a file.
-
-    Attributes:
-        numbers: all columns, one after the other, (columns * rows,); NaN at rows without a pose.
-    """
-
-    driven: Driven
-    found: Found
-    numbers: Array
-
-    @classmethod
-    def of(cls, driven: Driven, measured: Measured, values: Sequence[Array]) -> Design:
-        """A car at values of the independent columns, each (rows,).
-
-        Raises:
-            PointcoordError: the car cannot be solved.
-        """
-        found = driven.at(values, TIGHT, bounded=False)
-        columns = [ours_of(s, found.numbers) for s in measured.numbers]
-        nothing = np.full(len(found.reached), np.nan)
-        return cls(driven, found, np.concatenate([nothing if c is None else c for c in columns]))
-
-
-@dataclass(frozen=True)
 class Problem:
     """The fit of a scene's hardpoints to a file.
 
@@ -78,7 +53,7 @@ class Problem:
         bounds: largest correction of a coordinate, mm.
         prior: assumed standard deviation of a coordinate, mm.
         start: the car as drawn.
-        used: which of its numbers exist and are in the file, (columns * rows,).
+        used: which of its numbers exist and are in the file, (columns, rows).
         spread: s_i of the used numbers, (used,).
     """
 
@@ -87,7 +62,7 @@ class Problem:
     free: tuple[str, ...]
     bounds: float
     prior: float
-    start: Design
+    start: Found
     used: Bools
     spread: Array
 
@@ -124,21 +99,18 @@ class Problem:
         twice = next((name for name in coordinates if coordinates.count(name) > 1), "")
         if twice:
             raise UsageError(f"--free: {twice} is given twice; allowed: each coordinate once")
-        values, offs = [s.values for s in measured.independent], [s.off for s in measured.independent]
-        start = Design.of(driven, measured, values)
-        first, theirs = start.numbers, np.concatenate([s.values for s in measured.numbers])
-        used: Bools = np.isfinite(first) & np.isfinite(theirs)
+        start = driven.at([s.values for s in measured.independent], TIGHT, bounded=False)
+        first = columns_of(measured.numbers, start.numbers, len(measured.rows))
+        used: Bools = np.isfinite(first) & np.isfinite([s.values for s in measured.numbers])
         if not used.any():
-            why = next(iter(start.found.reasons.values()), "no number is both in the file and computed")
+            why = next(iter(start.reasons.values()), "no number is both in the file and computed")
             allowed = "rows that the scene's car can reach"
             raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
-        swing = np.zeros(len(first))
-        for _, ends in at_either_end(values, offs):
-            beside = (Design.of(driven, measured, end).numbers for end in ends)
-            swing += np.max([np.nan_to_num(np.abs(numbers - first)) for numbers in beside], axis=0)
-        off = np.concatenate([s.off + s.accuracy_or(accuracy) for s in measured.numbers])
-        least = [LEAST.get(s.meaning.unit.partition("/")[0], OTHERS) for s in measured.numbers]
-        spread = np.maximum((off + swing) / math.sqrt(3.0), np.repeat(least, len(measured.rows)))[used]
+        offs = [s.off for s in measured.independent]
+        swing = sum(change for _, change in swings(driven, measured, offs, first, TIGHT))
+        off = [s.off + s.accuracy_or(accuracy) for s in measured.numbers]
+        least = [[LEAST.get(s.meaning.unit.partition("/")[0], OTHERS)] for s in measured.numbers]
+        spread = np.maximum((off + np.asarray(swing)) / math.sqrt(3.0), least)[used]
         return cls(scene, measured, coordinates, bounds, prior, start, used, spread)
 
     def among(self, free: Sequence[str]) -> Problem:
@@ -148,7 +120,7 @@ class Problem:
     @property
     def notes(self) -> tuple[str, ...]:
         """What was assumed because it is not given, and rows that were left out."""
-        return (*self.start.driven.notes, *out_of_reach(self.measured, self.start.found))
+        return (*self.start.driven.notes, *out_of_reach(self.measured, self.start))
 
     def corrected(self, amounts: Array) -> Scene:
         """The scene with its free coordinates moved by amounts, (free,), mm.
@@ -158,39 +130,40 @@ class Problem:
         """
         return designs_of(self.scene, offsets=self._offsets(amounts)).design(0)
 
-    def solved(self, amounts: Array) -> Design:
-        """The design with free coordinates moved by amounts, (free,), mm, at the rows of the file.
+    def solved(self, amounts: Array) -> Found:
+        """The car with free coordinates moved by amounts, (free,), mm, at the rows of the file.
 
         Raises:
-            PointcoordError: the design cannot be solved.
+            PointcoordError: the car cannot be solved.
         """
         driven = self.start.driven.redrawn(self._offsets(amounts))
-        return Design.of(driven, self.measured, [s.values for s in self.measured.independent])
+        return driven.at([s.values for s in self.measured.independent], TIGHT, bounded=False)
+
+    def numbers(self, car: Found) -> Array:
+        """A car's numbers, (columns, rows); NaN at rows without a pose."""
+        return columns_of(self.measured.numbers, car.numbers, len(self.measured.rows))
 
     def _offsets(self, amounts: Array) -> dict[str, float]:
         return dict(zip(self.free, amounts.tolist(), strict=True))
 
-    def misfit(self, design: Design) -> Array:
+    def misfit(self, car: Found) -> Array:
         """Computed less measured, (used,), in standard deviations; whole turns are removed from angles."""
-        series = self.measured.numbers
-        columns = zip(series, design.numbers.reshape(len(series), -1), strict=True)
-        apart = np.concatenate([s.apart(own, s.values) for s, own in columns])
+        columns = zip(self.measured.numbers, self.numbers(car), strict=True)
+        apart = np.stack([s.apart(ours, s.values) for s, ours in columns])
         return np.asarray(apart[self.used] / self.spread)
 
-    def slopes(self, design: Design) -> Array:
+    def slopes(self, car: Found) -> Array:
         """Derivatives of the misfit by each coordinate, (used, free), 1/mm.
 
         Raises:
-            FileError: a number of the design has no derivative.
+            FileError: a number of the car has no derivative.
             AssemblyError: a pose cannot be reached on a straight path (see `slopes_of_poses`).
         """
-        slopes = design.driven.slopes(design.found, self.free)
-        columns = [ours_of(s, slopes) for s in self.measured.numbers]
-        nothing = np.full((len(self.free), len(self.measured.rows)), np.nan)
-        found = np.concatenate([nothing if c is None else c for c in columns], axis=1)[:, self.used].T
+        slopes, rows = car.driven.slopes(car, self.free), self.measured.rows
+        found = columns_of(self.measured.numbers, slopes, len(self.free), len(rows))
+        found = np.moveaxis(found, 1, -1)[self.used]
         if not np.isfinite(found).all():
-            lost = int(np.flatnonzero(self.used)[int(np.argmin(np.isfinite(found).all(axis=1)))])
+            _, row = np.argwhere(self.used)[np.argmin(np.isfinite(found).all(axis=1))]
             problem = "the car's numbers have no derivative there: its pose is almost singular"
-            row = self.measured.rows[lost % len(self.measured.rows)]
-            raise FileError(self.measured.source, row, problem, "rows away from where the car jams")
+            raise FileError(self.measured.source, rows[row], problem, "rows away from where the car jams")
         return found / self.spread[:, None]

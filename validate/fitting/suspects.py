@@ -68,6 +68,11 @@ class Suspects:
     refused: tuple[str, ...] = ()
 
     @property
+    def residual(self) -> float:
+        """The r.m.s. misfit of the car as drawn, in standard deviations of the numbers."""
+        return math.sqrt(self.left / self.count)
+
+    @property
     def explaining(self) -> tuple[Fit, ...]:
         """Sets that explain the file, all of one size."""
         return tuple(one for one in self.fits if _explained(one))

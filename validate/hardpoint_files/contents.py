@@ -1,4 +1,8 @@
-"""The contents of a file of hardpoints in any format: points as given, with their lines."""
+"""The contents of a file of hardpoints in any format: points as given, with their lines, and their axes.
+
+Coordinates are decimal numbers as printed. Axes are converted by permutations and signs to those of the
+scene (x rearward, y right, z up; mm), so nothing is rounded.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +11,29 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.errors import UsageError
 from validate.plain_text import shown
 from validate.tables.errors import FileError
+from validate.tables.units import LENGTHS
 
 Place = tuple[Decimal, Decimal, Decimal]
 """Three coordinates with the printed digits: a metre is 1000 mm and not 1000.0000000000001."""
 
 # Largest coordinate in any unit. It also limits the length of numbers.
 FARTHEST = Decimal("1e9")
+DIRECTIONS = {
+    "rearward": (1, 0, 0),
+    "forward": (-1, 0, 0),
+    "right": (0, 1, 0),
+    "left": (0, -1, 0),
+    "up": (0, 0, 1),
+    "down": (0, 0, -1),
+}
+"""The directions of the car in the scene's axes."""
+ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".join(DIRECTIONS)
 
 
 @dataclass(frozen=True)
@@ -93,9 +112,54 @@ class Contents:
     unit: str = ""
     lines: tuple[str, ...] = ()
 
-    def axle(self, part: str) -> Axle:
-        """The data of an axle, or else of the whole file."""
-        return self.axles.get(part) or self.axles.get("", Axle())
+
+@dataclass(frozen=True)
+class Axes:
+    """The directions of a file's x, y and z."""
+
+    directions: tuple[str, ...]
+
+    @classmethod
+    def of(cls, words: str) -> Axes:
+        """Axes from text, such as `forward,left,up`.
+
+        Raises:
+            UsageError: the text does not give three directions at right angles.
+        """
+        found = re.findall(r"[^\s,;]+", words.lower())
+        ways = [DIRECTIONS.get(word, (0, 0, 0)) for word in found]
+        if len(ways) != 3 or not np.linalg.det(ways):
+            raise UsageError(f"axes are {words!r}; allowed: {ALLOWED}; each axis of the car once")
+        return cls(tuple(found))
+
+    @property
+    def words(self) -> str:
+        """The axes in words."""
+        return ", ".join(f"{axis} {word}" for axis, word in zip("xyz", self.directions, strict=True))
+
+    @property
+    def option(self) -> str:
+        """The axes as the value of --axes."""
+        return ",".join(self.directions)
+
+    @property
+    def right_handed(self) -> bool:
+        """Whether x, y and z are right-handed."""
+        return bool(np.linalg.det(self.matrix) > 0.0)
+
+    @property
+    def matrix(self) -> NDArray[np.int_]:
+        """The matrix from the file's coordinates to the scene's, (3, 3)."""
+        return np.array([DIRECTIONS[word] for word in self.directions]).T
+
+    def to_scene(self, place: Place, unit: str) -> Place:
+        """A position in the file's axes and unit, converted to x rearward, y right, z up, mm."""
+        x, y, z = self.matrix.astype(object) @ place * LENGTHS[unit] + 0
+        return x, y, z
+
+
+OUR_AXES = Axes(("rearward", "right", "up"))
+"""The axes of a scene."""
 
 
 def number_of(value: object, source: str, line: int, what: str) -> Decimal:

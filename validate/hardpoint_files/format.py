@@ -17,8 +17,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file
 from validate.hardpoint_files import chrono_json, lotus_report, table
-from validate.hardpoint_files.axes import Axes
-from validate.hardpoint_files.contents import Contents, plain
+from validate.hardpoint_files.contents import Axes, Contents, plain
 from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
@@ -87,11 +86,6 @@ class Format(BaseModel):
                 if base != whole and base in known:
                     return known[base], wheel
         return None
-
-    def kind_called(self, name: str) -> str | None:
-        """Our type of the suspension with this name in the file; None if the name is not recognised."""
-        found = (k for pattern, k in self.called.items() if re.fullmatch(pattern, name, re.IGNORECASE))
-        return next(found, None)
 
     def read(self, text: str, source: str, said: Mapping[str, str | int]) -> Contents:
         """Read a file of this format.

@@ -12,42 +12,35 @@ from typing import Any
 
 from pointcoord import Scene, standing
 from pointcoord.drawing_stands import Standing
-from pointcoord.toml_text import read_file
-from validate.hardpoint_files.axes import OUR_AXES, Axes
-from validate.hardpoint_files.contents import Contents, FilePoint
+from pointcoord.toml_text import parsed, read_file
+from validate.hardpoint_files.contents import OUR_AXES, Axes, Contents
 from validate.hardpoint_files.format import MJCF, Format, format_of
-from validate.hardpoint_files.mjcf import HomePose
-from validate.hardpoint_files.mjcf_mechanism import drawing_of
+from validate.hardpoint_files.mjcf import drawing_of
 from validate.hardpoint_files.names_file import NO_NAMES, names_to_fill_in, read_names
-from validate.hardpoint_files.one_wheel import Choices, OneWheel, missing
-from validate.hardpoint_files.static_angles import AngleCheck
-from validate.hardpoint_files.written_scene import Drawing, ScenePoint, scene_of, scene_text, travel_of
+from validate.hardpoint_files.one_wheel import AngleCheck, Choices, OneWheel, missing
+from validate.hardpoint_files.written_scene import Drawing, scene_of, scene_text, travel_of
 from validate.tables.cells import text_of
 from validate.tables.errors import FileError
 
 
 @dataclass(frozen=True)
 class Imported:
-    """A scene from another program's file, with the source of every point.
+    """A scene from another program's file.
 
     Attributes:
+        drawing: the points with their sources, the assumptions made, and points that are not recognised.
         scene: the checked scene, with wheel travel.
         text: the scene as a file, with a comment on each point.
-        points: points of the scene in its axes, with their sources.
-        others: points of the file that are not recognised.
-        angles: static angles printed in the file, compared with the drawing.
         stands: the closed drawing.
-        facts: assumptions made, in words.
+        angles: static angles printed in the file, compared with the drawing.
     """
 
     format: Format
+    drawing: Drawing
     scene: Scene
     text: str
-    points: tuple[ScenePoint, ...]
-    others: tuple[FilePoint, ...]
-    angles: tuple[AngleCheck, ...]
     stands: Standing
-    facts: tuple[str, ...]
+    angles: tuple[AngleCheck, ...] = ()
 
 
 def import_hardpoints(path: str | Path, **said: Any) -> Imported:
@@ -114,7 +107,7 @@ def _whole_mechanism(source: str, choices: Choices) -> Drawing:
         axes, by = Axes.of(choices.axes), "by --axes"
     if not axes.right_handed:
         raise FileError(source, 0, f"has left-handed axes {axes.words}", "right-handed ones")
-    drawing = drawing_of(HomePose(source, axes))
+    drawing = drawing_of(source, axes)
     turned = f"the file's axes are {axes.words}, {by}, in m; here x rearward, y right, z up, in mm"
     return replace(drawing, facts=(turned, *drawing.facts))
 
@@ -123,6 +116,6 @@ def _imported(found: Format, drawing: Drawing) -> Imported:
     """The scene of a drawing, and its file."""
     drawn = scene_of(drawing)
     stands = standing(drawn)
-    laws, scene = travel_of(drawn, stands)
-    text = scene_text(drawing, drawn, laws, found.words)
-    return Imported(found, scene, text, drawing.points, drawing.others, (), stands, drawing.facts)
+    text = scene_text(drawing, drawn, travel_of(drawn, stands), found.words)
+    scene = Scene.from_mapping(parsed(text.encode(), drawing.source), drawn.title)
+    return Imported(found, drawing, scene, text, stands)

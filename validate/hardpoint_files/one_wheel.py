@@ -1,4 +1,8 @@
-"""One wheel of a file of hardpoints: identifies its points, and converts them to the axes of the scene."""
+"""One wheel of a file of hardpoints: identifies its points, and converts them to the axes of the scene.
+
+Static angles printed in the file are compared with those of the imported drawing: a misread name, a wrong
+side or a reversed axis shows as a difference.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import cached_property
-from math import radians, tan
+from math import degrees, dist, radians, tan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +20,21 @@ from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.file import AS_DRAWN
-from validate.hardpoint_files.axes import ALLOWED, DIRECTIONS, OUR_AXES, Axes
-from validate.hardpoint_files.contents import Axle, Contents, FilePoint, Place, SpinAxis, plain, short
+from validate.hardpoint_files.contents import (
+    ALLOWED,
+    DIRECTIONS,
+    OUR_AXES,
+    Axes,
+    Axle,
+    Contents,
+    FilePoint,
+    Place,
+    SpinAxis,
+    plain,
+    short,
+)
 from validate.hardpoint_files.format import TABLE, Format
 from validate.hardpoint_files.names_file import NamesFile
-from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import Drawing, ScenePoint
 from validate.plain_text import some_of
 from validate.tables.errors import FileError
@@ -79,6 +93,30 @@ class Choices:
 
 
 @dataclass(frozen=True)
+class AngleCheck:
+    """An angle that the file prints and the imported drawing has, deg.
+
+    Attributes:
+        name: our name of the angle.
+        words, line: its name in the file, and the line.
+        printed, drawn: the value in the file, and that of the drawing.
+        tolerance: from the printed digits of the angle and of the points.
+    """
+
+    name: str
+    words: str
+    line: int
+    printed: float
+    drawn: float
+    tolerance: float
+
+    @property
+    def verdict(self) -> str:
+        """`agrees` or `disagrees`."""
+        return "agrees" if abs(self.printed - self.drawn) <= self.tolerance else "disagrees"
+
+
+@dataclass(frozen=True)
 class _Wheel:
     """The points of one wheel.
 
@@ -117,10 +155,24 @@ class OneWheel:
     def checked(self, drawn: Mapping[str, float]) -> Iterator[AngleCheck]:
         """Compare the static angles printed in the file with those of the drawing.
 
+        The digits of the points limit the accuracy of an axis. Half a digit h in both coordinates of both
+        ends moves them apart by 2 sqrt(2) h in the plane of an angle. An axis of length L within 45 deg of
+        this plane has a projected length of at least L / sqrt(2). So the angle changes by at most 4 h / L.
+
         Args:
             drawn: angles of the drawing by our names, rad.
         """
-        return check_angles(self.format.angles, self.axle.angles, self.chosen.places, self.topology, drawn)
+        places, left_open = self.chosen.places, 0.0
+        for ends in map(self.topology.role, ("wheel_axis", "steering_axis")):
+            if ends and {*ends} <= places.keys():
+                one, other = (places[name] for name in ends)
+                half, length = max(map(_half_a_digit, (*one, *other))), dist(one, other)
+                left_open = max(left_open, 4.0 * half / length if length else 0.0)
+        for name, pattern in self.format.angles.items():
+            for words, (value, line) in self.axle.angles.items():
+                if name in drawn and re.match(pattern, words):
+                    off = _half_a_digit(value) + degrees(left_open)
+                    yield AngleCheck(name, words, line, float(value), degrees(drawn[name]), off)
 
     def drawing(self) -> Drawing:
         """The wheel's points in the order of its topology, and points that follow from them.
@@ -176,8 +228,9 @@ class OneWheel:
         if called := self.called:
             part = self.one_of("part", "axle", self.choices.part, {*called})
             name = called.get(part) or next(iter(called.values()))
-            if kind := self.format.kind_called(name):
-                return kind
+            for pattern, kind in self.format.called.items():
+                if re.fullmatch(pattern, name, re.IGNORECASE):
+                    return kind
             known = ", ".join(f"{theirs} ({ours})" for theirs, ours in self.format.called.items())
             at = f" at its axle {part}" if part else ""
             allowed = f"{known}; if it is one of these under another name, give --suspension"
@@ -269,8 +322,9 @@ class OneWheel:
 
     @property
     def axle(self) -> Axle:
-        """The file's data of the wheel's axle."""
-        return self.contents.axle(self.chosen.part)
+        """The file's data of the wheel's axle, or else of the whole file."""
+        axles = self.contents.axles
+        return axles.get(self.chosen.part) or axles.get("", Axle())
 
     @cached_property
     def spin_axis(self) -> SpinAxis | None:
@@ -417,8 +471,7 @@ class OneWheel:
             if said and said != seen:
                 axes = self.axes[0].option
                 allowed = f"--axes with left and right exchanged in {axes}, or the {seen} side"
-                # Not offered if the file has the requested wheel: the mirrored other wheel may differ from
-                # it.
+                # Not offered if the file has the requested wheel: the other wheel, mirrored, may differ.
                 if by == "--side" and self.chosen.side != said:
                     allowed += f"; or --side {seen} --mirror makes the {said} wheel of it"
                 raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
@@ -442,3 +495,7 @@ def _inboard(centre: Place, out: int, axis: SpinAxis) -> Place:
     steps = (Decimal(step * part).quantize(DIGITS) for part in (forward, -out * outboard, -up))
     x, y, z = (at + step for at, step in zip(centre, steps, strict=True))
     return x, y, z
+
+
+def _half_a_digit(number: Decimal) -> float:
+    return 0.5 * 10.0 ** int(number.as_tuple().exponent)

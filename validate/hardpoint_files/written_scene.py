@@ -127,9 +127,8 @@ def driven_inputs(file: MechanismFile, topology: Topology) -> tuple[str, ...]:
     return tuple(travel[topology.wheel_centre] if n in moving else n for n in topology.required_inputs)
 
 
-def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
-    """Laws and scene of wheel travel about the drawing, well within its range; other inputs are held as
-    drawn.
+def travel_of(drawn: Scene, stands: Standing) -> Laws:
+    """Laws of wheel travel about the drawing, well within its range; other inputs are held as drawn.
 
     The wheel moves from 30 mm below to 30 mm above. If it can move less than 40 mm, or if its input is not a
     travel, the input moves a quarter of the way to the nearer end on either side.
@@ -148,9 +147,7 @@ def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
             nearer, words = TURN, f"{unit}; it goes all the way round"
         way = TRAVEL if unit == "mm" and nearer >= FAR_ENOUGH else floor(1e4 * PART * nearer) / 1e4
         laws[name] = {"sweep": [here - way, here + way]}, words
-    content = drawn.model_dump(exclude_none=True, exclude={"time"})
-    content["inputs"] = {name: law for name, (law, _) in laws.items()}
-    return laws, Scene.from_mapping(content, drawn.title)
+    return laws
 
 
 def scene_text(drawing: Drawing, drawn: Scene, laws: Laws, format_words: str) -> str:

@@ -210,8 +210,7 @@ def _side_by_side(row: Row, columns: Sequence[Held], number: Callable[[Held], Ar
 def _as_motion(driven: Driven, measured: Measured, rows: Rows) -> tuple[Rows, Scene | None]:
     """Some rows of a file in order, and a scene with a motion through them, for solving other cars.
 
-    The scene is None if times are not in even steps, if there are several independent columns, or too few
-    rows.
+    The scene is None if times are not in even steps, or with several independent columns or too few rows.
     """
     at = measured.instants[rows]
     if driven.over_time:

@@ -144,8 +144,7 @@ class Series:
         """Whether its values are in even steps, as set values are, unlike measured ones.
 
         Programs omit trailing zeros: -30 may stand for -30.0000000000 next to -26.6666666667, although it
-            seems to
-        be rounded most. Rounded values are in even steps only by chance.
+        seems to be rounded most. Rounded values are in even steps only by chance.
         """
         there = np.isfinite(self.values)
         values = np.unique(self.values[there])

@@ -41,9 +41,10 @@ LITTLE = 1e-3  # part of this range by which an input is moved to find out what 
 
 @dataclass(frozen=True)
 class Found:
-    """Our numbers at the rows of a file.
+    """A car at the rows of a file.
 
     Attributes:
+        driven: the car.
         numbers, bounds: numbers and their error bounds, by quantity and name, (N, 3) or (N,); NaN at rows
             without a pose.
         reached: which rows have a pose, (N,).
@@ -51,6 +52,7 @@ class Found:
         inputs: values of the inputs at each row, (N,); over time, only the time.
     """
 
+    driven: Driven
     numbers: Numbers
     bounds: Numbers
     reached: Bools
@@ -209,7 +211,7 @@ class Driven:
         reached: Bools = (times >= start) & (times <= stop)
         why = f"is outside the scene's time, {start:.10g} to {stop:.10g} s"
         reasons = {int(i): f"t = {times[i]:.10g} s {why}" for i in np.flatnonzero(~reached)}
-        found = Found({}, {}, reached, reasons, {TIME: times})
+        found = Found(self, {}, {}, reached, reasons, {TIME: times})
         if not reached.any():
             return found
         # Samples need instants in ascending order, each once.
@@ -232,7 +234,8 @@ class Driven:
         reached = poses.solved
         reached[[*reasons]] = False
         computed = {quantity: channel for quantity, channel in poses.numbers.items() if channel.computed}
-        found = Found(spread(computed, reached, reached), {}, reached, {**failed, **reasons}, inputs)
+        numbers = spread(computed, reached, reached)
+        found = Found(self, numbers, {}, reached, {**failed, **reasons}, inputs)
         if not (bounded and reached.any()):
             return found
         off = np.maximum(poses.bound, poses.carried_bound)
@@ -292,12 +295,10 @@ class Driven:
             still = np.zeros((int(rows.sum()), 2))
             laws = {name: np.column_stack([value, still]) for name, value in inputs.items()}
         stated = accuracy_at(scene, off[rows], places, laws)
-        blind = np.zeros(len(rows), dtype=bool)
-        blind[rows] = False if stated.blind is None else stated.blind
-        bounds = spread(stated.claims, rows)
-        for claim in (claim for part in bounds.values() for claim in part.values()):
-            claim[blind] = np.nan
-        return bounds
+        bounded = np.ones(int(rows.sum()), dtype=bool) if stated.blind is None else ~stated.blind
+        seen = rows.copy()
+        seen[rows] = bounded
+        return spread(stated.claims, seen, bounded)
 
 
 def row_by_row(scene: Scene, inputs: Mapping[str, Array]) -> Scene:
@@ -318,20 +319,38 @@ def _from_row_to_row(values: Array) -> dict[str, Any]:
     return {"table": {"times": times.tolist(), "values": values.tolist()}}
 
 
-def at_either_end(
-    values: Sequence[Array], offs: Sequence[Array]
-) -> Iterator[tuple[int, tuple[list[Array], list[Array]]]]:
-    """For each rounded column: its index, and all values with this column at both ends of its rounding."""
+def columns_of(
+    series: Sequence[Series], numbers: Mapping[str, Mapping[str, Array]], *shape: int, absent: float = np.nan
+) -> Array:
+    """Our numbers, bounds or slopes for columns of a file, (columns, *shape); `absent` if not computed."""
+    found = np.full((len(series), *shape), absent)
+    for i, meaning in enumerate(s.meaning for s in series):
+        value = numbers.get(meaning.quantity, {}).get(meaning.name)
+        if value is not None:
+            found[i] = value if meaning.axis is None else value[..., meaning.axis]
+    return found
+
+
+def swings(
+    driven: Driven, measured: Measured, offs: Sequence[Array], ours: Array, tolerance: float | None = None
+) -> Iterator[tuple[Series, Array]]:
+    """Each rounded independent column, and the largest change of our numbers at either end of its rounding.
+
+    Args:
+        offs: rounding error of each independent column, (N,).
+        ours: our numbers, (columns, N).
+    """
+    values = [s.values for s in measured.independent]
     for i, off in enumerate(offs):
-        if off.any():
-            below, above = ([*values[:i], values[i] + side * off, *values[i + 1 :]] for side in (-1.0, 1.0))
-            yield i, (below, above)
-
-
-def ours_of(series: Series, numbers: Mapping[str, Mapping[str, Array]]) -> Array | None:
-    """Our numbers, bounds or slopes for a column of the file, (..., N); None if not computed."""
-    value, axis = numbers.get(series.meaning.quantity, {}).get(series.meaning.name), series.meaning.axis
-    return value if value is None or axis is None else value[..., axis]
+        if not off.any():
+            continue
+        change = np.zeros(ours.shape)
+        for end in (-off, off):
+            there = driven.at([*values[:i], values[i] + end, *values[i + 1 :]], tolerance, bounded=False)
+            moved = columns_of(measured.numbers, there.numbers, len(off))
+            gaps = (s.apart(*pair) for s, *pair in zip(measured.numbers, moved, ours, strict=True))
+            change = np.fmax(change, np.abs([*gaps]))
+        yield measured.independent[i], change
 
 
 def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Bools, rows: Any = slice(None)) -> Numbers:

@@ -132,7 +132,9 @@ def columns_of_text(text: str, source: str) -> Columns:
     if first is None:
         raise FileError(source, "", "has no line of numbers", "a line of numbers for each pose")
     head, rows = [row for _, row in cells[:first]], cells[first:]
-    count = _width(rows[0][1], head)
+    # Without empty columns after a delimiter at the end of every line.
+    width = len(rows[0][1])
+    count = 1 + max(i for line in (rows[0][1], *head) for i, cell in enumerate(line[:width]) if cell)
     if not head:
         # numpy and gnuplot write names in the last comment before the numbers.
         before = [row for number, row in lines.comments if number < rows[0][0]]
@@ -163,26 +165,21 @@ def _numeric(row: Sequence[str]) -> bool:
     return bool(filled) and sum(map(is_number, filled)) * 2 >= len(filled)
 
 
-def _width(row: Sequence[str], head: Sequence[Sequence[str]]) -> int:
-    """The number of columns, without empty ones after a delimiter at the end of every line."""
-    filled = [i for line in (row, *head) for i, cell in enumerate(line[: len(row)]) if cell]
-    return max(filled, default=0) + 1
-
-
 def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines above the numbers; lines with another number of cells are skipped."""
     short = [row if any(row[count:]) else row[:count] for row in head]
     wide = [row if len(row) == count else joined(row) for row in short]
-    # A spreadsheet pads lines above the names with empty cells: the names are the first of the fullest lines.
     wide = [row for row in wide if len(row) == count]
-    wide = wide[_fullest(wide) :]
     if not wide:
         if head:
             problem = f"has {count} columns of numbers under {len(joined(head[-1]))} names"
             raise FileError(source, "names of the columns", problem, "a name for each column")
         return tuple(str(i + 1) for i in range(count)), ("",) * count
-    names, units = (list(part) for part in zip(*map(name_and_unit, wide[0]), strict=True))
-    for row in wide[1:]:
+    # A spreadsheet pads lines above the names with empty cells: the names are the first of the fullest lines.
+    filled = [0 if _units(row) else sum(map(bool, row)) for row in wide]
+    first = filled.index(max(filled))
+    names, units = (list(part) for part in zip(*map(name_and_unit, wide[first]), strict=True))
+    for row in wide[first + 1 :]:
         bare = [_bare(cell) for cell in row]
         wrong = [cell for cell in bare if cell not in NO_UNIT and not is_unit(cell)]
         if wrong:
@@ -190,12 +187,6 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
             raise FileError(source, "line of units", problem, "mm, deg, rad, s and so on")
         units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, bare, strict=True)]
     return tuple(names), tuple(units)
-
-
-def _fullest(head: Sequence[Sequence[str]]) -> int:
-    """Number of the first line with the most filled cells; lines of units do not count."""
-    filled = [0 if _units(row) else sum(map(bool, row)) for row in head]
-    return filled.index(max(filled)) if filled else 0
 
 
 def _units(row: Sequence[str]) -> bool:

@@ -1,8 +1,8 @@
 """Finds a wrong sign, unit or zero of an independent column from a straight line.
 
-The numbers of a row determine its input: the Gauss-Newton method finds the input whose pose has these
-numbers. If the column v has a wrong sign, unit or zero, the inputs x of the rows are on a straight line x = k
-v + c: k gives the sign and the unit, c the zero. The line found from some rows is tested on the whole file.
+The numbers of a row determine its input: least squares find the input whose pose has these numbers. If the
+column v has a wrong sign, unit or zero, the inputs x of the rows are on a straight line x = k v + c: k gives
+the sign and the unit, c the zero. The line found from some rows is tested on the whole file.
 """
 
 from __future__ import annotations
@@ -13,13 +13,14 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
 from pointcoord import PointcoordError
 from validate.diagnosis import Explanation
 from validate.diagnosis.evidence import Row
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import INPUT
-from validate.measured.poses import Driven, ours_of
+from validate.measured.poses import Driven, columns_of
 from validate.measured.tolerances import Held, held_of
 from validate.plain_text import shown
 from validate.tables.units import ANGLES, KINDS, named
@@ -28,9 +29,7 @@ Array = NDArray[np.float64]
 
 ROWS = 16  # number of rows at which inputs are found
 NEARLY_ALL = 0.8  # least share of these rows that must be within reach
-# As shares of an input's range: step of differences, longest step, and size of the last step.
-STEP, LONGEST, ENDS = 1e-6, 0.1, 1e-9
-STEPS = 25
+STEPS = 25  # of least squares
 LEAST = 1e-9  # least relative width of a column of numbers
 NEARLY = 1.5  # allowed difference / tolerance in the whole file: least squares do not minimise the largest
 NOTHING = 1e-4  # a zero below this share of the input's size counts as none
@@ -92,25 +91,25 @@ def _implied(driven: Driven, some: Measured, name: str) -> Array | None:
     spread = np.ptp(np.nan_to_num([s.values for s in some.numbers]), axis=1)
     # Weighted by their rounding: a column that hardly changes says little about the input.
     wide = np.maximum([np.nanmax(s.off) for s in some.numbers], LEAST * np.maximum(spread, 1.0))
-    low, high = driven.sensible[name]
-    size, x = high - low, np.full(len(some.rows), driven.drawn[name])
+    count, (low, high) = len(some.rows), driven.sensible[name]
 
     def gaps(x: Array) -> Array:
         """Our numbers minus the given ones, over their rounding, (columns, rows)."""
         found = driven.solved({**here, name: x}, {})
-        ours = [ours_of(s, found.numbers) for s in some.numbers]
-        apart = [s.apart(one, s.values) for s, one in zip(some.numbers, ours, strict=True) if one is not None]
-        return np.asarray(np.stack(apart) / wide[:, None])
+        ours = columns_of(some.numbers, found.numbers, len(x))
+        apart = [s.apart(one, s.values) for s, one in zip(some.numbers, ours, strict=True)]
+        return np.asarray(apart / wide[:, None])
 
     try:
-        for _ in range(STEPS):
-            gap = gaps(x)
-            slope = (gaps(x + STEP * size) - gap) / STEP
-            square = np.nansum(slope**2, axis=0)
-            step = np.divide(np.nansum(slope * gap, axis=0), square, out=np.zeros_like(x), where=square > 0.0)
-            x = np.clip(x - size * np.clip(step, -LONGEST, LONGEST), low, high)
-            if np.abs(step).max() <= ENDS:
-                break
+        # The numbers of a row depend on the input of this row alone.
+        x = least_squares(
+            lambda x: np.nan_to_num(gaps(x)).ravel(),
+            np.full(count, np.clip(driven.drawn[name], low, high)),
+            jac_sparsity=np.tile(np.eye(count), (len(some.numbers), 1)),
+            bounds=(low, high),
+            x_scale=high - low,
+            max_nfev=STEPS,
+        ).x
         there = np.isfinite(gaps(x)).any(axis=0)
     except PointcoordError:
         return None

@@ -6,15 +6,12 @@ A number q of a file at an independent value x agrees with ours if they differ b
 
 - h_q, h_x: half a unit of the last digit as written.
 - S: the effect of the rounding of x, from both ends of the interval of x. To first order it is |q'| h_x, and
-q is
-  monotonic over such a width.
+  q is monotonic over such a width.
 - a: the accuracy of the file that the user states.
 - b: our error bound. Over time it is proven; over inputs it follows from the proven bound of the pose, and
-forces have
-  none.
+  forces have none.
 - 4 eps Q: at most four roundings by reading, unit and sign. Q is the largest number of the quantity, since a
-component
-  is no more accurate than the largest one from which it is computed.
+  component is no more accurate than the largest one from which it is computed.
 
 So T is 0 only if the car gives only zeros and the user states that these are exact.
 
@@ -45,7 +42,7 @@ from validate.formulations.asked_numbers import is_force
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import TRAVEL
-from validate.measured.poses import Driven, Found, at_either_end, ours_of
+from validate.measured.poses import Driven, Found, columns_of, swings
 from validate.plain_text import gathered, shown, some_of
 from validate.tables.errors import FileError
 from validate.toml_written import key_of
@@ -127,46 +124,43 @@ def held_of(
         PointcoordError: the scene cannot be solved.
     """
     values, least = [s.values for s in measured.independent], driven.scene.tolerance
+    count = len(measured.rows)
     here = driven.at(values)
     notes = [*measured.notes, *driven.notes, *out_of_reach(measured, here)]
     if not here.reached.any():
         row = min(here.reasons)
-        problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[row]})"
+        problem = f"none of its {count} rows can be reached ({here.reasons[row]})"
         raise FileError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
     unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
     granted, reached_to = here, [s.off for s in measured.independent]
     if unsaid:
-        granted = replace(here, bounds=driven.within(here, np.full(len(values[0]), least)))
+        granted = replace(here, bounds=driven.within(here, np.full(count, least)))
         notes.append(_granted(unsaid, measured, least))
         reached_to = [
             s.off + least if s.meaning.kind == TRAVEL and not s.off.any() else s.off
             for s in measured.independent
         ]
-    around = [
-        (measured.independent[i].rounded_unasked, [driven.at(end, bounded=False) for end in ends])
-        for i, ends in at_either_end(values, reached_to)
-    ]
+    ours, bounds = (columns_of(measured.numbers, of, count) for of in (here.numbers, here.bounds))
+    stated = columns_of(measured.numbers, granted.bounds, count, absent=0.0)
+    swing, supposed = np.zeros(ours.shape), np.zeros(ours.shape)
+    for column, change in swings(driven, measured, reached_to, ours):
+        swing += change
+        supposed += column.rounded_unasked * change
     largest: dict[str, float] = {}
     for s in measured.numbers:
         size = float(np.nanmax(np.abs(s.values), initial=0.0))
         largest[s.meaning.quantity] = max(largest.get(s.meaning.quantity, 0.0), size)
-    found, nothing = list[Held](), np.zeros(len(values[0]))
-    for s in measured.numbers:
-        mine, bound = ours_of(s, here.numbers), ours_of(s, here.bounds)
-        if mine is None or bound is None:
-            nan = np.full(len(nothing), np.nan)
-            found.append(Held(s, nan, nan, nothing, nothing, nothing, _why_unknown(s, driven)))
-            continue
-        swing, supposed = nothing, nothing
-        for unstated, sides in around:
-            there = (ours_of(s, side.numbers) for side in sides)
-            gaps = [np.nan_to_num(np.abs(s.apart(other, mine))) for other in there if other is not None]
-            change = np.max([nothing, *gaps], axis=0)
-            swing, supposed = swing + change, supposed + unstated * change
-        own = ours_of(s, granted.bounds) if s in unsaid else s.accuracy_or(accuracy or 0.0)
-        rounding = 4.0 * EPS * largest[s.meaning.quantity]
-        allowed = s.off + swing + rounding + (0.0 if own is None else own) + bound
-        found.append(Held(s, mine, np.where(np.isfinite(mine), allowed, np.nan), swing, supposed, bound))
+    found = list[Held]()
+    for i, s in enumerate(measured.numbers):
+        quantity, name = s.meaning.row
+        own = stated[i] if s in unsaid else s.accuracy_or(accuracy or 0.0)
+        allowed = s.off + swing[i] + 4.0 * EPS * largest[quantity] + own + bounds[i]
+        tolerance = np.where(np.isfinite(ours[i]), allowed, np.nan)
+        computed = all(name in of.get(quantity, {}) for of in (here.numbers, here.bounds))
+        unknown = "" if computed else NO_NUMBERS
+        if not (computed or driven.over_time):
+            unknown = NOT_OVER_INPUTS if s.meaning.per_second else NO_WAY if is_force(quantity) else unknown
+        found.append(Held(s, ours[i], tolerance, swing[i], supposed[i], bounds[i], unknown))
     reasons = gathered((h.unknown, shown(h.series.column)) for h in found if h.unknown)
     notes += [f"{', '.join(names)} is not tested: {why}" for why, names in reasons.items()]
     # The columns whose tolerance is larger by the rounding of an independent column than by their own digits.
@@ -181,12 +175,6 @@ def held_of(
     instants = measured.instants
     own_accuracy = Accuracy(np.ones(len(instants)), claims, proven=True)
     return found, Solution(OURS, instants, here.numbers, own_accuracy), tuple(notes)
-
-
-def _why_unknown(s: Series, driven: Driven) -> str:
-    if not driven.over_time and s.meaning.per_second:
-        return NOT_OVER_INPUTS
-    return NO_WAY if not driven.over_time and is_force(s.meaning.quantity) else NO_NUMBERS
 
 
 def rounded(measured: Measured) -> str:

@@ -1,12 +1,13 @@
 """Printed tables of other programs, and the difference of each of our two models from every column.
 
-This folder contains the printed numbers, their source, and the licence of the source.
+This folder contains the printed numbers, their source, and the licence of the source. Most columns are one of
+our numbers, the others have a rule. A table lists the columns for which no rule is known.
 """
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import nan
 from pathlib import Path
@@ -15,14 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.registry import QUANTITIES
+from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.scene.input_part import InputPart
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.pair import SMALLEST
 from validate.formulations.protocol import Accuracy, Solution
 from validate.formulations.registry import formulation
 from validate.measured.reading import Columns, read_columns
-from validate.published.rules import Solved, rule_of
 from validate.tables.errors import FileError
 from validate.tables.units import factor_of
 
@@ -75,6 +75,82 @@ def tables() -> tuple[Table, ...]:
     """Every table, in the order of `tables.toml`."""
     known = tomllib.loads((FOLDER / "tables.toml").read_text(encoding="utf-8"))
     return tuple(Table(name, **about) for name, about in known.items())
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A car at the rows of a table, as one formulation solves it.
+
+    Attributes:
+        numbers: numbers of the car, (N,), and places of points, (N, 3), by their names; rad and mm.
+        over: the first column.
+    """
+
+    scene: Scene
+    numbers: Mapping[str, Array]
+    over: Array
+
+    @classmethod
+    def of(cls, scene: Scene, solution: Solution, over: Array) -> Solved:
+        """The car of a solution."""
+        named = {q: n for q, n in solution.numbers.items() if q == "position" or QUANTITIES[q].of == "car"}
+        return cls(scene, {name: array for of in named.values() for name, array in of.items()}, over)
+
+    @property
+    def damper_drawn(self) -> float:
+        """The drawn length of the damper, mm."""
+        part = self.scene.mechanism
+        first, second = (np.array(part.points[name]) for name in part.structure.roles["damper"])
+        return float(np.linalg.norm(second - first))
+
+    @property
+    def outward(self) -> Array:
+        """How far the wheel centre has moved outboard, (N,), mm."""
+        part = self.scene.mechanism
+        centre = part.topology.wheel_centre
+        return np.asarray((self.numbers[centre] - np.array(part.points[centre])) @ part.outboard)
+
+
+Rule = tuple[str, str, Callable[[Solved], Array]]
+"""The rule of a printed column: the kind of number (see `QUANTITIES`), its unit, and the column, (N,); NaN
+where it does not exist."""
+LENGTH = "dimension", "mm"
+RULES: Mapping[str, Rule] = {
+    # Wheel over damper, by the travel of the contact point: -dz_c / dl.
+    "damper_ratio": (
+        *("dimension_gradient", "mm/mm"),
+        lambda car: -car.numbers["contact_travel_by_travel"] / car.numbers["damper_length_by_travel"],
+    ),
+    # The damper's length minus its drawn length.
+    "damper_travel": (*LENGTH, lambda car: car.numbers["damper_length"] - car.damper_drawn),
+    # Of a front axle.
+    "wheelbase_change": (*LENGTH, lambda car: -car.numbers["recession"]),
+    # At right angles to the steering axis in side view.
+    "trail_at_the_axis": (
+        *LENGTH,
+        lambda car: car.numbers["castor_offset"] * np.cos(car.numbers["caster"]),
+    ),
+    "roll_centre_to_body": (
+        *LENGTH,
+        lambda car: car.numbers["roll_centre_height"] + car.numbers["contact_travel"],
+    ),
+    "wheel_centre_outward": (*LENGTH, lambda car: car.outward),
+    # The turning radius, printed as 0 straight ahead.
+    "turning_circle": (
+        *LENGTH,
+        lambda car: np.where(car.over == 0.0, 0.0, car.numbers["turning_radius"]),
+    ),
+}
+"""Columns that are not simply one of our numbers; each rule was found by reproducing the printed numbers."""
+
+
+def rule_of(name: str) -> Rule:
+    """The rule of a name: one of our numbers unchanged, or one of `RULES`."""
+    if name in RULES:
+        return RULES[name]
+    number = number_called(name)
+    assert number is not None  # a table names what there is
+    return number.quantity.name, number.quantity.unit, lambda car: car.numbers[name]
 
 
 @dataclass(frozen=True)
@@ -139,7 +215,7 @@ def compare_table(table: Table) -> Published:
     printed = read_columns(str(FOLDER / f"{table.name}.csv"))
     scene, over = table.scene_over(printed), printed.values[0]
     solutions = [formulation(name).solve(scene) for name in MODELS]
-    solved = [_solved(over, scene, solution) for solution in solutions]
+    solved = [Solved.of(scene, solution, over) for solution in solutions]
     columns = tuple(_column(table, printed, i, solutions, solved) for i in range(1, len(printed.names)))
     told = [f"{one.name} is not judged: {one.open}" for one in columns if one.open]
     notes = tuple(note for note in (table.note, *told) if note)
@@ -153,11 +229,6 @@ def compare_table(table: Table) -> Published:
     return Published(table, f"{printed.names[0]} [{printed.units[0]}]", over, columns, outcomes)
 
 
-def _solved(over: Array, scene: Scene, solution: Solution) -> Solved:
-    named = {q: n for q, n in solution.numbers.items() if q == "position" or QUANTITIES[q].of == "car"}
-    return Solved(scene, {name: array for of in named.values() for name, array in of.items()}, over)
-
-
 def _column(
     table: Table, printed: Columns, i: int, solutions: Sequence[Solution], solved: Sequence[Solved]
 ) -> Column:
@@ -169,18 +240,17 @@ def _column(
     """
     name, unit, over = printed.names[i], printed.units[i], printed.values[0]
     what = table.columns[name]
-    rule = rule_of(what)
-    per = _factor(unit, rule.unit)
+    quantity, our_unit, rule = rule_of(what)
+    per = _factor(unit, our_unit)
     theirs = per * printed.values[i]
     off = per * (0.5 * printed.steps[i] + table.accuracy.get(name, 0.0))
-    ours = tuple(rule.of(one) for one in solved)
+    ours = tuple(map(rule, solved))
     rows = []
     for values, solution in zip(ours, solutions, strict=True):
         gap = np.abs(values - theirs)
-        # A value that does not exist counts as no difference if the rule is not known, else as an infinite
-        # one.
+        # A value that does not exist is no difference if the rule is not known, else an infinite one.
         gap[np.isnan(gap)] = 0.0 if name in table.open else np.inf
-        allowed = off + solution.accuracy.claims.get(rule.quantity, {}).get(what, 0.0)
+        allowed = off + solution.accuracy.claims.get(quantity, {}).get(what, 0.0)
         share = gap / (allowed + SMALLEST)
         worst = int(np.argmax(share))
         rows.append(
@@ -188,9 +258,9 @@ def _column(
                 scene=table.name,
                 first=table.title,
                 second=solution.formulation,
-                quantity=rule.quantity,
+                quantity=quantity,
                 name=what,
-                unit=rule.unit,
+                unit=our_unit,
                 difference=float(gap[worst]),
                 tolerance=float(allowed[worst]),
                 share=float(share[worst]),

@@ -20,7 +20,7 @@ from validate.cli import main
 from validate.exit_status import ExitStatus
 from validate.fitting.fit import Fit, fit_hardpoints
 from validate.fitting.problem import Problem
-from validate.fitting.words import NOTHING, said_of_fit, warnings_of_fit
+from validate.fitting.report import NOTHING, report_of_fit
 from validate.measured.mapping import Measured
 from validate.measured.poses import Driven
 from validate.output.document import schema_text
@@ -246,7 +246,7 @@ def test_what_a_prior_knows_better_than_the_file_is_not_known_from_the_file(
     fit = fitted(CAR, data, CENTRE, prior=times * known, accuracy=accuracy)
     assert [one.deviation for one in fit.combinations] == pytest.approx([known] * 3, rel=1e-9)
     assert (not fit.unseen) is settled
-    assert ("determine every combination" in said_of_fit(fit, "x", "y").text) is settled
+    assert ("determine every combination" in report_of_fit(fit, "x", "y").text) is settled
 
 
 @pytest.mark.parametrize("noise", [0.0, 4.0])
@@ -296,8 +296,8 @@ def test_a_correction_ends_on_its_bound_and_the_others_are_fitted_to_it_there() 
     assert fit.converged
     assert [at for at, one in fit.coordinates.items() if one.on_bound] == ["upper_ball_joint.z"]
     assert fit.coordinates["upper_ball_joint.z"].correction == pytest.approx(-4.0, abs=1e-9)
-    assert "on its bound" in said_of_fit(fit, "x", "y").text
-    assert any("on the bound of" in words for words in warnings_of_fit(fit))
+    assert "on its bound" in report_of_fit(fit, "x", "y").text
+    assert any("on the bound of" in words for words in report_of_fit(fit, "x", "y").warnings)
     held = designs_of(misread, offsets={"upper_ball_joint.z": -4.0}).design(0)
     alone = fitted(held, data, FREE[1:], bounds=4.0)
     other, alone = fit.coordinates[FREE[1]], alone.coordinates[FREE[1]]
@@ -325,7 +325,9 @@ def test_a_search_that_is_stopped_by_designs_that_do_not_close_says_so() -> None
     data = measured(off_by_10_deg(1.8), CAR, held={"rack": 0.0})
     fit = fitted(CAR, data, ["lower_ball_joint.y"], bounds=300.0, solves=20)
     assert not fit.converged
-    (words,) = (words for words in warnings_of_fit(fit) if "did not end at a minimum" in words)
+    (words,) = (
+        words for words in report_of_fit(fit, "x", "y").warnings if "did not end at a minimum" in words
+    )
     assert "cannot be assembled" in words
 
 

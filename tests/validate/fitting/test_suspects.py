@@ -14,7 +14,7 @@ from pointcoord import Scene, designs_of
 from validate.cli import main
 from validate.exit_status import ExitStatus
 from validate.fitting.problem import Problem
-from validate.fitting.suspect_words import said_of_suspects, verdict
+from validate.fitting.report import report_of_suspects, verdict
 from validate.fitting.suspects import Suspects, explains, suspected
 from validate.output.document import schema_text
 
@@ -88,7 +88,7 @@ def test_a_car_that_explains_its_file_has_no_suspects() -> None:
     found = found_in("double-wishbone", curves("double-wishbone", {}))
     assert found.drawn
     assert not found.tried
-    assert "no hardpoint is suspect" in said_of_suspects(found, "car", "x.csv").text
+    assert "no hardpoint is suspect" in report_of_suspects(found, "car", "x.csv").text
 
 
 def test_rounding_leaves_as_much_as_explains_but_for_one_file_in_a_thousand() -> None:

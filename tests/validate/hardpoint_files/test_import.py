@@ -14,7 +14,7 @@ from pointcoord.mechanism import mechanism_file
 from validate.cli import main
 from validate.closed_drawing import warnings_of
 from validate.errors import UsageError
-from validate.hardpoint_files.axes import Axes
+from validate.hardpoint_files.contents import Axes
 from validate.hardpoint_files.format import MJCF, READERS, TABLE, formats
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.tables.errors import FileError
@@ -72,7 +72,7 @@ def test_a_strut_of_chrono_has_its_axis_and_the_angles_that_it_says(
     part = found.scene.mechanism
     assert (part.type, part.side) == ("macpherson", "left")
     derived = {"strut_rod_end", "wheel_axis_inner"}
-    assert {point.name for point in found.points if point.source.startswith("from ")} == derived
+    assert {point.name for point in found.drawing.points if point.source.startswith("from ")} == derived
     for name in {*points} - derived - {"rack_centre"}:
         assert part.points[name] == points[name], name
     # Anywhere on the strut's line will do, and halfway is far from both ends.
@@ -132,7 +132,9 @@ def test_what_the_points_speak_against_is_taken_where_the_user_says_it_and_warne
     told = " ".join(warnings_of(found.scene, found.stands.closing))
     assert found.scene.mechanism.side == side
     assert warning in told, told
-    assert any("left-handed" in fact for fact in found.facts) == ("left,forward" in choices.get("axes", ""))
+    assert any("left-handed" in fact for fact in found.drawing.facts) == (
+        "left,forward" in choices.get("axes", "")
+    )
 
 
 def test_a_report_of_both_axles_gives_the_one_that_is_asked_for(tmp_path: Path) -> None:
@@ -180,7 +182,7 @@ def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_know
     names.write_text(f'[names]\ntie_rod_inner = "rack end"\n{given}')
     found = imported(tmp_path, text, names=str(names))
     assert drawn(found) == CAR
-    assert [point.name for point in found.others] == ["CHAS_LowAft", "Hub", "NSMA_PPAttPnt"]
+    assert [point.name for point in found.drawing.others] == ["CHAS_LowAft", "Hub", "NSMA_PPAttPnt"]
 
 
 @pytest.mark.parametrize(

@@ -17,10 +17,9 @@ from pointcoord.mechanism.file import MechanismFile
 from validate import compare
 from validate.cli import main
 from validate.closed_drawing import closed_drawing, closed_mechanism
-from validate.hardpoint_files.axes import OUR_AXES
+from validate.hardpoint_files.contents import OUR_AXES
 from validate.hardpoint_files.importing import import_hardpoints
-from validate.hardpoint_files.mjcf import HomePose
-from validate.hardpoint_files.mjcf_mechanism import drawing_of
+from validate.hardpoint_files.mjcf import drawing_of
 from validate.hardpoint_files.written_scene import Drawing
 from validate.peers.mjcf import mjcf_of
 from validate.tables.errors import FileError
@@ -135,7 +134,7 @@ def made(text: str, folder: Path) -> Drawing:
     """The mechanism of a model."""
     path = folder / "model.xml"
     path.write_text(text, encoding="utf-8")
-    return drawing_of(HomePose(str(path), OUR_AXES))
+    return drawing_of(str(path), OUR_AXES)
 
 
 def sled(along: str, turns: bool) -> Scene:
@@ -243,7 +242,7 @@ def test_a_four_bar_of_somebody_else_moves_as_its_closed_form(text: str, tmp_pat
 def test_axes_turn_what_mujoco_placed(tmp_path: Path) -> None:
     plain = imported(tmp_path, FOUR_BAR, "model.xml")
     turned = imported(tmp_path, FOUR_BAR, "model.xml", axes="left,rearward,up")
-    for one, other in zip(plain.points, turned.points, strict=True):
+    for one, other in zip(plain.drawing.points, turned.drawing.points, strict=True):
         x, y, z = one.place
         assert (other.name, other.place) == (one.name, (y, -x, z))
 

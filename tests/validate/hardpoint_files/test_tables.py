@@ -75,8 +75,8 @@ def test_a_rocker_of_optimumk_makes_a_car_with_a_pushrod_and_the_same_damper(tmp
     assert found.scene.mechanism.type == "double_wishbone_pushrod"
     assert found.scene.mechanism.side == "left"
     assert drawn(found) == {name: (x, -y, z) for name, (x, y, z) in car.items()}
-    assert not found.others
-    assert any("pushrod_outer is taken as a point of the lower arm" in fact for fact in found.facts)
+    assert not found.drawing.others
+    assert any("pushrod_outer is taken as a point of the lower arm" in fact for fact in found.drawing.facts)
 
 
 def corners(title: str) -> str:
@@ -115,7 +115,7 @@ def test_each_wheel_of_a_table_of_four_is_the_one_that_is_asked_for(text: str, t
         found = imported(tmp_path, text, axes=OURS, part=part, side=side)
         assert drawn(found) == WHEELS[part, side]
         assert found.scene.mechanism.side == side
-        assert not found.others
+        assert not found.drawing.others
 
 
 SECTIONS = {
@@ -144,7 +144,7 @@ def test_a_name_is_put_together_of_the_heading_of_its_section_and_its_own(
         lines += [f"{name},{cells(CAR.get(ours, (1.0, 2.0, 3.0)))}" for name, ours in its.items()]
     found = imported(tmp_path, "\n".join(lines), axes=OURS)
     assert drawn(found) == CAR
-    assert [point.name for point in found.others] == ["Mass"]
+    assert [point.name for point in found.drawing.others] == ["Mass"]
     assert "LOWER A-ARM Front inboard, line 3" in found.text
 
 
@@ -160,7 +160,7 @@ def test_columns_that_are_not_known_are_those_that_the_user_names(tmp_path: Path
     choices = {"axes": OURS, "part": "rear", "side": "left", "names": str(names)}
     found = imported(tmp_path, corners("Ecke") + "\nfr,Battery,1,2,3", **choices)
     assert drawn(found) == WHEELS["rear", "left"]
-    assert [point.name for point in found.others] == ["Battery"]
+    assert [point.name for point in found.drawing.others] == ["Battery"]
 
 
 def test_a_file_of_names_that_is_not_there_is_written_to_be_filled_in(
@@ -190,8 +190,8 @@ def test_a_name_with_a_word_more_or_less_is_another_point(tmp_path: Path) -> Non
     text = "\n".join([POINT, *rows(), *(f"{other},1,2,3" for other in others), "Steering rack,1.3,,"])
     found = imported(tmp_path, text, axes=OURS)
     assert drawn(found) == CAR
-    assert tuple(point.name for point in found.others) == others
-    assert "lines without a point: 'Steering rack' on line 16" in found.facts
+    assert tuple(point.name for point in found.drawing.others) == others
+    assert "lines without a point: 'Steering rack' on line 16" in found.drawing.facts
 
 
 def test_a_strut_is_known_by_its_points(tmp_path: Path) -> None:
@@ -243,7 +243,7 @@ def test_a_table_is_the_car_however_it_is_written(
     found = imported(tmp_path, text, **choices)
     assert drawn(found) == CAR
     assert found.scene.mechanism.side == "right"
-    assert [fact for fact in facts if not any(fact in said for said in found.facts)] == []
+    assert [fact for fact in facts if not any(fact in said for said in found.drawing.facts)] == []
 
 
 ADAMS = {
@@ -281,4 +281,4 @@ def test_hardpoints_of_adams_car_are_known_by_their_names_with_their_axes_and_si
         given = {name: WHEELS["front", side][name] for name in ADAMS}
         assert {name: drawn(found)[name] for name in ADAMS} == given
         assert found.scene.mechanism.side == side
-        assert "by names such as" in found.facts[0]
+        assert "by names such as" in found.drawing.facts[0]

@@ -145,22 +145,17 @@ DRAWN = standing(WISHBONE).inputs["arm_angle"]
 EVEN, UNEVEN = tuple(range(-30, 31, 5)), (-30.2, -23.7, -16.3, -9.6, 0.3, 7.8, 14.9, 22.4, 30.1)
 
 
-def test_a_column_in_even_steps_is_set_and_not_rounded() -> None:
-    found = compared(steered(EVEN), {}, WISHBONE)
+@pytest.mark.parametrize(("racks", "form"), [(EVEN, ".0f"), (np.linspace(-30.0, 30.0, 19).tolist(), ".12g")])
+def test_a_column_in_even_steps_is_set_and_not_rounded_though_zeros_are_left_off(
+    racks: Sequence[float], form: str
+) -> None:
+    """The second one has twelve digits of thirds, of which -30 is written without decimals."""
+    found = compared(steered(racks, form=form), {}, WISHBONE)
     (row,) = found.outcome.rows
     assert row.verdict == "agrees"
     assert np.degrees(row.tolerance) == pytest.approx(0.005, rel=1e-3)
     assert "rack: in even steps, taken as exact" in " / ".join(found.outcome.notes)
-    assert disagreeing(steered(EVEN, wrong=0.02), {}, WISHBONE) == ["wheel.toe"]
-
-
-def test_zeros_that_are_left_off_make_no_even_column_rounded() -> None:
-    """Twelve digits of thirds, of which -30 is written without decimals."""
-    racks = np.linspace(-30.0, 30.0, 19)
-    for wrong, verdict in ((0.0, "agrees"), (0.02, "disagrees")):
-        (row,) = compared(steered(racks, wrong, form=".12g"), {}, WISHBONE).outcome.rows
-        assert row.verdict == verdict
-        assert np.degrees(row.tolerance) == pytest.approx(0.005, rel=1e-3)
+    assert disagreeing(steered(racks, wrong=0.02, form=form), {}, WISHBONE) == ["wheel.toe"]
 
 
 def test_what_agrees_only_by_a_rounding_that_nobody_stated_is_not_tested_and_the_line_is_told() -> None:
@@ -278,13 +273,9 @@ def test_a_travel_counts_from_the_closed_drawing_and_the_rack_as_drawn(point: st
     content = {"rolling_radius": radius, "columns": {"bump": {"is": f"travel.{point}"}, "rack": {}}}
     measured = understood(columns_of_text("\n".join(lines), "mine.csv"), content, car, "map.toml")
     if fitted:
-        problem = Problem.of(car, measured, ("wheel_centre.x",))
-        found = problem.solved(np.zeros(1)).numbers
+        there = Problem.of(car, measured, ("wheel_centre.x",)).solved(np.zeros(1))
     else:
-        found = (
-            Driven.of(car, measured)
-            .at([s.values for s in measured.independent])
-            .numbers["position"]["wheel_centre"][:, 0]
-        )
+        there = Driven.of(car, measured).at([s.values for s in measured.independent])
+    found = there.numbers["position"]["wheel_centre"][:, 0]
     # Heights of 300 mm are rounded to 6e-14 mm, and poses are solved to 1e-12 mm.
     np.testing.assert_allclose(found, x, rtol=0, atol=1e-10)

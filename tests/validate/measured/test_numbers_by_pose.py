@@ -45,25 +45,19 @@ def file_of(scene: Scene, over: str, numbers: tuple[str, ...], wrong: dict[str, 
 def test_gradients_centres_and_ratios_over_a_travel_are_held_to_their_digits() -> None:
     scene = scene_with("wheel-travel", effects=EFFECTS, samples=9)
     found = compared(file_of(scene, "wheel_travel", OVER_TRAVEL), {}, scene)
-    assert {
-        name: verdict for name, verdict in verdicts(found).items() if name in OVER_TRAVEL
-    } == dict.fromkeys(OVER_TRAVEL, "agrees")
+    assert verdicts(found).items() >= dict.fromkeys(OVER_TRAVEL, "agrees").items()
     # To half of the last digit and hardly more: our own bounds are far below it.
     tolerances = {row.name: row.tolerance for row in found.outcome.rows}
     assert tolerances["roll_centre_height"] == pytest.approx(5e-6, rel=0.1)
     assert tolerances["toe_by_travel"] == pytest.approx(np.radians(5e-6), rel=0.1)
-
-
-def test_those_of_them_that_are_wrong_disagree_alone() -> None:
-    scene = scene_with("wheel-travel", effects=EFFECTS, samples=9)
     wrong = {
         "toe_by_travel": lambda x: -x,
         "roll_centre_height": lambda x: x + 2e-5,
         "damper_per_wheel": lambda x: 1.0 / x,
         "front_view_swing_arm": lambda x: x * 1.000001,
     }
-    found = disagreeing(file_of(scene, "wheel_travel", OVER_TRAVEL, wrong), {}, scene)
-    assert sorted(words.rpartition(".")[2] for words in found) == sorted(wrong)
+    disagree = disagreeing(file_of(scene, "wheel_travel", OVER_TRAVEL, wrong), {}, scene)
+    assert sorted(words.rpartition(".")[2] for words in disagree) == sorted(wrong)
 
 
 def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:

@@ -12,10 +12,9 @@ from validate.cli import main
 from validate.measured.reading import read_columns
 from validate.output.document import schema_text
 from validate.published import tables as room
-from validate.published.rules import RULES
-from validate.published.tables import FOLDER, MODELS, Published, compare_published, compare_table, tables
+from validate.published.tables import FOLDER, MODELS, RULES, Published, compare_published, compare_table
 
-TABLES = {table.name: table for table in tables()}
+TABLES = {table.name: table for table in room.tables()}
 HELD = [
     (name, column) for name, table in TABLES.items() for column in table.columns if column not in table.open
 ]

@@ -2,42 +2,30 @@
 
 from __future__ import annotations
 
-from validate.diagnosis.hypothesis import Kind
-from validate.diagnosis.kinds.hardpoint import misread_hardpoints, points_that_rest_elsewhere
-from validate.diagnosis.kinds.linear import exchanged_axes, factors, mirrored, other_signs, other_units
-from validate.diagnosis.kinds.links import other_assemblies, other_closures, other_lines, wrong_lengths
-from validate.diagnosis.kinds.motions import shifted_in_time, wrong_inputs
-from validate.diagnosis.kinds.numbers import (
-    of_another_instant,
-    offsets,
-    other_definitions,
-    printed_digits,
-    sides_exchanged,
-    swapped,
-)
-from validate.diagnosis.kinds.rates import differences, per_input
+from validate.diagnosis.evidence import Kind
+from validate.diagnosis.kinds import drawing, motion, numbers
 
 KINDS = (
-    Kind("sample", of_another_instant, opens=True),
-    Kind("definition", other_definitions, opens=True),
-    Kind("axes", exchanged_axes, opens=True),
-    Kind("sign", other_signs, opens=True, closes=True),
-    Kind("unit", other_units, opens=True, closes=True),
-    Kind("offset", offsets, closes=True),
-    Kind("digits", printed_digits, closes=True),
-    Kind("mirror", mirrored),
-    Kind("hardpoint", points_that_rest_elsewhere),
-    Kind("swapped", swapped),
-    Kind("sides", sides_exchanged),
-    Kind("differences", differences),
-    Kind("rates", per_input),
-    Kind("closure", other_closures, "motion"),
-    Kind("input", wrong_inputs, "motion"),
-    Kind("branch", other_assemblies, "motion"),
-    Kind("time shift", shifted_in_time, "motion"),
-    Kind("line", other_lines, "drawing"),
-    Kind("link", wrong_lengths, "drawing"),
-    Kind("hardpoint", misread_hardpoints, "drawing"),
-    Kind("factor", factors, "last"),
+    Kind("sample", numbers.of_another_instant, opens=True),
+    Kind("definition", numbers.other_definitions, opens=True),
+    Kind("axes", numbers.exchanged_axes, opens=True),
+    Kind("sign", numbers.other_signs, opens=True, closes=True),
+    Kind("unit", numbers.other_units, opens=True, closes=True),
+    Kind("offset", numbers.offsets, closes=True),
+    Kind("digits", numbers.printed_digits, closes=True),
+    Kind("mirror", numbers.mirrored),
+    Kind("hardpoint", drawing.points_that_rest_elsewhere),
+    Kind("swapped", numbers.swapped),
+    Kind("sides", numbers.sides_exchanged),
+    Kind("differences", motion.differences),
+    Kind("rates", motion.per_input),
+    Kind("closure", drawing.other_closures, "motion"),
+    Kind("input", motion.wrong_inputs, "motion"),
+    Kind("branch", drawing.other_assemblies, "motion"),
+    Kind("time shift", motion.shifted_in_time, "motion"),
+    Kind("line", drawing.other_lines, "drawing"),
+    Kind("link", drawing.wrong_lengths, "drawing"),
+    Kind("hardpoint", drawing.misread_hardpoints, "drawing"),
+    Kind("factor", numbers.factors, "last"),
 )
 """All kinds. In a pair of faults in the same numbers, the first fault is earlier in this list."""
