@@ -23,7 +23,7 @@ from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
 from pointcoord.solve.assembly import close_drawing, driven_to
 from pointcoord.solve.follower import follow
-from pointcoord.solve.place import Path
+from pointcoord.solve.path import Path
 
 Array = NDArray[np.float64]
 

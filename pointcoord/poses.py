@@ -33,7 +33,7 @@ from pointcoord.results.samples import Channel, Named
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import assemble, assembled, close_drawing
-from pointcoord.solve.place import Path
+from pointcoord.solve.path import Path
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]

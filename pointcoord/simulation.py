@@ -125,8 +125,7 @@ class Effort:
         tolerance: tolerance of positions, mm: the scene's, or the nearest that a series can keep.
         part: that tolerance as a share of the car's size, used for rates.
         orders: order of each series.
-        moving, still: numbers of unknown coordinates in the series, and of those solved once because they
-            stand still.
+        unknowns: number of unknown coordinates in the series.
         not_needed: number of unknowns that are not solved for, because nothing reported depends on them.
         points_not_needed: the points that are not solved for.
         start: work of assembling the first pose.
@@ -140,8 +139,7 @@ class Effort:
     tolerance: float
     part: float
     orders: tuple[int, ...]
-    moving: int
-    still: int
+    unknowns: int
     not_needed: int
     points_not_needed: tuple[str, ...]
     start: Work
@@ -160,8 +158,6 @@ def effort(scene: Scene) -> Effort:
     task, solved = solve_by_either(prepare_task(Scene.checked(scene, scene.title or "scene"), AUTO))
     mechanism = task.readout.mechanism
     whole, mapped = scene.mechanism.topology, task.method is MAP
-    # A map contains all coordinates, including those that stand still.
-    moving = mechanism.map.unknowns if mapped else mechanism.moving_part(task.functions).system.unknowns
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
     return Effort(
         method=task.method.name,
@@ -169,8 +165,7 @@ def effort(scene: Scene) -> Effort:
         tolerance=kept * float(mechanism.unit) / truncation_share(mechanism),
         part=kept / truncation_share(mechanism),
         orders=solved.orders,
-        moving=moving,
-        still=mechanism.map.unknowns - moving,
+        unknowns=mechanism.map.unknowns,
         not_needed=whole.layout.unknowns - mechanism.map.unknowns,
         points_not_needed=_unsolved(task),
         start=task.start.work,

@@ -19,10 +19,8 @@ from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Piece, Topology
 from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.partial_map import PartialMap, moving_part
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.vectors import cross
-from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 
@@ -59,11 +57,6 @@ class Mechanism:
     def map(self) -> QuadraticMap:
         """The constraints."""
         return self.topology.map
-
-    def moving_part(self, functions: Mapping[str, TimeFunction]) -> PartialMap:
-        """The constraints that move under these laws of the inputs; all constraints if none would."""
-        driven = (drive for drive in self.topology.drives if not functions[drive.input].still)
-        return moving_part(self.map, frozenset(self.layout.scalar(drive.coordinate) for drive in driven))
 
     @cached_property
     def drawn_places(self) -> Mapping[str, Array]:

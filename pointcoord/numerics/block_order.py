@@ -13,7 +13,7 @@ the entries; so does the matching of a linkage, where few rows must give up thei
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -78,15 +78,6 @@ class BlockOrder:
                 found.append(number)
                 wanted.update(block.reads)
         return tuple(reversed(found))
-
-    def moved_by(self, known: Mapping[int, frozenset[int]]) -> tuple[frozenset[int], ...]:
-        """The causes that move each block; `known` gives the causes that move each known coordinate."""
-        moved, found = dict(known), list[frozenset[int]]()
-        for block in self.blocks:
-            causes = frozenset[int]().union(*(moved[i] for i in block.reads if i in moved))
-            found.append(causes)
-            moved.update(dict.fromkeys(block.unknowns, causes))
-        return tuple(found)
 
 
 def block_order_of(reads: Sequence[Collection[int]], unknowns: int) -> BlockOrder:

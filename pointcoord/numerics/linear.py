@@ -105,15 +105,6 @@ class Factors:
             None if self.sparse is None else self.sparse.taken(members),
         )
 
-    def part(self, rows: Indices, unknowns: Indices) -> Factors:
-        """Factors of diagonal blocks of a block triangular matrix, whose inverse has the blocks' inverses.
-
-        The condition number is that of the whole matrix.
-        """
-        matrix = self.matrix[..., rows[:, None], unknowns]
-        inverse = self.inverse[..., unknowns[:, None], rows]
-        return Factors(matrix, inverse, self.row_scale[..., rows], self.condition)
-
     def replaced(self, members: NDArray[np.intp], new: Factors) -> Factors:
         """These factors with some members of the one batch dimension, by number, replaced by others."""
         if len(members) == len(self.condition):

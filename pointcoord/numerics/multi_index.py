@@ -83,15 +83,6 @@ class Powers:
     def _places(self) -> Indices:
         return self.exponents @ (self.order + 1) ** np.arange(self.inputs)[::-1]
 
-    def within(self, variables: tuple[int, ...]) -> Indices:
-        """Indices of the powers of only these variables, in the order of `powers` for that many variables."""
-        others = [i for i in range(self.inputs) if i not in variables]
-        return np.flatnonzero(~self.exponents[:, others].any(axis=-1))
-
-    def variables_of(self, there: NDArray[np.bool_]) -> frozenset[int]:
-        """The variables in a series' nonzero terms; `there` marks the nonzero coefficients, (powers,)."""
-        return frozenset(np.flatnonzero((self.exponents[there] > 0).any(axis=0)).tolist())
-
     def power_of(self, variable: int, exponent: int) -> int:
         """Index of a power of one variable alone."""
         wanted = np.zeros(self.inputs, dtype=np.intp)

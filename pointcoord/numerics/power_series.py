@@ -6,9 +6,7 @@ gives for each k
 
     C_u u_k = -( C_w w_k + sum_{0 < i < k} B(y_i, y_{k-i}) ),
 
-solved for all k of one total degree at once. With several parameters, each moves some blocks of the map only,
-and few blocks depend on all parameters: blocks that depend on the same ones are expanded in these alone (see
-`partial_map`).
+solved for all k of one total degree at once.
 
 In time, k = 1 is the paper's velocity equation (19), and k = 2 half its acceleration equation (22). Only
 products of two moving differences take part in the sum, and many rows share one (see
@@ -27,7 +25,6 @@ from numpy.typing import NDArray
 
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.multi_index import Products, powers_counted, products
-from pointcoord.numerics.partial_map import stages
 from pointcoord.numerics.quadratic import MovingProducts, QuadraticMap
 from pointcoord.numerics.vectors import LAST, NEXT
 
@@ -78,52 +75,15 @@ def expand_moving(
     inputs: int,
     lacking: Array | None = None,
 ) -> Array:
-    """Series of all moving coordinates, powers first, so that the numbers of one power are contiguous.
+    """Series of all unknowns and of the moving known coordinates, powers first, contiguous by power.
 
     Args:
         known: series of the known coordinates that move, shape (powers, ..., moving).
         driven: numbers of these coordinates.
         lacking: as in `expand`.
     Returns:
-        Coefficients of the unknown ones and then of these, shape (powers, ..., unknowns + moving).
+        Coefficients of the unknowns and then of these, shape (powers, ..., unknowns + moving).
     """
-    if inputs == 1:
-        return _recursion(system, factors, y, known, driven, inputs, lacking)
-    n, every = system.unknowns, powers_counted(inputs, len(known))
-    # With members contiguous in memory, which is four times as quick.
-    members_last = np.ascontiguousarray(known.reshape(every.count, -1, len(driven)).swapaxes(1, 2))
-    there = (members_last != 0.0).any(axis=-1)
-    moved = tuple((number, every.variables_of(there[:, i])) for i, number in enumerate(driven))
-    series = np.moveaxis(np.zeros((n + len(driven), every.count, *y.shape[:-1])), 0, -1)
-    series[0, ..., :n] = y[..., :n]
-    series[..., n:] = known
-    place = {number: n + i for i, number in enumerate(driven)}
-    for stage in stages(system, moved):
-        part, powers = stage.part, every.within(stage.inputs)
-        own = series if len(powers) == len(series) else series[powers]
-        found = _recursion(
-            part.system,
-            factors.part(part.rows, part.unknowns),
-            part.taken(y),
-            own.take([place.get(number, number) for number in stage.reads], axis=-1),
-            part.order.argsort()[list(stage.reads)].tolist(),
-            len(stage.inputs),
-        )
-        for i, unknown in enumerate(part.unknowns.tolist()):
-            series[powers, ..., unknown] = found[..., i]
-    return series
-
-
-def _recursion(
-    system: QuadraticMap,
-    factors: Factors,
-    y: Array,
-    known: Array,
-    driven: Sequence[int],
-    inputs: int,
-    lacking: Array | None = None,
-) -> Array:
-    """As `expand_moving`, for one stage, all of whose blocks depend on all inputs (see `partial_map`)."""
     n, every = system.unknowns, powers_counted(inputs, len(known))
     moving, edges = tuple(driven), every.edges
     terms = system.moving_products(moving)

@@ -34,7 +34,7 @@ from pointcoord.patches.patches import ProvenPatches
 from pointcoord.patches.reported_points import reported_points
 from pointcoord.solve.assembly import assemble
 from pointcoord.solve.follower import follow
-from pointcoord.solve.place import Path
+from pointcoord.solve.path import Path
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

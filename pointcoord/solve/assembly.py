@@ -19,7 +19,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
 from pointcoord.solve.follower import Law, follow
-from pointcoord.solve.place import Path
+from pointcoord.solve.path import Path
 
 Array = NDArray[np.float64]
 

@@ -29,7 +29,7 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.solve.place import Path
+from pointcoord.solve.path import Path
 from pointcoord.solve.proven_step import hidden, orientation, prove, same_side
 
 Array = NDArray[np.float64]

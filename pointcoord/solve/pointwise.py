@@ -29,13 +29,11 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.kantorovich import smallest_radius
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import implicit_rate, newton_refine
-from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import LONGEST, Pose, blocked, by_inputs, close_drawing, driven_to
-from pointcoord.solve.follower import Law, follow
-from pointcoord.solve.place import Place, starting_place, whole_place
+from pointcoord.solve.follower import follow
 from pointcoord.solve.proven_step import WHOLE, hidden, prove
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
@@ -44,8 +42,6 @@ Array = NDArray[np.float64]
 SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
 Values = Mapping[str, Array]
 """Value of every input at all instants, each (N,)."""
-How = tuple[float, bool]
-"""The tolerance, and whether a factorisation is kept."""
 Reached = tuple[Array, Array, Work, Status]
 """The solved poses, the proven distance of each to the exact one, the work, and what stopped the solver."""
 
@@ -127,17 +123,14 @@ def solve_instants(
             then does not depend on the motion but on the path from the drawing. An instant is refused if the
             path leads through poses that do not exist, though a motion might lead around them.
     Returns:
-        The states, up to the first instant that cannot be reached. Unless `cold`, the part that stands still
-        is solved once.
+        The states, up to the first instant that cannot be reached.
     """
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
     values = {name: f.series(times, 0)[:, 0] for name, f in functions.items()}
     if cold:
         y, left, work, status = _from_drawing(mechanism, values, times, tolerance)
     else:
-        part = mechanism.moving_part(functions)
-        begun, how = starting_place(part, pose), (tolerance, chord)
-        y, left, work, status = _one_from_another(mechanism, part, begun, values, known[:, :1], times, how)
+        y, left, work, status = _one_from_another(pose, values, known[:, 0], times, tolerance, chord)
     known, times = known[: len(y)], times[: len(y)]
     y[:, mechanism.map.unknowns :] = known[:, 0]
     solved = with_rates(mechanism.map, y, known, times, derivative, square_term, work, left)
@@ -164,24 +157,23 @@ def _from_drawing(mechanism: Mechanism, values: Values, times: Array, tolerance:
 
 
 def _one_from_another(
-    mechanism: Mechanism, part: PartialMap, begun: Place, values: Values, known: Array, times: Array, how: How
+    begun: Pose, values: Values, goals: Array, times: Array, tolerance: float, chord: bool
 ) -> Reached:
-    """The poses at all instants, each reached from the one before; only the part that moves is solved.
+    """The poses at all instants, each reached from the one before.
 
     Args:
-        begun: pose of the part at the first instant.
-        known: known coordinates of the whole mechanism, (N, 1, known coordinates).
+        begun: pose at the first instant.
+        goals: known coordinates at all instants, (N, known coordinates).
     """
-    system, (tolerance, chord) = part.system, how
+    mechanism, system = begun.mechanism, begun.mechanism.map
     turned = sum(
         (np.abs(np.diff(values[name])) for name in mechanism.topology.turning), np.zeros(len(times) - 1)
     )
     # Instants to which an angle changes too far for a straight path, and the number of instants.
     far = np.append(np.flatnonzero(turned > LONGEST) + 1, len(times))
-    goals = part.known(begun.y, known)[:, 0]
     y, left = np.empty((len(times), system.size)), np.empty(len(times))
     y[:1], left[:1] = begun.y, begun.left
-    factors, work, done, ahead, status = begun.factors, begun.work, 1, FIRST_AHEAD, COMPLETE
+    factors, work, done, ahead, status = begun.factors, Work(), 1, FIRST_AHEAD, COMPLETE
     while done < len(times):
         straight = goals[done : min(done + ahead, int(far[np.searchsorted(far, done)]))]
         count, found, rest, spent = _ahead(system, y[done - 1], factors, straight, tolerance, chord)
@@ -197,30 +189,18 @@ def _one_from_another(
         here, goal = y[done - 1 : done], goals[done : done + 1]
         ends = {name: (each[done - 1 : done], each[done : done + 1]) for name, each in values.items()}
         turn = float(turned[done - 1])
-        target: Array | Law = goal
-        if turn > LONGEST:
-            target = _of_part(part, begun.y, by_inputs(mechanism, ends, known[done]))
+        target = by_inputs(mechanism, ends, goal) if turn > LONGEST else goal
         longest = LONGEST / max(turn, LONGEST)
         path = follow(system, here, target, factors.reshaped((1,)), tolerance, longest=longest).reshaped(())
         work += path.work
         unfinished = path.done < 1.0
         if unfinished:
-            place, when = whole_place(part, path.y, path.factors), float(times[done])
-            stopped = blocked(mechanism, PROBLEM, place.y, place.factors, known[done, 0], unfinished, when)
-            status = Status(stopped)
+            when = float(times[done])
+            status = Status(blocked(mechanism, PROBLEM, path.y, path.factors, goal[0], unfinished, when))
             break
         y[done], left[done], factors = path.y, path.left, path.factors
         done += 1
-    return part.back(y[:done]), left[:done], work, status
-
-
-def _of_part(part: PartialMap, y: Array, law: Law) -> Law:
-    """A law of the whole mechanism's known coordinates as one of the part's, at a pose y of the part."""
-
-    def of_part(members: NDArray[np.intp], shares: Array, order: int) -> Array:
-        return part.known(y, law(members, shares, order))
-
-    return of_part
+    return y[:done], left[:done], work, status
 
 
 def _ahead(

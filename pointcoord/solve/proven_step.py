@@ -69,6 +69,9 @@ WEIGHINGS, MORE, ENOUGH = 4, 2, 0.8
 # Below this value of EPS |X|^2 rounding cannot hide a branch: for coordinates near 1 and a rounding error d
 # of a row, omega |X| d is at most about a thousand times EPS |X|^2.
 CLEAR = 1e-6
+# Smallest weight of a coordinate as a share of the largest. Near a singular pose the coordinates that the
+# singular block does not move have almost no noise; in a norm with smaller weights these would decide.
+LEAST = 2.0**-5
 
 
 @dataclass(frozen=True)
@@ -280,5 +283,7 @@ def hidden(system: QuadraticMap, y: Array, factors: Factors) -> Flags:
     inverse = factors.preconditioner
     with np.errstate(all="ignore"):
         rows = system.uncertainty(y, np.zeros(y.shape[-1]))
-        noise = np.matvec(np.abs(inverse), rows).max(axis=-1)
-        return np.asarray(doubtful & ~(system.lipschitz(inverse) * noise <= 1.0))
+        noise = np.matvec(np.abs(inverse), rows)
+        # In a norm with these weights the noise is 1 at most.
+        weights = np.maximum(noise, LEAST * noise.max(axis=-1, keepdims=True))
+        return np.asarray(doubtful & ~(system.lipschitz(inverse, weights) <= 1.0))

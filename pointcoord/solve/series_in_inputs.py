@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import product
 from math import comb, factorial
 
@@ -30,11 +31,9 @@ from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.newton import newton_refine
-from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand_moving
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.follower import follow
-from pointcoord.solve.place import starting_place
 from pointcoord.solve.proven_step import prove_box
 from pointcoord.solve.step_rule import MOST, SEGMENT, Settings, degrees_lacking
 from pointcoord.solve.taylor import SOLVED, Segment, confirmed
@@ -125,8 +124,7 @@ def follow_by_inputs(
     if not np.isfinite(ranges.half).all():
         return nobody
     held = {name: law.series(start, 0) for name, law in functions.items() if law.still}
-    part = mechanism.moving_part(functions)
-    course = _Boxed(mechanism, part, tuple(laws), held, ranges, settings.kept)
+    course = _Boxed(mechanism, tuple(laws), held, ranges, settings.kept)
     try:
         return course.solve(pose, start, stop)
     except InputOutOfRange:
@@ -174,7 +172,6 @@ class _Boxed:
     """The task of a series in inputs: inputs that sweep their ranges, held inputs, and the tolerance."""
 
     mechanism: Mechanism
-    part: PartialMap
     names: tuple[str, ...]
     held: Mapping[str, Array]
     ranges: _Ranges
@@ -191,16 +188,16 @@ class _Boxed:
         inputs = {**self.held, **{name: values[i : i + 1] for i, name in enumerate(self.names)}}
         return np.asarray(self.mechanism.known_series(inputs)[..., 0, :])
 
-    def driven(self) -> tuple[list[int], list[int]]:
-        """Places of the coordinates that move with the inputs: among the known ones, and in the part."""
-        topology, system = self.mechanism.topology, self.part.whole
+    @cached_property
+    def driven(self) -> list[int]:
+        """The coordinates that move with the inputs."""
+        topology = self.mechanism.topology
         drives = zip(topology.drives, topology.driven, strict=True)
-        numbers = [number for drive, number in drives if drive.input in self.names]
-        places = self.part.order.argsort()
-        return [number - system.unknowns for number in numbers], places[numbers].tolist()
+        return [number for drive, number in drives if drive.input in self.names]
 
-    def known_series(self, order: int, columns: list[int]) -> Array:
-        """Series in s of some known coordinates, powers first, shape (powers, designs, columns)."""
+    def known_series(self, order: int) -> Array:
+        """Series in s of the driven coordinates, powers first, shape (powers, designs, driven)."""
+        columns = [number - self.mechanism.map.unknowns for number in self.driven]
         every, middle = powers(self.inputs, order), self.known(np.zeros(self.inputs))[:, columns]
         found = np.zeros((every.count, len(middle), len(columns)))
         found[0] = middle
@@ -217,11 +214,10 @@ class _Boxed:
 
     def solve(self, pose: Pose, start: float, stop: float) -> tuple[Numbers, InputSeries | None, Work]:
         """The numbers of the designs for which the box is confirmed, their series, and the work."""
-        system, everyone = self.part.system, np.arange(len(pose.y))
+        system, everyone = self.mechanism.map, np.arange(len(pose.y))
         nobody = everyone[:0], None, Work()
-        here = starting_place(self.part, pose)
-        y, factors, left, work = here.y, here.factors, here.left, here.work
-        wanted = self.part.known(y, self.known(np.zeros(self.inputs))[..., None, :])[..., 0, :]
+        y, factors, left, work = pose.y, pose.factors, pose.left, Work()
+        wanted = self.known(np.zeros(self.inputs))
         if (wanted != y[:, system.unknowns :]).any():
             path = follow(system, y, wanted, factors, SOLVED * self.settings.tolerance)
             if not (path.done == 1.0).all():
@@ -241,9 +237,9 @@ class _Boxed:
         ends = np.empty((len(y), len(signs), system.size))
         ends[..., : system.unknowns] = np.tensordot(corners, series, axes=1).swapaxes(0, 1)
         for i, sign in enumerate(signs):
-            ends[:, i, system.unknowns :] = self.part.known(y, self.known(sign)[..., None, :])[..., 0, :]
+            ends[:, i, system.unknowns :] = self.known(sign)
         reached = newton_refine(system, ends, tolerance=SOLVED * self.settings.tolerance)
-        places, edges = [*range(system.unknowns), *self.driven()[1]], powers(self.inputs, order).edges
+        places, edges = [*range(system.unknowns), *self.driven], powers(self.inputs, order).edges
         sizes = np.zeros((order, *y.shape))
         sizes[..., places] = np.add.reduceat(np.abs(moving), edges[1:-1], axis=0)
         proof = prove_box(system, y, moving, places, sizes, system.residual(y))
@@ -251,7 +247,7 @@ class _Boxed:
         good &= (proof.length == 1.0) & proof.within(apart).all(axis=0)
         good &= confirmed(system, reached, self.settings.tolerance).all(axis=-1)
         work += reached.work
-        coefficients, ranges = self.part.unknowns_back(y, np.moveaxis(series, 0, -2)), self.ranges
+        coefficients, ranges = np.moveaxis(series, 0, -2), self.ranges
         box = InputSeries(
             start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order
         )
@@ -264,15 +260,15 @@ class _Boxed:
         None where a chain is cheaper.
         """
         most = min(self.ranges.passes * SEGMENTS * (MOST + SEGMENT) - BOX, POWERS)
-        system, order, (columns, driven) = self.part.system, FEWEST, self.driven()
+        system, order = self.mechanism.map, FEWEST
         everyone = np.arange(len(y))
         # A few designs show the degree that all need, as a rule.
         for some in (everyone[:: max(len(y) // ASKED, 1)], *[everyone] * TRIED):
             if comb(order + self.inputs, order) > most:
                 return None
-            known = self.known_series(order, columns)[:, some]
+            known = self.known_series(order)[:, some]
             with np.errstate(all="ignore"):
-                series = expand_moving(system, factors.taken(some), y[some], known, driven, self.inputs)
+                series = expand_moving(system, factors.taken(some), y[some], known, self.driven, self.inputs)
                 lacking = degrees_lacking(
                     series[..., : system.unknowns], self.inputs, order, self.ranges.rates, self.settings
                 )

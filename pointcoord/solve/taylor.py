@@ -4,9 +4,6 @@ A segment is as long as its last two terms allow (see `step_rule`). Newton's met
 the end. So the next segment starts without inherited error, and the first Newton step shows the error of the
 segment. A segment is halved if this error is too large, or if the segment is not proven to stay on one branch
 (see `proven_step`).
-
-The part of the mechanism that stands still under the inputs' laws is solved once, to rounding, and is
-constant in every series (see `partial_map`).
 """
 
 from __future__ import annotations
@@ -22,13 +19,12 @@ from numpy.typing import NDArray
 from pointcoord.errors import InputOutOfRange, NotFollowed
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
+from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.newton import Converged, factors_at, newton_refine, rounding_of
-from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
-from pointcoord.solve.place import Place, starting_place, whole_place
 from pointcoord.solve.proven_step import hidden, prove_segment
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.solve.step_rule import COARSEST, SAFE, Settings, lengths_by_sizes, log_sizes, order_for
@@ -121,7 +117,7 @@ def build_chain(
         The chain up to `stop`, or up to a pose that the motion cannot pass, up to MOST_SEGMENTS, or up to an
         instant where no step follows an input though the mechanism could. The status states which.
     """
-    return _Course.of(mechanism, functions, start, stop, settings).build(pose, leaving=False)[0]
+    return _Course(mechanism, functions, start, stop, settings.kept).build(pose, leaving=False)[0]
 
 
 def build_chains(
@@ -141,7 +137,7 @@ def build_chains(
     waiting = [np.arange(len(pose.y))] if len(pose.y) else []
     while waiting:
         members = waiting.pop()
-        course = _Course.of(mechanism.taken(members), functions, start, stop, settings)
+        course = _Course(mechanism.taken(members), functions, start, stop, settings.kept)
         chain, kept = course.build(pose.taken(members), leaving=len(members) > 1)
         stopped = chain.status.stopped
         too_long = isinstance(stopped, NotFollowed) and not stopped.name
@@ -156,15 +152,21 @@ def build_chains(
 
 
 @dataclass(frozen=True)
-class _Joint(Place):
-    """An assembled pose from which a segment starts.
+class _Joint:
+    """An assembled pose, or a batch of them, from which a segment starts.
 
     Attributes:
+        y: coordinates, shape (..., size).
+        factors: factorisation of C_u at y.
+        left: proven distance to the exact assembly, without rounding, shape (...,), in units.
         instant: its instant, s.
         known: series of the mechanism's known coordinates about the instant, (..., order + 1, known).
         scale: unit of time for the segment, s: about the length of the segment before.
     """
 
+    y: Array
+    factors: Factors
+    left: Array
     instant: float
     known: Array
     scale: float
@@ -176,36 +178,19 @@ class _Joint(Place):
 
     def taken(self, members: Numbers) -> Self:
         """The poses of some members, by number."""
-        return replace(super().taken(members), known=self.known[members])
+        factors, left = self.factors.taken(members), self.left[members]
+        return replace(self, y=self.y[members], factors=factors, left=left, known=self.known[members])
 
 
 @dataclass(frozen=True)
 class _Course:
-    """The task of a chain: a mechanism, its inputs over a time, and the tolerance.
-
-    Attributes:
-        part: the part of the mechanism that moves. The coordinates of joints, and of segments until `whole`,
-            are in the order of the part.
-    """
+    """The task of a chain: a mechanism, its inputs over a time, and the tolerance."""
 
     mechanism: Mechanism
     functions: Mapping[str, TimeFunction]
     start: float
     stop: float
     settings: Settings
-    part: PartialMap
-
-    @classmethod
-    def of(
-        cls,
-        mechanism: Mechanism,
-        functions: Mapping[str, TimeFunction],
-        start: float,
-        stop: float,
-        settings: Settings,
-    ) -> _Course:
-        """The course, with the tolerance limited to values that can be kept."""
-        return cls(mechanism, functions, start, stop, settings.kept, mechanism.moving_part(functions))
 
     def build(self, pose: Pose, leaving: bool) -> tuple[Chain, Numbers]:
         """The chain, and the numbers of the members that it holds for.
@@ -214,11 +199,10 @@ class _Course:
             leaving: whether members may leave the chain; then the pose has one batch dimension.
         """
         course, start, stop, tolerance = self, self.start, self.stop, self.settings.tolerance
-        here = starting_place(self.part, pose)
         scale = power_of_two(stop - start)
-        joint = _Joint(here.y, here.factors, here.left, here.work, start, self.known(start), scale)
+        joint = _Joint(pose.y, pose.factors, pose.left, start, self.known(start), scale)
         segments: list[Segment] = []
-        work = here.work
+        work = Work()
         kept = np.arange(joint.members)
 
         def chain(status: Status) -> tuple[Chain, Numbers]:
@@ -227,7 +211,7 @@ class _Course:
         def too_many(reached: float) -> NotFollowed:
             return NotFollowed(reached, limit=MOST_SEGMENTS, start=start, stop=stop)
 
-        ambiguous = hidden(self.part.system, joint.y, joint.factors)
+        ambiguous = hidden(self.mechanism.map, joint.y, joint.factors)
         if start < stop and ambiguous.any():
             return chain(course.stops_at(joint, ambiguous, coarsest=False))
         while joint.instant < stop or not segments:
@@ -244,20 +228,20 @@ class _Course:
                 segments=1,
                 series_orders=segment.order,
                 rate_solves=solves,
-                unknowns_solved=solves * self.part.system.unknowns,
+                unknowns_solved=solves * self.mechanism.map.unknowns,
             )
             staying = np.asarray(np.isfinite(segment.coefficients).all(axis=(-2, -1)))
             if leaving:
                 staying = staying & ~(lengths < STANDS_OUT * np.median(lengths))
             coarsest = tolerance >= COARSEST and bool(staying.all())
             if staying.all() and start == stop:
-                segments.append(course.whole(segment))
+                segments.append(segment)
                 break
             if staying.all():
                 end, staying, spent = course.step_along(segment, float(lengths.min()), joint, leaving)
                 work += spent
                 if end is not None:
-                    segments.append(course.whole(replace(segment, stop=end.instant)))
+                    segments.append(replace(segment, stop=end.instant))
                     joint = end
                     continue
             if not (leaving and staying.any()):
@@ -267,10 +251,6 @@ class _Course:
             segments = [each.taken(numbers) for each in segments]
             course = replace(course, mechanism=course.mechanism.taken(numbers))
         return chain(COMPLETE)
-
-    def whole(self, segment: Segment) -> Segment:
-        """A segment of the part as a segment of the whole mechanism, coordinates in the mechanism's order."""
-        return replace(segment, coefficients=self.part.back(segment.coefficients))
 
     @property
     def shortest(self) -> float:
@@ -326,7 +306,7 @@ class _Course:
 
     def lengths(self, segment: Segment) -> Array:
         """The longest segment that each member's terms allow, s, (members,); infinite for a polynomial."""
-        logs = log_sizes(segment.coefficients[..., : self.part.system.unknowns])
+        logs = log_sizes(segment.coefficients[..., : self.mechanism.map.unknowns])
         return lengths_by_sizes(logs, self.settings) * segment.scale
 
     def series_about(self, joint: _Joint) -> Segment:
@@ -347,8 +327,7 @@ class _Course:
             scale = power_of_two(fastest)
         # Within rounding of a singular pose the unknown coordinates still overflow: then no step is found.
         with np.errstate(over="ignore", invalid="ignore"):
-            scaled = self.part.known(joint.y, known * (scale**orders)[:, None])
-            series = expand(self.part.system, joint.factors, joint.y, scaled)
+            series = expand(self.mechanism.map, joint.factors, joint.y, known * (scale**orders)[:, None])
         return Segment(joint.instant, self.stop, scale, series, joint.left)
 
     def step_along(
@@ -362,7 +341,7 @@ class _Course:
         Returns:
             The joint at the end, None unless all members are confirmed; the confirmed members; and the work.
         """
-        system, limit, tolerance = self.part.system, self.next_break(joint.instant), self.settings.tolerance
+        system, limit, tolerance = self.mechanism.map, self.next_break(joint.instant), self.settings.tolerance
         order, solved, work = np.arange(segment.order + 1.0), SOLVED * tolerance, Work()
         good = np.zeros(joint.y.shape[:-1], dtype=bool)
         while length >= self.shortest or joint.instant + length >= limit:
@@ -370,7 +349,7 @@ class _Course:
             known = self.known(end) if end < self.stop else self.known_to(end, 0)
             s = (end - segment.start) / segment.scale
             guess = s**order @ segment.coefficients
-            guess[..., self.mechanism.map.unknowns :] = known[..., 0, :]
+            guess[..., system.unknowns :] = known[..., 0, :]
             reached = newton_refine(system, guess, tolerance=solved)
             good = confirmed(system, reached, tolerance, partial(self.law_noise, reached, end), leaving)
             work += reached.work
@@ -384,7 +363,7 @@ class _Course:
                     good = good & ~hidden(system, reached.y, ahead)
                 if good.all():
                     scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
-                    return _Joint(reached.y, ahead, reached.left, work, end, known, scale), good, work
+                    return _Joint(reached.y, ahead, reached.left, end, known, scale), good, work
                 if leaving and good.any():
                     break
             length = 0.5 * (end - joint.instant)
@@ -395,8 +374,8 @@ class _Course:
         off = {name: function.rounding(np.array(end)) for name, function in self.functions.items()}
         if not any(rounding.any() for rounding in off.values()):
             return np.zeros(reached.y.shape[:-1])
-        _, data = self.mechanism.known_data(self.part.back(reached.y), off)
-        rows = self.part.system.uncertainty(reached.y, self.part.taken(data))
+        _, data = self.mechanism.known_data(reached.y, off)
+        rows = self.mechanism.map.uncertainty(reached.y, data)
         return np.asarray(np.matvec(np.abs(reached.factors.preconditioner), rows).max(axis=-1))
 
     def stops_at(self, joint: _Joint, unfinished: NDArray[np.bool_], coarsest: bool) -> Status:
@@ -414,11 +393,10 @@ class _Course:
         moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
         change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
         problem = "the motion cannot pass a singular pose"
-        place = whole_place(self.part, joint.y, joint.factors)
         # Members share their segments. Where these become too short, the member nearest to a lock is blamed.
-        condition = np.where(unfinished, place.factors.condition, 0.0)
+        condition = np.where(unfinished, joint.factors.condition, 0.0)
         unfinished = unfinished & (condition >= condition.max())
-        error = blocked(self.mechanism, problem, place.y, place.factors, goal, unfinished, instant, change)
+        error = blocked(self.mechanism, problem, joint.y, joint.factors, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
         locked = error.condition > REGULAR
         return Status(error if locked else NotFollowed(instant, name=error.reduce, coarsest=coarsest))

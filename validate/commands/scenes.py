@@ -138,9 +138,7 @@ def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
     yield f"accuracy: positions to {found.tolerance:.3g} mm{rates}"
     if found.orders:
         few, many = min(found.orders), max(found.orders)
-        unknowns = [f"{found.moving} unknowns"]
-        if found.still:
-            unknowns.append(f"{found.still} more are constant and are solved once")
+        unknowns = [f"{found.unknowns} unknowns"]
         if found.not_needed:
             unknowns.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
         yield f"solved {'on each patch' if by_map else 'at each step'}: {'; '.join(unknowns)}"
