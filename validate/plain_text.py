@@ -26,6 +26,12 @@ def gathered(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     return found
 
 
+def named(error: BaseException) -> str:
+    """The class and the message of an error, on one line."""
+    words = " ".join(str(error).split())
+    return f"{type(error).__name__}: {words}" if words else type(error).__name__
+
+
 def one_line(message: str) -> str:
     """A message without line breaks, with any word longer than a line shortened."""
     return visible(" ".join(message.split()))

@@ -22,7 +22,7 @@ def counted(count: int, marks: Path, pause: float = 0.0, wrong: int = -1) -> Stu
     """
     examine = partial(_square, marks=str(marks), pause=pause, wrong=wrong)
     tasks = [Task("all", number) for number in range(count)]
-    return Study("counted", "number", {}, COLUMNS, tasks, examine, _nothing, chunk=2)
+    return Study("counted", "number", {}, COLUMNS, tasks, examine, _nothing)
 
 
 def _square(task: Task, marks: str, pause: float, wrong: int) -> list[Row]:

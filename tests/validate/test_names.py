@@ -51,7 +51,6 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
     allowed = {
         "absolute_coordinates.py": {"position"},
         "modelled.py": {"position"},
-        "many_digits.py": {"position"},
         "reference_solution.py": {
             "position",
             "velocity",

@@ -1,1 +1,1 @@
-"""Every assembly of a knuckle on its legs, complex ones too: counted, certified, and told apart."""
+"""Counts all assemblies of a knuckle, complex ones too; each is certified and separated from the others."""

@@ -1,14 +1,14 @@
-r"""How many assemblies a knuckle on its legs has, each certified, and which of them is the drawing's.
+r"""Counts the assemblies of a knuckle, certifies each, and finds which one is drawn.
 
-Ends of paths are candidates. Of each, in balls of many digits, Newton's method finds the solution in the
-chart where its largest number is 1, and Krawczyk's operator (see `reference.krawczyk`) proves that a box
-around it holds one solution of the forms' real and imaginary parts and no other:
+Each end of a path is a candidate. Newton's method finds its solution in balls of many digits, in the chart
+where its largest number is 1. Krawczyk's operator (see `reference.krawczyk`) then proves that a box around it
+holds exactly one solution of the real and imaginary parts of the forms:
 
     x . Q x - y . Q y = 0,      2 x . Q y = 0.
 
-Two boxes are two solutions where x_i y_j - x_j y_i is not zero for some i, j. A box about a real middle is
-its own mirror image, and so is its one solution: it is real. That there are no other assemblies is not
-proven: it rests on the paths, which are followed again from other starts until two runs have found all.
+Two boxes hold different solutions if x_i y_j - x_j y_i is not zero for some i, j. A box about a real middle
+is its own mirror image, and so is its solution, which is therefore real. It is not proven that there are no
+further assemblies: the paths are followed from other starts until two runs have found every known one.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 BITS = 300
-# Radii of discs: those that Newton's method in so many bits ends far inside, and one that holds the pose
-# as drawn too, which solves the forms to the rounding of their entries.
+# Radii of discs. Newton's method with BITS bits ends far inside the narrow one. The wide one also contains
+# the drawn pose, which solves the forms to the rounding of their entries.
 NARROW, WIDE = "1e-40", "1e-9"
-# Runs from other starts that must find the same, and how many are tried.
+# Number of runs, each from other starts, that must find the same, and the largest number of runs.
 RUNS, MOST_RUNS = 2, 5
-# <e, e> of a solution that is no pose is at rounding level; of a unit vector.
+# A solution, a unit vector, is not a pose if its <e, e> is below this, which is the level of rounding.
 NO_TURN = 1e-9
 
 
@@ -52,9 +52,9 @@ class Assembly:
     """A certified pose of the knuckle.
 
     Attributes:
-        box: balls that hold its Study numbers, the largest of which is 1.
-        real: whether it is proven to be real; otherwise it is proven not to be, or open.
-        drawn: whether it is the drawing's.
+        box: balls that contain its Study parameters, scaled so that the largest is 1.
+        real: whether it is proven to be real. Otherwise it is complex, or nothing is proven.
+        drawn: whether it is the drawn assembly.
     """
 
     box: tuple[acb, ...]
@@ -64,13 +64,13 @@ class Assembly:
 
 @dataclass
 class Counted:
-    """What was found.
+    """The assemblies found in several runs.
 
     Attributes:
-        paths: how many were followed in each run, from other starts.
-        candidates: by run, how many paths ended at a regular solution that is a pose.
-        certified: by run, how many of these are proven.
-        assemblies: distinct ones of all runs.
+        paths: number of paths of each run.
+        candidates: of each run, the number of paths that end at a regular solution that is a pose.
+        certified: of each run, the number of candidates that are proven.
+        assemblies: the distinct assemblies of all runs.
     """
 
     paths: int
@@ -80,18 +80,18 @@ class Counted:
 
     @property
     def real(self) -> int:
-        """How many are proven to be real."""
+        """The number of assemblies that are proven to be real."""
         return sum(one.real for one in self.assemblies)
 
     @property
     def agreed(self) -> bool:
-        """Whether each of two runs has found all that is known, without a path that is not certified."""
+        """Whether two runs have each found every known assembly, and certified every candidate."""
         runs = zip(self.candidates, self.certified, strict=True)
         return sum(found == proven == len(self.assemblies) for found, proven in runs) >= RUNS
 
     @property
     def drawn(self) -> bool:
-        """Whether the pose as drawn is among them."""
+        """Whether the drawn assembly was found."""
         return any(one.drawn for one in self.assemblies)
 
 
@@ -99,9 +99,10 @@ def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) 
     """Count the assemblies of a mechanism's knuckle with its inputs held.
 
     Args:
-        mechanism: as plain data. places: of every point at an assembled pose, mm.
+        mechanism: as plain data.
+        places: position of every point at an assembled pose, mm.
     Raises:
-        NoAnswer: the knuckle is not held by six conditions that are known.
+        NoAnswer: the knuckle is not held by six conditions of the known kinds.
     """
     quadratic = forms(mechanism, places)
     found = Counted(2 ** len(quadratic))
@@ -109,7 +110,6 @@ def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) 
         matrices = [acb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
         while not found.agreed and len(found.candidates) < MOST_RUNS:
             ends = solve_quadratic(quadratic, len(found.candidates))
-            # Of a pose <e, e> is not zero.
             ends = ends[np.abs((ends[:, :4] ** 2).sum(axis=1)) > NO_TURN]
             proven = [one for one in (_certified(matrices, end) for end in ends) if one is not None]
             found.candidates.append(len(ends))
@@ -122,13 +122,13 @@ def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) 
 
 @dataclass(frozen=True)
 class _Forms(krawczyk.Curve):
-    """The forms of homogeneous numbers, of which one is 1; x are the others. There is no t."""
+    """The forms as functions of x, the homogeneous coordinates without the one that is 1. There is no t."""
 
     matrices: Sequence[acb_mat]
     chart: int
 
     def whole(self, x: Sequence[acb], one: int = 1) -> list[acb]:
-        """All numbers."""
+        """All homogeneous coordinates."""
         return [*x[: self.chart], acb(one), *x[self.chart :]]
 
     def rows(self, x: Sequence[acb], t: Scalar) -> list[acb]:
@@ -145,17 +145,17 @@ class _Forms(krawczyk.Curve):
         return [(i, j, 2 * entry) for i, slope in enumerate(slopes) for j, entry in enumerate(slope)]
 
     def bend(self, change: Sequence[acb]) -> krawczyk.Matrix:
-        """The same without what the number 1 makes of it."""
+        """The change of the Jacobian with x, linear in `change`."""
         return krawczyk.matrix_of(len(change), self.entries(change, 0, 0))
 
     def holds_one(self, centre: Sequence[acb], radius: str) -> bool:
-        """Whether discs are proven to hold one solution and no other."""
+        """Whether discs of this radius are proven to contain exactly one solution."""
         width, inverse = [arb(radius)] * len(centre), krawczyk.middle_inverse(self.matrix(centre, 0))
         return krawczyk.less(krawczyk.Contraction.at(self, centre, 0, inverse).image(width), width)
 
 
 def _certified(matrices: Sequence[acb_mat], end: Complex) -> Assembly | None:
-    """The assembly near an end of a path; None where nothing is proven."""
+    """The assembly near the end of a path; None if nothing can be proven."""
     chart = int(np.argmax(np.abs(end)))
     forms, near = _Forms(matrices, chart), np.delete(end / end[chart], chart)
     narrow, wide = ([arb(radius)] * len(near) for radius in (NARROW, WIDE))
@@ -175,7 +175,7 @@ def _certified(matrices: Sequence[acb_mat], end: Complex) -> Assembly | None:
 
 
 def _apart(one: Sequence[acb], other: Sequence[acb]) -> bool:
-    """Whether two boxes of homogeneous numbers hold no common point."""
+    """Whether two boxes of homogeneous coordinates have no common point."""
     return any(
         not (one[i] * other[j] - one[j] * other[i]).contains(0) for i, j in combinations(range(len(one)), 2)
     )

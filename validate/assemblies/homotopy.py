@@ -5,10 +5,10 @@ The forms x^T Q_r x are reached from c_r ((l_r . x)^2 - (l_0 . x)^2), which have
     (1 - t) c_r ((l_r . x)^2 - (l_0 . x)^2) + t x^T Q_r x = 0,      t from 0 to 1.
 
 With random lines l and factors c every isolated solution is the end of a path, with probability one
-(Sommese, Wampler, *The Numerical Solution of Systems of Polynomials*, 2005, ch. 8); where solutions form
-curves, the other paths end on these. All paths are followed side by side: Runge's and Kutta's step of order 4
-along the tangent, then Newton's, at right angles to x; a path whose first Newton step is long takes a shorter
-one.
+(Sommese, Wampler, *The Numerical Solution of Systems of Polynomials*, 2005, ch. 8); if solutions form curves,
+the other paths end on these. All paths are followed in parallel: a Runge-Kutta step of order 4 along the
+tangent, then Newton steps at right angles to x. If the first Newton step of a path is long, the step is
+halved.
 """
 
 from __future__ import annotations
@@ -20,24 +20,25 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 FIRST = 0.01
-# Of a unit vector: a longer first Newton step might lead to another path; a last one is at rounding level.
+# Newton steps of a unit vector: a first step longer than NEAR might lead to another path; a last step below
+# ARRIVED is at rounding level.
 NEAR, ARRIVED = 1e-4, 1e-11
 NEWTON, LAST = 3, 5
-# So near to the end a regular solution is a step of Newton's away; a shorter step is that of a path that ends
-# on a curve of solutions.
+# From END on, a regular solution is one Newton step away. Only a path that ends on a curve of solutions takes
+# steps below SHORTEST.
 END, SHORTEST = 1.0 - 1e-8, 1e-13
 CLOSE = 1e-3
-SINGULAR = 1e9  # condition number at which an end is not told from one on a curve
-MOST = 5000  # steps of a path
+SINGULAR = 1e9  # condition number from which an end may lie on a curve of solutions
+MOST = 5000  # largest number of steps of a path
 
 
 def solve_quadratic(forms: Array, seed: int = 0) -> Complex:
     """Follow all 2^n paths to the solutions of n quadratic forms, (n, n + 1, n + 1).
 
     Args:
-        seed: of the random lines and factors.
+        seed: seed of the random lines and factors.
     Returns:
-        Ends of paths, unit vectors, (ends, n + 1); none at a solution that is singular or not isolated.
+        Ends of paths, unit vectors, (ends, n + 1), without singular solutions and solutions on curves.
     """
     random = np.random.default_rng(seed)
     count = len(forms)
@@ -77,7 +78,7 @@ def _at(both: Complex, x: Complex, t: Array) -> tuple[Complex, Complex, Complex]
 
 
 def _ahead(both: Complex, x: Complex, t: Array, step: Array) -> tuple[Complex, NDArray[np.bool_]]:
-    """Unit vectors a step further, and which of them have arrived there."""
+    """Unit vectors after a step of each path, and the paths whose Newton steps converged."""
 
     def tangent(y: Complex, share: float) -> Complex:
         _, rows, change = _at(both, y, t + share * step)
@@ -94,7 +95,7 @@ def _ahead(both: Complex, x: Complex, t: Array, step: Array) -> tuple[Complex, N
 
 
 def _ends(both: Complex, x: Complex) -> Complex:
-    """The regular solutions at t = 1 that Newton's method leads to from near it."""
+    """The regular solutions at t = 1 to which Newton's method converges."""
     one = np.ones(len(x))
     y, sizes = _newton(both, x, one, x, LAST)
     _, rows, _ = _at(both, y, one)
@@ -103,7 +104,7 @@ def _ends(both: Complex, x: Complex) -> Complex:
 
 
 def _newton(both: Complex, y: Complex, t: Array, normal: Complex, steps: int) -> tuple[Complex, list[Array]]:
-    """Points after some steps at right angles to a vector, and the relative length of each step."""
+    """Points after some Newton steps at right angles to a vector, and the relative length of each step."""
     sizes = []
     for _ in range(steps):
         value, rows, _ = _at(both, y, t)
@@ -118,7 +119,7 @@ def _bordered(rows: Complex, normal: Complex) -> Complex:
 
 
 def _solved(rows: Complex, normal: Complex, values: Complex) -> Complex:
-    """The d at right angles to a vector with rows d = values; no number where that is singular."""
+    """The d at right angles to a vector with rows d = values; NaN where this is singular."""
     matrix = _bordered(rows, normal)
     right = np.concatenate([values, np.zeros((len(values), 1))], axis=1)
     usable = np.isfinite(matrix).all(axis=(1, 2)) & (np.linalg.det(matrix) != 0.0)

@@ -1,15 +1,15 @@
-r"""What holds the knuckle of a mechanism at a pose: six conditions, as quadratic forms of its Study numbers.
+r"""The six conditions that hold the knuckle of a mechanism at a pose, as forms of its Study parameters.
 
-A rod keeps its end at a distance from a fixed point. An arm on a hinge that turns freely keeps its ball joint
-at two distances, and one whose angle is driven keeps it where it is. A slide that the knuckle carries keeps a
-fixed point on a line of the knuckle. A driven height keeps a point on a plane. What hangs on these bodies,
-such as a rocker, holds nothing.
+A rod keeps its end at a distance from a fixed point. An arm on a free hinge keeps its ball joint at two
+distances; if its angle is driven, the ball joint is fixed. A slide carried by the knuckle keeps a fixed point
+on a line of the knuckle. A driven height keeps a point on a plane. Parts that hang on these bodies, such as a
+rocker, add no condition.
 
 A pose is a dual quaternion (e, g) with <e, g> = 0, up to a factor (Study 1891; M. Husty, *An algorithm for
 solving the direct kinematics of general Stewart-Gough platforms*, Mechanism and Machine Theory 31, 1996).
 With vectors as quaternions without a real part it turns x into e x e* / |e|^2 and then moves it by
-2 g e* / |e|^2, so that e = 1, g = 0 is the pose as drawn. Times |e|^2 each way to hold a point of the body is
-a quadratic form:
+2 g e* / |e|^2, so e = 1, g = 0 is the drawn pose. Each condition on a point of the body, times |e|^2, is a
+quadratic form:
 
     x at the distance d of y
         (|x|^2 + |y|^2 - d^2) |e|^2 - 2 <y e, e x> + 4 <g, e x> - 4 <y e, g> + 4 |g|^2
@@ -18,7 +18,7 @@ a quadratic form:
     y on a plane of the body, b . (y seen from it) = k
         <e b, y e> - 2 <e b, g> - k |e|^2
 
-and <e, g> = 0 is one more. Solutions with <e, e> = 0 are no poses.
+and <e, g> = 0 is one more. Solutions with <e, e> = 0 are not poses.
 """
 
 from __future__ import annotations
@@ -64,14 +64,15 @@ def forms(mechanism: Mapping[str, Any], places: Mapping[str, Array]) -> Array:
     """The quadratic forms that vanish at every assembly, (7, 8, 8), the largest entry of each 1.
 
     Args:
-        mechanism: as plain data. places: of every point at one pose, mm; where the inputs are held.
+        mechanism: as plain data.
+        places: position of every point at one pose, mm; the inputs are held there.
     Raises:
-        NoAnswer: the knuckle is held by something else.
+        NoAnswer: the knuckle is held by other conditions.
     """
     knuckle = mechanism["roles"].get("knuckle")
     if knuckle is None:
         raise NoAnswer("the mechanism", "names no knuckle, whose role is not given", "a knuckle in [roles]")
-    # About the middle of the knuckle, in its size, numbers are of order one.
+    # Relative to the middle of the knuckle and divided by the size, coordinates are of order one.
     middle = np.mean([places[name] for name in mechanism["bodies"][knuckle]], axis=0)
     size = max(float(np.abs(place - middle).max()) for place in places.values())
     local = {name: (place - middle) / size for name, place in places.items()}
@@ -109,7 +110,7 @@ def _conditions(mechanism: Mapping[str, Any], knuckle: str, at: Mapping[str, Arr
                 yield at_distance(at[end], at[far])
     for slide in slides.values():
         if slide["body"] == knuckle:
-            # The line goes through the fixed point as it stands at the pose.
+            # At the pose the line passes through the fixed point.
             (fixed,) = still.intersection(slide["points"])
             along = at[fixed] - at[slide["through"]]
             for normal in np.linalg.svd(along[None])[2][1:]:
@@ -133,6 +134,6 @@ def on_plane(point: Array, normal: Array) -> Array:
 
 
 def on_plane_of_body(fixed: Array, normal: Array) -> Array:
-    """A fixed point stays on the plane through it that the body carries, with a normal of the body."""
+    """A fixed point stays on a plane that moves with the body, through the point at the pose."""
     b = _after(normal)
     return _form(b.T @ _before(fixed) - (normal @ fixed) * UNIT, -2 * b.T)

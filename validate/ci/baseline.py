@@ -2,7 +2,7 @@ r"""Baselines: the solved numbers of a run with their error bounds, and the numb
 
 A number x0 with error bound e0 in the baseline and x with error bound e now can both be right only if
 
-    |x - x0| <= e0 + e + eps^2 M        (see `comparison.tolerance`).
+    |x - x0| <= e0 + e + eps^2 M        (see `comparison.pair`).
 
 Beyond this bound the number has moved: one of the error bounds is wrong. Within the bound both may be right,
 although their bits may differ.

@@ -83,15 +83,15 @@ def _study(options: argparse.Namespace, command: str) -> Study:
         if not names:
             raise UsageError(f"--ways {options.ways!r} names nothing; there are: {', '.join(registry.NAMES)}")
         ways = registry.ways_named(names)
-    scenes = []
+    scenes = {}
     usual = (of_study.QUICK_SCENE,) if options.quick else of_study.STUDY_SCENES
     for name in dict.fromkeys(options.scenes or usual):
         with told_as(name_of(name)):
             own = name in of_study.STUDY_SCENES or not options.scenes
             scene = of_study.own_scene(name) if own else load_scene(name)
-            scenes.append(of_study.study_scene(name_of(name), scene))
+            scenes[name_of(name)] = of_study.with_rates(scene)
     study: Study = needed("cost", "validate.cost.study").Study(
-        tuple(scenes), ways, measured_here(command), options.quick
+        scenes, ways, measured_here(command), options.quick
     )
     return study
 

@@ -22,7 +22,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     # Imported here: the reference needs packages that the solvers do not need.
     from validate.hard import catalogue
     from validate.hard import report as hard_report
-    from validate.hard import run as hard_run
 
     cases = catalogue.chosen(options.cases)
     if options.list and options.report is not None:
@@ -40,7 +39,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     for name, why in lacking.items():
         console.warn(f"{name} is left out: {why}")
     cases = tuple(one for one in (case.without(lacking) for case in cases) if one.expected)
-    results: list[hard_run.Examined] = []
+    results: list[hard_report.Examined] = []
     journal = Journal(
         options.json,
         head,
@@ -49,7 +48,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         lambda: share_of_all(results, cases, "case"),
     )
 
-    def tell(result: hard_run.Examined) -> None:
+    def tell(result: hard_report.Examined) -> None:
         if result.case.group not in {one.case.group for one in results}:
             console.say(f"== {result.case.group}\n")
         results.append(result)
@@ -61,9 +60,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         journal.closing() as ending,
         console.progress("cases", total=len(cases), lines=False) as working,
     ):
-        hard_run.run(cases, tell)
+        for case in cases:
+            tell(hard_report.examine(case))
         console.show(hard_report.summary_parts(results))
-        if not hard_run.as_expected(results):
+        if not hard_report.as_expected(results):
             ending.status = ExitStatus.DISAGREE
         if page is not None:
             from validate.html.hard_cases import HardCases
@@ -81,13 +81,13 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
     if others := given(options, "--list", "--report"):
         raise UsageError(f"{others[0]} goes with cases only; leave it out with --assemblies")
     require_results(options, console, ("--json",))
-    found: list[scenes.SceneCount] = []
+    found: list[scenes.Count] = []
     head, names = Head.of("assemblies", options.command), options.cases or scenes.SHIPPED
     journal = Journal(
         options.json,
         head,
         console,
-        lambda: scenes.data(found),
+        lambda: {"counts": found},
         lambda: counted_as(len(found), "count") if found else "",
     )
     with journal.closing() as ending, console.progress("scenes", total=len(names), lines=False) as working:
@@ -95,7 +95,7 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
             found.extend(scenes.counts(name))
             working(f"scenes, {name} done", done)
         console.show(scenes.parts(found))
-        if not all(one.found for one in found):
+        if not scenes.complete(found):
             ending.status = ExitStatus.NO_VERDICT
     return ending.status
 

@@ -56,26 +56,24 @@ def _with_more(hard: HardCases | None, cost: Report | None, console: Console, ru
 def _some_hard_cases(run: Run, console: Console) -> HardCases:
     # Imported here: the reference and its cases need packages that most commands do not need.
     from validate.hard import report as hard_report
-    from validate.hard import run as hard_run
     from validate.hard.catalogue import chosen
 
     with console.progress("hard cases"):
-        results = hard_run.run(chosen(HARD), lambda one: None)
-    status = ExitStatus.AGREE if hard_run.as_expected(results) else ExitStatus.DISAGREE
+        results = [hard_report.examine(case) for case in chosen(HARD)]
+    status = ExitStatus.AGREE if hard_report.as_expected(results) else ExitStatus.DISAGREE
     head = replace(run.head, kind="hard")
     return HardCases.of(head.document(hard_report.results_data(results), status, complete=True))
 
 
 def _first_look_at_cost(run: Run, console: Console) -> Report:
     # Imported here: the study of cost needs packages that most commands do not need.
-    from validate.cost.scenes import own_scene, study_scene
+    from validate.cost.scenes import own_scene, with_rates
     from validate.cost.study import Study, measure
     from validate.cost.table import measured_here
     from validate.cost.ways.registry import ways_named
 
     command = shlex.join(run.head.command)
-    scenes = (study_scene(SCENE, own_scene(SCENE)),)
-    study = Study(scenes, ways_named(WAYS), measured_here(command), quick=True)
+    study = Study({SCENE: with_rates(own_scene(SCENE))}, ways_named(WAYS), measured_here(command), quick=True)
     with console.progress("a first look at cost") as progress:
         (rows,) = measure(study, progress)
     return Report("in this run", command, tuple(rows))

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.results.named_columns import html_table
@@ -19,10 +18,9 @@ from validate.comparison.given import given_by_both
 from validate.comparison.pair import SMALLEST, Pair
 from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers
-from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
+from validate.formulations.protocol import AccuracyError, Array, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
 
-Array = NDArray[np.float64]
 GIVEN_BACK = "points of the chassis, or points that stay where they are drawn"
 Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
 
@@ -55,7 +53,7 @@ class Comparison:
         share: largest share of its tolerance, difference / tolerance, over all instants and components; the
             row agrees if it is at most 1.
         verdict: `not tested` if the error bound of one formulation makes the tolerance too wide (see
-            `tolerance`); `not given` if one formulation gives no such numbers: all numbers here are NaN.
+            `Pair.wide`); `not given` if one formulation gives no such numbers: all numbers here are NaN.
         rests_on: the formulation that limits: its error bound is the larger part of the widest tolerance.
         part: that error bound / the widest tolerance.
         place: the place of the difference in a file of results, whose rows may be travels; empty for a scene.
@@ -190,15 +188,15 @@ class Outcome:
 
 def compare(
     scene: Scene,
-    first: str | Formulation,
-    second: str | Formulation,
+    first: str | Formulation | Solution,
+    second: str | Formulation | Solution,
     name: str | None = None,
     factor: float = 1.0,
 ) -> Outcome:
     """Solve a scene by two formulations and compare all numbers that the scene asks for.
 
     Args:
-        first, second: names of formulations, or formulations themselves.
+        first, second: names of formulations, formulations, or solutions of the scene.
         name: name of the scene in the rows; its title if not given.
         factor: factor on the derived tolerances.
     Raises:
@@ -208,7 +206,10 @@ def compare(
     >>> compare(Scene.load("steer"), "pointcoord", "absolute").agreed
     True
     """
-    one, two = (solved_by(formulation(f) if isinstance(f, str) else f, scene) for f in (first, second))
+    one, two = (
+        f if isinstance(f, Solution) else solved_by(formulation(f) if isinstance(f, str) else f, scene)
+        for f in (first, second)
+    )
     return compare_solutions(scene, one, two, name or scene.title or "scene", factor=factor)
 
 
@@ -243,7 +244,7 @@ def compare_solutions(
     Args:
         asked: names to compare, by quantity; all that the scene asks for if not given.
         factor: factor on the derived tolerances. It does not change which tolerances are too wide to test
-            anything (see `tolerance.untested`).
+            anything (see `Pair.wide`).
     Raises:
         FormulationError: one of them does not give the instants of its numbers.
     """

@@ -136,7 +136,7 @@ def examine(
         if isinstance(found, Outcome):
             outcomes.append(found)
         elif isinstance(found, FormulationError):
-            refusals[found.formulation] = refusal_of(found.formulation, found.reason, scene)
+            refusals[found.formulation] = refusal_of(found.formulation, found, scene)
         elif found:
             failures.insert(0, failure_of(f"the comparison of {first} with {second}", found))
     held, against, unprinted = answers[pairs[0][0]], None, None
@@ -193,8 +193,7 @@ def _compared(
 def _refusal(who: str, answer: Solution | Exception, name: str, scene: Scene) -> Refusal | None:
     if isinstance(answer, SceneError):
         answer = SceneError(shown(name), answer.key, answer.problem, answer.allowed)
-        return refusal_of(who, answer, scene)
-    return refusal_of(who, answer.reason, scene) if isinstance(answer, FormulationError) else None
+    return refusal_of(who, answer, scene) if isinstance(answer, SceneError | FormulationError) else None
 
 
 def _failed(answer: Solution | Exception) -> bool:

@@ -7,35 +7,14 @@ instants or are not real numbers are reported and ignored; the rest is compared.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
-from validate.formulations.protocol import Accuracy, FormulationError, Solution, shape_of
+from validate.formulations.protocol import Accuracy, Array, FormulationError, Places, Solution, shape_of
 
-Array = NDArray[np.float64]
 Arrays = dict[str, dict[str, Array]]
-
-
-@dataclass(frozen=True)
-class Given:
-    """The part of a solution that can be compared.
-
-    Attributes:
-        found: which of the requested instants the solution has, (instants,).
-        solution: the solution at these instants, with every quantity as a key even if it has no numbers. Its
-            notes are those of the check, without the notes of the original solution.
-    """
-
-    found: NDArray[np.bool_]
-    solution: Solution
-
-    def at(self, instants: NDArray[np.bool_]) -> Solution:
-        """The solution at a part of the instants that are found."""
-        rows = instants[self.found]
-        return self.solution if rows.all() else self.solution.at(rows)
 
 
 def given_by_both(one: Solution, two: Solution, instants: Array) -> tuple[Array, Solution, Solution]:
@@ -45,13 +24,18 @@ def given_by_both(one: Solution, two: Solution, instants: Array) -> tuple[Array,
         FormulationError: see `given`.
     """
     first, second = given(one, instants), given(two, instants)
-    both = first.found & second.found
-    return np.asarray(instants)[both], first.at(both), second.at(both)
+    if not np.array_equal(first.times, second.times):
+        _, mine, others = np.intersect1d(first.times, second.times, return_indices=True)
+        first, second = first.at(mine), second.at(others)
+    return first.times, first, second
 
 
-def given(solution: Solution, instants: Array) -> Given:
-    """The usable part of a solution at instants, shape (N,), s.
+def given(solution: Solution, instants: Array) -> Solution:
+    """The usable part of a solution at those of the instants, (N,), s, that it has.
 
+    Returns:
+        A solution with every quantity as a key, even if it has no numbers. Its notes are those of this check,
+        without the notes of the original solution.
     Raises:
         FormulationError: the solution lacks its instants or its accuracy.
     """
@@ -67,11 +51,13 @@ def given(solution: Solution, instants: Array) -> Given:
     if len(own.condition) != len(times):
         problem = f"its accuracy is for {len(own.condition)} instants; needed: for its {len(times)} times"
         raise FormulationError(who, ValueError(problem))
-    found, places = _places(times, instants)
-    if not found.all():
-        notes.append(
-            f"{who} gives {int(found.sum())} of {len(instants)} instants; the others are not compared"
-        )
+    common: Array = instants
+    places: Places = slice(None)
+    if not np.array_equal(times, instants):
+        # Of several rows with the same time the first counts.
+        common, _, places = np.intersect1d(instants, times, return_indices=True)
+    if len(common) < len(instants):
+        notes.append(f"{who} gives {len(common)} of {len(instants)} instants; the others are not compared")
     numbers: Arrays = {quantity: {} for quantity in QUANTITIES}
     claims: Arrays = {quantity: {} for quantity in QUANTITIES}
     for quantity, given_part in _by_name(solution.numbers, f"{who}: its numbers", faults).items():
@@ -98,7 +84,7 @@ def given(solution: Solution, instants: Array) -> Given:
             else:
                 notes.append(f"{what}: its accuracy is not given")
     accuracy = replace(own.at(places), claims=claims)
-    return Given(found, Solution(who, instants[found], numbers, accuracy, tuple(notes), tuple(faults)))
+    return Solution(who, common, numbers, accuracy, tuple(notes), tuple(faults))
 
 
 def usable(solution: Solution, instants: Array) -> Solution:
@@ -107,23 +93,13 @@ def usable(solution: Solution, instants: Array) -> Solution:
     Raises:
         FormulationError: see `given`.
     """
-    side = given(solution, instants).solution
+    side = given(solution, instants)
     numbers, claims = (
         {quantity: part for quantity, part in arrays.items() if part}
         for arrays in (side.numbers, side.accuracy.claims)
     )
     accuracy = Accuracy(side.accuracy.condition, claims, usual=side.accuracy.usual)
     return Solution(side.formulation, side.times, numbers, accuracy)
-
-
-def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp] | slice]:
-    """Which instants are among the times, (instants,), and the index into `times` of each of these."""
-    if np.array_equal(times, instants) and (times[1:] > times[:-1]).all():
-        return np.ones(len(instants), dtype=bool), slice(None)
-    found = np.isin(instants, times)
-    # Each instant takes the first row with its time: the stable sort keeps rows of equal time in order.
-    order = np.argsort(times, kind="stable")
-    return found, order[np.searchsorted(times, instants[found], side="left", sorter=order)]
 
 
 def _by_name(part: object, what: str, faults: list[str]) -> Mapping[str, object]:

@@ -1,4 +1,24 @@
-"""The numbers of one quantity by two formulations, their differences and tolerances."""
+r"""The numbers of one quantity by two formulations, their differences, and the tolerances of these.
+
+Let e1 and e2 be the error bounds of the two formulations for a number (see `Accuracy`). The tolerance is
+
+    T = e1 + e2 + eps^2 M.
+
+A larger difference shows that an error bound is violated. M is the largest number of the quantity in the
+scene: a number that is zero is solved for together with nonzero numbers, and is off by a rounding error of
+their rounding errors. There is an error bound for each instant and each component. The bounds of pointcoord
+are proven from its own equations in twice the working precision, but are never wider than the error that its
+method makes where nothing is wrong (`Proof.expected`). The bounds of models that prove nothing follow from a
+stated accuracy of their points (`formulations.stated_accuracy`).
+
+A tolerance is limited by the formulation with the larger error bound. If this bound is more than LOOSEST
+times the error level of the other formulation, an error of the other one of LOOSEST times its level would
+pass: the row is "not tested", and does not agree. The error level of a formulation is the largest error bound
+of the quantity at the instant, so that a component that happens to be exact does not count against its
+partner. The level is at least the effect of rounding on any method, eps times condition number times the
+largest number of the quantity. The level is also at least the usual error of the method (`Accuracy.usual`),
+because a proven bound may be almost zero by chance, as for a pitch that is 0 everywhere.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +29,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.numerics.rounding import EPS
 from pointcoord.scene.scene_file import Scene
-from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
 from validate.formulations.asked_numbers import per_second
-from validate.formulations.protocol import NOTHING, Solution
+from validate.formulations.protocol import NOTHING, Array, Solution
 
-Array = NDArray[np.float64]
 # Numbers below the smallest normal double lose digits, and so do tolerances computed from them.
 SMALLEST = float(np.finfo(float).tiny)
+LOOSEST = 1000.0
 
 
 @dataclass(frozen=True)
@@ -61,21 +81,28 @@ class Pair:
 
     @cached_property
     def _largest(self) -> list[Array]:
-        """The largest number of each side at each instant, (N,)."""
-        return [largest_numbers(side.numbers[self.quantity].values(), len(side.times)) for side in self.sides]
+        """The largest finite number of each side at each instant, (N,); 0 without any."""
+        found = []
+        for side in self.sides:
+            arrays = side.numbers[self.quantity].values()
+            finite = [_columns(np.where(np.isfinite(array), np.abs(array), 0.0)) for array in arrays]
+            found.append(np.hstack([np.zeros((len(side.times), 1)), *finite]).max(axis=1))
+        return found
 
     @cached_property
     def _levels(self) -> list[Array]:
-        """The error level of each side at each instant, (N,), see `tolerance.level`."""
-        return [
-            level(own.claims[self.quantity].values(), most, own.condition, own.usual.get(self.quantity))
-            for own, most in zip((side.accuracy for side in self.sides), self._largest, strict=True)
-        ]
+        """The error level of each side at each instant, (N,), see the top of this file."""
+        found = []
+        for own, numbers in zip((side.accuracy for side in self.sides), self._largest, strict=True):
+            parts = [EPS * own.condition * numbers, *own.claims[self.quantity].values()]
+            if (usual := own.usual.get(self.quantity)) is not None:
+                parts.append(usual)
+            found.append(np.hstack([_columns(part) for part in parts]).max(axis=1))
+        return found
 
-    @cached_property
-    def _blind(self) -> list[NDArray[np.bool_] | None]:
-        """The instants at which the stated accuracy of each side gives no bound, (N,); None: none stated."""
-        return [side.accuracy.blind for side in self.sides]
+    def _tolerance(self, claims: tuple[Array, Array], largest: float) -> Array:
+        """The tolerance of a difference of two numbers with these error bounds; `largest` is M."""
+        return np.asarray(self.factor * (claims[0] + claims[1] + EPS**2 * largest))
 
     def held(self, name: str) -> Held:
         """Numbers, differences and tolerances of one of the names."""
@@ -87,7 +114,7 @@ class Pair:
         lone = np.where(np.isnan(mine), others, np.where(np.isnan(other), own, 0.0))
         gap[lone >= NOTHING] = 0.0
         # The smaller of both largest numbers, so that a wrong number does not widen its own tolerance.
-        allowed = self.factor * tolerance(own, others, min(float(most.max()) for most in self._largest))
+        allowed = self._tolerance((own, others), min(float(most.max()) for most in self._largest))
         with np.errstate(divide="ignore", invalid="ignore"):
             share = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
         return Held(
@@ -103,11 +130,12 @@ class Pair:
     def wide(self, held: Held) -> NDArray[np.bool_]:
         """The instants at which the tolerance is too wide to test anything, (N,)."""
         # An accuracy that was stated beforehand may be coarse: a wide bound from it still tests.
-        stated = [blind for blind in self._blind if blind is not None]
+        stated = [side.accuracy.blind for side in self.sides if side.accuracy.blind is not None]
         if stated:
             return np.asarray(np.any(stated, axis=0))
-        one, two = (claim.max(axis=-1) for claim in held.claims)
-        return untested(one, two, *self._levels)
+        bounds = (claim.max(axis=-1) for claim in held.claims)
+        pairs = zip(bounds, reversed(self._levels), strict=True)
+        return np.asarray(np.any([bound > LOOSEST * level for bound, level in pairs], axis=0))
 
     def tells(self, scene: Scene, held: Held) -> bool:
         """Whether the agreement of a number tests the solver: the data given to the solver would not agree.
@@ -116,11 +144,11 @@ class Pair:
         of each point; for a point of the chassis this place is the answer. Instants at which the stated
         accuracy gives no bound do not count.
         """
-        stated = [blind is not None for blind in self._blind]
-        if stated[0] == stated[1]:
+        blind = [side.accuracy.blind for side in self.sides]
+        if (blind[0] is None) == (blind[1] is None):
             return True
-        solver, other = (0, 1) if stated[0] else (1, 0)
-        kind, part, unseen = QUANTITIES[self.quantity], scene.mechanism, np.asarray(self._blind[solver])
+        solver, other = (1, 0) if blind[0] is None else (0, 1)
+        kind, part, unseen = QUANTITIES[self.quantity], scene.mechanism, np.asarray(blind[solver])
         if kind.of == "point" and held.name in part.topology.chassis:
             return False
         if per_second(self.quantity):
@@ -129,7 +157,7 @@ class Pair:
             given_back = np.array(part.points[held.name], dtype=float)
         else:
             return not unseen.all()
-        width = self.factor * tolerance(*held.claims, float(self._largest[other].max()))
+        width = self._tolerance(held.claims, float(self._largest[other].max()))
         return bool((np.abs(held.numbers[other] - given_back) > width)[~unseen].any())
 
 

@@ -8,49 +8,33 @@ input by half a unit in the last place is not an error of a method.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.cost.race import Found, absent
 from validate.cost.way import Answer
 from validate.errors import NoAnswer
-from validate.formulations.protocol import Numbers
+from validate.formulations.protocol import Array, Solution
 from validate.formulations.reference_solution import as_solution, reference_motion, told_by
 
-Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
-class Truth:
-    """The reference at the instants of a study.
-
-    Attributes:
-        numbers: the numbers that the scene asks for, without points fixed to the chassis.
-        radius: by quantity, the largest proven error of these numbers.
-    """
-
-    numbers: Numbers
-    radius: Mapping[str, float]
-
-
-def judge(scene: Scene, instants: Array, positions: bool | None = None) -> Callable[[Answer], Found]:
+def judge(scene: Scene, instants: Array, positions: bool = True) -> Callable[[Answer], Found]:
     """A function that returns the errors of an answer; it solves the reference once, when first called.
 
     Args:
         instants: (N,), s.
-        positions: True: judge positions only; False: judge all other quantities; None: judge everything.
+        positions: whether to judge positions, in addition to all other quantities.
     """
     truth = cache(lambda: truth_of(scene, instants))
     return lambda answer: errors_of(answer, truth(), positions)
 
 
-def truth_of(scene: Scene, instants: Array) -> Truth:
-    """Solve the reference at instants, (N,), s.
+def truth_of(scene: Scene, instants: Array) -> Solution:
+    """The reference at instants, (N,), s: the numbers that the scene asks for, without fixed points.
 
     Raises:
         NoReferenceError: an instant has no pose, or none can be proven.
@@ -59,16 +43,13 @@ def truth_of(scene: Scene, instants: Array) -> Truth:
     # A point of the chassis is at its drawn position: it would dilute the mean, and tests no method.
     fixed = set(scene.mechanism.topology.chassis)
     numbers: dict[str, dict[str, Array]] = {}
-    radius: dict[str, float] = {}
     for quantity, names in told_by(solved, scene).items():
         if moving := [name for name in names if name not in fixed]:
-            claims = solved.accuracy.claims[quantity]
             numbers[quantity] = {name: solved.numbers[quantity][name] for name in moving}
-            radius[quantity] = max(float(np.max(claims[name])) for name in moving)
-    return Truth(numbers, radius)
+    return replace(solved, numbers=numbers)
 
 
-def errors_of(answer: Answer, truth: Truth, positions: bool | None = None) -> Found:
+def errors_of(answer: Answer, truth: Solution, positions: bool = True) -> Found:
     """The columns of a row for each quantity that the scene asks for, with verdict `left out` if not given.
 
     If any number of a quantity is given, all its numbers must be given.
@@ -79,7 +60,7 @@ def errors_of(answer: Answer, truth: Truth, positions: bool | None = None) -> Fo
     found: Found = {}
     work = ", ".join(f"{name} {count}" for name, count in answer.work.items())
     for quantity, names in truth.numbers.items():
-        if positions not in (None, quantity == "position"):
+        if quantity == "position" and not positions:
             continue
         given = answer.numbers.get(quantity) or {}
         if quantity != "position" and not any(name in given for name in names):
@@ -90,7 +71,8 @@ def errors_of(answer: Answer, truth: Truth, positions: bool | None = None) -> Fo
         # Relative to the largest error, so that no square overflows or underflows.
         mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
         sizes = {"error": largest, "rms": largest * mean**0.5, "numbers": errors.size}
-        found[quantity] = {**sizes, "radius": truth.radius[quantity], "work": work}
+        radius = max(float(truth.accuracy.claims[quantity][name].max()) for name in names)
+        found[quantity] = {**sizes, "radius": radius, "work": work}
     return found
 
 

@@ -13,7 +13,6 @@ Multiples of the golden ratio stay as far as possible from fractions with small 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from importlib import resources
 
 import numpy as np
@@ -37,19 +36,7 @@ GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 MOST, MOST_QUICK = 200, 24
 
 
-@dataclass(frozen=True)
-class StudyScene:
-    """A scene of the study, with its name in the rows."""
-
-    name: str
-    scene: Scene
-
-    def positions_only(self) -> Scene:
-        """The scene without any effect."""
-        return self.scene.model_copy(update={"effects": ()})
-
-
-def study_scene(name: str, scene: Scene) -> StudyScene:
+def with_rates(scene: Scene) -> Scene:
     """A scene with the effects that are measured.
 
     If the scene asks for any rate, the velocities and accelerations of all points and of the knuckle are
@@ -58,7 +45,7 @@ def study_scene(name: str, scene: Scene) -> StudyScene:
     if plan_effects(scene.effects).derivative > 0:
         asked = {*scene.effects, *RATES}
         scene = scene.model_copy(update={"effects": tuple(effect for effect in EFFECTS if effect in asked)})
-    return StudyScene(name, scene)
+    return scene
 
 
 def own_scene(name: str) -> Scene:

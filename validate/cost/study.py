@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from pointcoord import Scene
 from validate.cost.errors import judge
 from validate.cost.race import FULL, QUICK, Progress, Runner, race, silent
-from validate.cost.scenes import StudyScene, study_instants
+from validate.cost.scenes import study_instants
 from validate.cost.table import Row
 from validate.cost.way import Way
 
@@ -25,9 +26,9 @@ SETTINGS_QUICK = 3  # number of settings of a method in a quick study, the first
 
 @dataclass(frozen=True)
 class Study:
-    """The scenes and methods to measure, and the columns of program and machine."""
+    """The scenes by name and the methods to measure, and the columns of program and machine."""
 
-    scenes: tuple[StudyScene, ...]
+    scenes: Mapping[str, Scene]
     ways: tuple[Way, ...]
     where: Mapping[str, Any]
     quick: bool = False
@@ -35,29 +36,27 @@ class Study:
 
 def measure(study: Study, progress: Progress = silent) -> Iterator[list[Row]]:
     """Measure scene by scene; yields the rows of each."""
-    for scene in study.scenes:
-        rows = race(runners_of(scene, study.ways, study.quick), QUICK if study.quick else FULL, progress)
+    for name, scene in study.scenes.items():
+        rows = race(
+            runners_of(name, scene, study.ways, study.quick), QUICK if study.quick else FULL, progress
+        )
         yield [replace(row, quick=study.quick, **study.where) for row in rows]
 
 
-def runners_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> list[Runner]:
+def runners_of(name: str, scene: Scene, ways: Sequence[Way], quick: bool = False) -> list[Runner]:
     """Every method with every setting, for positions and for everything; in a quick study few settings."""
-    instants, runners = study_instants(study.scene, quick=quick), []
-    row = Row(study.name, "", poses=len(instants))
-    alone = (study.positions_only(), "position", judge(study.positions_only(), instants))
-    every = (study.scene, "", judge(study.scene, instants, positions=False))
+    instants, runners = study_instants(scene, quick=quick), []
+    row, still = Row(name, "", poses=len(instants)), scene.model_copy(update={"effects": ()})
+    parts = [(still, "position", judge(still, instants))]
+    if scene.effects:
+        parts.append((scene, "", judge(scene, instants, positions=False)))
     for way in ways:
         count = min(SETTINGS_QUICK, len(way.values)) if quick else len(way.values)
         for place in np.linspace(0, len(way.values) - 1, count).round().astype(int):
             value = way.values[place]
-            for scene, quantity, found in [alone, *([every] if study.scene.effects else [])]:
-                of = replace(
-                    row,
-                    way=way.name,
-                    setting=way.says(value),
-                    value=value,
-                    dense=way.dense,
-                    quantity=quantity,
-                )
-                runners.append(Runner(of, partial(way.ready, scene, value, instants), found))
+            of = replace(row, way=way.name, setting=way.says(value), value=value, dense=way.dense)
+            runners += [
+                Runner(replace(of, quantity=quantity), partial(way.ready, part, value, instants), found)
+                for part, quantity, found in parts
+            ]
     return runners

@@ -8,13 +8,8 @@ from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pointcoord import Scene
-from validate.formulations.protocol import Numbers
-
-Array = NDArray[np.float64]
+from validate.formulations.protocol import Array, Numbers
 
 DIGITS = tuple(10.0**-digits for digits in range(2, 14))
 

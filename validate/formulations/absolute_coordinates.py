@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.point_states import STATES
@@ -12,7 +13,7 @@ from pointcoord.scene.scene_file import Scene
 from validate.extras import not_there
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.modelled import Problem, require_the_drawn_car
-from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
+from validate.formulations.protocol import AccuracyError, Array, FormulationError, Numbers, Solution
 
 try:
     import absolute
@@ -32,30 +33,40 @@ class AbsoluteCoordinates:
             FormulationError: the model refuses the scene, or a pose is too near a fold.
         """
         problem, asked = Problem.of(scene), asked_numbers(scene)
-        part = scene.mechanism
 
         def solution(solved: absolute.Solution) -> Solution:
             return problem.solution(self.name, found_of(solved, asked), solved.accuracy)
 
         try:
-            model = absolute.compile(part.plain(tuple(scene.inputs)))
-            if part.closure == "drawn":
-                require_the_drawn_car(scene, absolute.close_drawing(model).movement)
-            effects, loads = effects_in(scene, model)
-            solved = absolute.solve(
-                model,
-                problem.laws,
-                rates=plan_effects(scene.effects).derivative > 0,
-                effects=effects,
-                loads=loads,
-            )
-            return solution(solved)
+            return solution(solver_of(scene)(problem.laws))
         except absolute.AbsoluteError as error:
             before = error.partial
             partial = None if before is None else (lambda: solution(before))
             raise FormulationError(self.name, error, partial) from error
         except (SceneError, AccuracyError) as error:
             raise FormulationError(self.name, error) from error
+
+
+def solver_of(scene: Scene) -> Callable[[Mapping[str, Array]], absolute.Solution]:
+    """The function that solves a scene's mechanism for inputs, (N, orders); the drawing is assembled once.
+
+    It computes the effects that the scene asks for, as far as the model has them.
+
+    Raises:
+        AbsoluteError: the mechanism cannot be compiled or assembled.
+        SceneError: the drawing becomes a different car when it is closed.
+    """
+    part = scene.mechanism
+    model = absolute.compile(part.plain(tuple(scene.inputs)))
+    if part.closure == "drawn":
+        require_the_drawn_car(scene, absolute.close_drawing(model).movement)
+    known = absolute.effects_in(model)
+    return partial(
+        absolute.Assembled(model).solve,
+        rates=plan_effects(scene.effects).derivative > 0,
+        effects=[name for name in asked_of_the_car(scene) if name in known],
+        loads=any(map(is_force, asked_numbers(scene))),
+    )
 
 
 def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> Numbers:
@@ -66,10 +77,3 @@ def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> N
     }
     states = {n: of for n, of in zip(STATES, solved.derivatives, strict=False) if n in ("position", *asked)}
     return {**numbers, **states}
-
-
-def effects_in(scene: Scene, model: absolute.Model) -> tuple[list[str], bool]:
-    """A scene's numbers of the car that the model has as effects, and whether the scene asks for forces."""
-    known = absolute.effects_in(model)
-    effects = [name for name in asked_of_the_car(scene) if name in known]
-    return effects, any(map(is_force, asked_numbers(scene)))

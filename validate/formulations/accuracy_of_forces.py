@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.proof import ROUNDINGS, prove
 from validate.formulations.asked_numbers import asked_numbers, is_force
-from validate.formulations.protocol import NOTHING, Numbers
-
-Array = NDArray[np.float64]
+from validate.formulations.protocol import NOTHING, Array, Numbers, largest_at
 
 
 def claims_of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str, Array]]:
@@ -42,7 +39,7 @@ def claims_of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, di
     # Each coordinate of a point may be off, and each half of a joint by itself.
     with_it, without = expected(2.0 * off / motion.unit), expected(np.zeros(count))
     numbers = {q: {n: motion.numbers[q][n][:count] for n in names} for q, names in forces.items()}
-    sizes = [np.abs(one).reshape(count, -1).max(axis=-1) for of in numbers.values() for one in of.values()]
+    sizes = [largest_at(np.abs(one)) for of in numbers.values() for one in of.values()]
     applied = [
         np.abs(force).max() + np.abs(moment).max() / motion.unit
         for force, moment in readout.axes.loads.values()

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
@@ -14,12 +14,10 @@ from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import Scene
 from validate.formulations.asked_numbers import asked_numbers, is_force, per_second
 from validate.formulations.input_rates import laws_of
-from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
+from validate.formulations.protocol import AccuracyError, Array, FormulationError, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_at, places_in
 from validate.reference import NoReferenceError
 from validate.spanning_tree.wheels import OF_CAR
-
-Array = NDArray[np.float64]
 
 SLOW = 2.0**-200  # rad/s and mm/s: squares of slower rates would underflow
 LONGEST = 500  # exponent of the longest unit of time, 2^500 s, whose square is still finite
@@ -67,8 +65,8 @@ class Problem:
             ) from None
         if stated.blind is not None and stated.blind.any():
             # A faulty model may place points where there is no pose: bounds at pointcoord's pose are used.
-            places = {name: place[:count] for name, place in self._places().items()}
-            if places:
+            with suppress(FormulationError, SceneError):
+                places = {name: place[:count] for name, place in places_in(self.scene).items()}
                 stated = accuracy_at(self.scene, accuracy, places, laws, solves_rates=True)
         assert stated.blind is not None  # always set for a stated accuracy
         if stated.blind.any():
@@ -80,13 +78,6 @@ class Problem:
         numbers = self._per_second(asked_of(found, self.scene))
         claimed = replace(stated, claims=self._per_second(stated.claims), blind=None)
         return Solution(who, self.scene.instants[:count], numbers, claimed)
-
-    def _places(self) -> Mapping[str, Array]:
-        """Position of every point by pointcoord; empty if it refuses the scene."""
-        try:
-            return places_in(self.scene)
-        except (FormulationError, SceneError):
-            return {}
 
     def _per_second(self, numbers: Numbers) -> Numbers:
         if (self.unit == 1.0).all():
@@ -126,7 +117,8 @@ def require_the_drawn_car(scene: Scene, movement: Mapping[str, float]) -> None:
     if scene.mechanism.closure != "drawn" or not movement:
         return
     point = max(movement, key=lambda name: movement[name])
-    limit = ALLOWED * extent(scene)
+    with np.errstate(over="ignore"):
+        limit = ALLOWED * float(np.max(np.ptp(np.array(list(scene.mechanism.points.values())), axis=0)))
     if movement[point] > limit:
         raise SceneError(
             scene.title or "scene",
@@ -134,12 +126,6 @@ def require_the_drawn_car(scene: Scene, movement: Mapping[str, float]) -> None:
             f"closing the drawing moves {point} by {movement[point]:.3g} mm: that is another car",
             f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; correct the points that miss",
         )
-
-
-def extent(scene: Scene) -> float:
-    """Size of the car: the longest side of the box around its points, mm."""
-    with np.errstate(over="ignore"):
-        return float(np.max(np.ptp(np.array(list(scene.mechanism.points.values())), axis=0)))
 
 
 def _slow_unit(laws: Mapping[str, Array], count: int) -> Array:

@@ -25,9 +25,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import Method
 from pointcoord.results.proof import Proof
 from pointcoord.simulation import finest_tolerance
-from validate.formulations.protocol import Accuracy, FormulationError, Solution
-
-Array = NDArray[np.float64]
+from validate.formulations.protocol import Accuracy, Array, FormulationError, Solution, largest_at
 
 UNKNOWN = 1e-9  # relative rounding error of an input above which fewer than nine of its digits are known
 
@@ -45,7 +43,7 @@ class PointCoordinates:
     as_asked: bool = False
 
     def solve(self, scene: Scene) -> Solution:
-        """Solve a scene; the error bound of each number is proven (see `_claims`).
+        """Solve a scene; the error bound of each number is proven (see `_bounds`).
 
         Raises:
             FormulationError: pointcoord refuses the scene, or cannot bound the error of a number.
@@ -77,51 +75,39 @@ class PointCoordinates:
         # A number without an error bound would agree with anything, so it is refused.
         _refuse_unproven(self.name, motion, proof, "pose", proof.bound + proof.carried_bound)
         uncertain = _uncertain_laws(scene, motion.times)
-        return Solution(
-            formulation=self.name,
-            times=motion.times,
-            numbers=motion.numbers,
-            accuracy=Accuracy(
-                condition=proof.condition,
-                claims={
-                    quantity: self._claims(motion, proof, quantity, uncertain) for quantity in motion.numbers
-                },
-                proven=True,
-                usual={quantity: self._usual(motion, proof, quantity) for quantity in motion.numbers},
-            ),
-            notes=motion.notes,
+        bounds = {q: self._bounds(motion, proof, q, uncertain) for q in motion.numbers}
+        accuracy = Accuracy(
+            condition=proof.condition,
+            claims={quantity: claims for quantity, (claims, _) in bounds.items()},
+            proven=True,
+            usual={quantity: usual for quantity, (_, usual) in bounds.items()},
         )
+        return Solution(self.name, motion.times, motion.numbers, accuracy, motion.notes)
 
-    def _claims(
+    def _bounds(
         self, motion: Motion, proof: Proof, quantity: str, uncertain: NDArray[np.bool_]
-    ) -> dict[str, Array]:
-        """The error bound of each number: the smaller of the proven and the expected error.
+    ) -> tuple[dict[str, Array], Array]:
+        """The error bound of each number, and the largest expected error at each instant, (N,).
 
-        The proven error includes any fault of the method, so a fault would widen its own tolerance until it
-        passed. The bound is therefore at most the error of a method without faults. Exception: if the terms
-        of an input cancel until few digits are left, only the proof includes the effect, and is used alone.
+        A bound is the smaller of the proven and the expected error: the proven error includes any fault of
+        the method, so a fault would widen its own tolerance until it passed. Exception: if the terms of an
+        input cancel until few digits are left, only the proof includes the effect, and is used alone.
 
         Args:
             uncertain: the instants of this exception, (N,).
         """
-        claims: dict[str, Array] = {}
-        expected = proof.expected[quantity]
+        claims, usual = dict[str, Array](), np.zeros(len(motion.times))
         for name, proven in proof.proven[quantity].items():
+            expected = proof.expected[quantity][name]
             # NaN has no error; the comparison reports it.
             number = np.isfinite(motion.numbers[quantity][name])
-            bound = np.where(number, proven, 0.0).reshape(len(number), -1).max(axis=-1)
-            _refuse_unproven(self.name, motion, proof, f"{QUANTITIES[quantity].words} of {name}", bound)
-            capped = np.where(uncertain.reshape(-1, *[1] * (number.ndim - 1)), proven, expected[name])
+            words = f"{QUANTITIES[quantity].words} of {name}"
+            _refuse_unproven(self.name, motion, proof, words, largest_at(np.where(number, proven, 0.0)))
+            capped = np.where(uncertain.reshape(-1, *[1] * (number.ndim - 1)), proven, expected)
             claims[name] = np.where(number, np.minimum(proven, capped), 0.0)
-        return claims
-
-    def _usual(self, motion: Motion, proof: Proof, quantity: str) -> Array:
-        """The largest expected error of any number of a quantity at each instant, (N,)."""
-        most = np.zeros(len(motion.times))
-        for name, expected in proof.expected[quantity].items():
-            known = np.isfinite(motion.numbers[quantity][name]) & np.isfinite(expected)
-            np.maximum(most, np.where(known, expected, 0.0).reshape(len(most), -1).max(axis=-1), out=most)
-        return most
+            known = np.where(number & np.isfinite(expected), expected, 0.0)
+            np.maximum(usual, largest_at(known), out=usual)
+        return claims, usual
 
 
 def _uncertain_laws(scene: Scene, times: Array) -> NDArray[np.bool_]:

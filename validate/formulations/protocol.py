@@ -31,6 +31,11 @@ def numbers_at(numbers: Numbers, places: Places) -> Numbers:
     return {q: {name: array[places] for name, array in of.items()} for q, of in numbers.items()}
 
 
+def largest_at(numbers: Array) -> Array:
+    """The largest component at each instant, (N,), of numbers (N, ...)."""
+    return np.asarray(numbers.reshape(len(numbers), -1).max(axis=-1))
+
+
 def shape_of(quantity: str, count: int) -> tuple[int, ...]:
     """The shape of a quantity's array at `count` instants: vectors, but scalars for numbers of the car."""
     return (count,) if QUANTITIES[quantity].of == "car" else (count, 3)
@@ -50,8 +55,8 @@ class AccuracyError(ValueError):
 class Accuracy:
     """The error bounds that a formulation returns with its numbers.
 
-    The tolerance of a difference is the sum of the error bounds of both formulations (see `tolerance`). So a
-    bound must include all rounding and truncation. A bound must also be no wider than the error that the
+    The tolerance of a difference is the sum of the error bounds of both formulations (see `comparison.pair`).
+    So a bound must include all rounding and truncation. A bound must also be no wider than the error that the
     method should reach: a bound that grew with the actual error would let any fault pass.
 
     Attributes:
@@ -60,7 +65,7 @@ class Accuracy:
         proven: whether the error bounds are proven; otherwise they are estimates.
         blind: for error bounds that follow from an accuracy stated beforehand: the instants at which this
             accuracy gives no bound, (N,). At all other instants such bounds test, however wide they are.
-            None: the width of the bounds decides whether they test (see `comparison.tolerance`).
+            None: the width of the bounds decides whether they test (see `comparison.pair`).
         stated: accuracy of points that was stated beforehand, mm, if any.
         usual: by quantity, the largest error of the method in any number where nothing is wrong, (N,), if
             known apart from the bounds: the proven error of a number may by chance be far less.
@@ -212,3 +217,8 @@ class FormulationError(Exception):
             with suppress(AccuracyError, FormulationError):
                 self._partial = before()
         return self._partial
+
+
+def reason_of(error: Exception) -> Exception:
+    """The formulation's own error if it refused a scene; any other error unchanged."""
+    return error.reason if isinstance(error, FormulationError) else error

@@ -1,4 +1,4 @@
-"""The reference as a solution: at a scene's instants, rounded to doubles.
+"""The reference as a solution and as a formulation: at a scene's instants, rounded to doubles.
 
 A drawing need not be assembled exactly. So the reference reports a drawing as unclear if another assembly is
 nearer than 1e-9 of its size. A car may be drawn near a pose where two assemblies meet on purpose, with exact
@@ -9,28 +9,28 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from math import nan
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR, QUANTITIES
-from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from validate.formulations.asked_numbers import asked_numbers, is_force
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.input_rates import laws_of
-from validate.formulations.protocol import Accuracy, Numbers, Solution
-from validate.reference import Design, Instant, instants_of
+from validate.formulations.protocol import Accuracy, Array, FormulationError, Numbers, Solution, largest_at
+from validate.formulations.stated_accuracy import accuracy_at
+from validate.reference import Design, Instant, NoReferenceError, instants_of
 from validate.reference.effects.at_pose import numbers_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.exact import as_fraction
 from validate.reference.route import CLEAR
 
-Array = NDArray[np.float64]
 Arrays = dict[str, Array]
 
 # The reference is proven to 60 digits of the greatest number of its kind; ten digits are a margin for the
@@ -67,7 +67,8 @@ def reference_instant(
     Raises:
         NoReferenceError: there is no pose, or no pose can be proven.
     """
-    return next(instants_of(design_of(scene), [inputs], digits, _clearness(exact_sides), effects_of(scene)))
+    clear = 0.0 if exact_sides else CLEAR
+    return next(instants_of(design_of(scene), [inputs], digits, clear, effects_of(scene)))
 
 
 def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = False) -> list[Instant]:
@@ -76,21 +77,14 @@ def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = F
     Raises:
         NoReferenceError: an instant has no pose, or no pose can be proven.
     """
-    inputs = (inputs_at(scene, time) for time in times)
-    return list(instants_of(design_of(scene), inputs, DIGITS, _clearness(exact_sides), effects_of(scene)))
+    inputs, clear = (inputs_at(scene, time) for time in times), 0.0 if exact_sides else CLEAR
+    return list(instants_of(design_of(scene), inputs, DIGITS, clear, effects_of(scene)))
 
 
 def effects_of(scene: Scene) -> tuple[str, ...]:
     """The numbers of the car to compute: those that the scene asks for, and always the angles."""
-    asked = [name for names in _numbers_of_the_car(scene).values() for name in names]
-    return tuple(name for name in dict.fromkeys((*ANGLES, *asked)) if name.rpartition(".")[2] in EFFECTS)
-
-
-def _numbers_of_the_car(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """The names of the numbers of the car by quantity, without forces; the angles always included."""
-    asked = {q: names for q, names in asked_numbers(scene).items() if QUANTITIES[q].of == "car"}
-    asked = {quantity: names for quantity, names in asked.items() if not is_force(quantity)}
-    return asked | {ANGLE: tuple(dict.fromkeys((*ANGLES, *asked.get(ANGLE, ()))))}
+    asked = dict.fromkeys((*ANGLES, *asked_of_the_car(scene)))
+    return tuple(name for name in asked if name.rpartition(".")[2] in EFFECTS)
 
 
 def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
@@ -100,10 +94,6 @@ def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
         NoReferenceError: an instant has no pose, or no pose can be proven.
     """
     return as_solution(scene, reference_motion(scene, scene.instants.tolist(), exact_sides))
-
-
-def _clearness(exact_sides: bool) -> float:
-    return 0.0 if exact_sides else CLEAR
 
 
 def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None = None) -> Solution:
@@ -135,9 +125,12 @@ def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None =
         rows: list[Mapping[str, Any]] = [getattr(i, quantity) for i in instants]
         forces = (name for name in rows[0] if all(name in row for row in rows))
         numbers[quantity] = {n: np.array([row[n] for row in rows], dtype=float) for n in forces}
-    for quantity, names in _numbers_of_the_car(scene).items():
-        there = [name for name in names if name in present]
-        numbers[quantity] = {n: np.array([float(i.effects.get(n, nan)) for i in instants]) for n in there}
+    asked: dict[str, Iterable[str]] = {ANGLE: (), **asked_numbers(scene)}
+    asked[ANGLE] = dict.fromkeys((*ANGLES, *asked[ANGLE]))
+    for quantity, names in asked.items():
+        if QUANTITIES[quantity].of == "car" and not is_force(quantity):
+            there = [name for name in names if name in present]
+            numbers[quantity] = {n: np.array([float(i.effects.get(n, nan)) for i in instants]) for n in there}
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
     swept = {
         q: {n: np.where(np.abs(array) <= dust[q], 0.0, array) for n, array in arrays.items()}
@@ -197,3 +190,35 @@ def told_by(reference: Solution, scene: Scene) -> dict[str, tuple[str, ...]]:
         for quantity, names in asked_numbers(scene).items()
         if quantity in given
     }
+
+
+class ManyDigits:
+    """The reference as a formulation, for use where no other model is available.
+
+    Exact equations in ball arithmetic, solved to 60 digits and rounded to doubles.
+
+    The error bounds are those of the rounding. The usual error of a method in doubles (`Accuracy.usual`) is
+    the error of a solver whose points are accurate to EPS times the car's size.
+    """
+
+    name = "reference"
+
+    def solve(self, scene: Scene) -> Solution:
+        """Solve a scene.
+
+        Raises:
+            FormulationError: an instant has no pose, or no pose can be proven.
+        """
+        try:
+            found = reference_solution(scene)
+        except NoReferenceError as error:
+            raise FormulationError(self.name, error) from error
+        places = found.numbers["position"]
+        off = EPS * float(np.ptp([place[0] for place in places.values()], axis=0).max())
+        rounded = accuracy_at(scene, off, places, laws_of(scene, scene.instants), solves_rates=True)
+        usual = {
+            quantity: np.max([largest_at(one) for one in of.values()], axis=0)
+            for quantity, of in rounded.claims.items()
+            if of
+        }
+        return replace(found, accuracy=replace(found.accuracy, usual=usual))

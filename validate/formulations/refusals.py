@@ -13,7 +13,7 @@ from numbers import Integral
 
 from pointcoord import AssemblyError, Scene
 from validate.errors import NoAnswer
-from validate.formulations.protocol import FormulationError
+from validate.formulations.protocol import reason_of
 
 DRAWING = "drawing has no assembly"
 HARDPOINTS = "hardpoints make no mechanism"
@@ -34,25 +34,21 @@ KINDS: Mapping[str, str] = {
 """Kinds of reason by the name of the error's class: without Pinocchio, absolute cannot be imported."""
 
 
-def why_refused(error: FormulationError) -> str:
-    """The kind of reason of a refusal; the name of the error's class if it has no kind."""
-    return _class_of(error.reason)
-
-
-def _class_of(reason: Exception) -> str:
+def why_refused(error: Exception) -> str:
+    """The kind of reason of a refusal, or of the error inside it; the name of its class if it has no kind."""
+    reason = reason_of(error)
     names = [one.__name__ for one in type(reason).__mro__]
     if isinstance(reason, AssemblyError):
         if reason.problem.startswith("the drawing"):
             return DRAWING
         return START if reason.partial is None else MOTION
-    found = next((KINDS[name] for name in names if name in KINDS), "")
     if isinstance(reason, NoAnswer) and reason.name:
         return HARDPOINTS if reason.value is None else INPUT
     if isinstance(reason, NoAnswer) or "PoseError" in names:
         # A pose that cannot be solved, at an instant or, without an instant, in the drawing.
         instant = getattr(reason, "instant", None)
         return DRAWING if instant is None else START if instant == 0 else MOTION
-    return found or type(reason).__name__
+    return next((KINDS[name] for name in names if name in KINDS), type(reason).__name__)
 
 
 def same_reason(first: str, second: str) -> bool:
@@ -92,8 +88,9 @@ class Refusal:
     links: tuple[str, ...] = ()
 
 
-def refusal_of(formulation: str, reason: Exception, scene: Scene) -> Refusal:
-    """The data of a refusal, as far as the error has them."""
+def refusal_of(formulation: str, error: Exception, scene: Scene) -> Refusal:
+    """The data of a refusal, or of the error inside it, as far as the error has them."""
+    reason = reason_of(error)
     wanted = _numbers(getattr(reason, "wanted", None) or getattr(reason, "inputs", None))
     reached = _numbers(getattr(reason, "reached", None))
     name = _at_fault(reason, wanted, reached)
@@ -103,15 +100,15 @@ def refusal_of(formulation: str, reason: Exception, scene: Scene) -> Refusal:
     return Refusal(
         formulation=formulation,
         error=type(reason).__name__,
-        reason=_class_of(reason),
+        reason=why_refused(reason),
         message=" ".join(str(reason).split()),
         instant=_instant(reason, scene),
         input=name or None,
-        value=_told(value),
-        limit=_told(limit),
+        value=_plain(value),
+        limit=_plain(limit),
         inputs=wanted or None,
         reached=reached or None,
-        condition=_told_number(getattr(reason, "condition", None)),
+        condition=_finite(getattr(reason, "condition", None)),
         links=tuple(map(str, getattr(reason, "limits", None) or getattr(reason, "links", None) or ())),
     )
 
@@ -122,7 +119,7 @@ def _instant(reason: Exception, scene: Scene) -> float | None:
     if isinstance(instant, Integral):
         times = scene.instants
         return float(times[int(instant)]) if instant < len(times) else None
-    return _told_number(instant)
+    return _finite(instant)
 
 
 def _at_fault(reason: Exception, wanted: Mapping[str, float], reached: Mapping[str, float]) -> str:
@@ -130,12 +127,12 @@ def _at_fault(reason: Exception, wanted: Mapping[str, float], reached: Mapping[s
     named = getattr(reason, "reduce", "") or getattr(reason, "name", "") or getattr(reason, "key", "")
     if named:
         return str(named)
-    lacks = {
+    shortfalls = {
         name: abs(value - reached[name]) / (abs(value) + abs(reached[name]))
         for name, value in wanted.items()
         if name in reached and value != reached[name]
     }
-    return max(lacks, key=lambda name: lacks[name], default="")
+    return max(shortfalls, key=lambda name: shortfalls[name], default="")
 
 
 def _numbers(values: object) -> dict[str, float]:
@@ -144,14 +141,14 @@ def _numbers(values: object) -> dict[str, float]:
     return {str(name): float(value) for name, value in values.items()}
 
 
-def _told(value: object) -> float | str | None:
+def _plain(value: object) -> float | str | None:
     if value is None or isinstance(value, str):
         return value or None
-    number = _told_number(value)
+    number = _finite(value)
     return str(value) if number is None else number
 
 
-def _told_number(value: object) -> float | None:
+def _finite(value: object) -> float | None:
     if isinstance(value, int | float) and not isinstance(value, bool):
         return float(value) if math.isfinite(value) else None
     return None

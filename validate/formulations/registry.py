@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from pointcoord.errors import MissingLibrary
 from pointcoord.method import AUTO, CHORD, MAP, NEWTON, NEWTON_COLD
 from validate.errors import UsageError
-from validate.extras import not_there
+from validate.extras import needed
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
 from validate.paper.printed import PRINTED
@@ -18,19 +17,6 @@ if TYPE_CHECKING:
     from validate.peers.linkage import Linkage
     from validate.peers.program import Program
 
-
-_POINT_COORDINATES: dict[str, Formulation] = {
-    f.name: f
-    for f in (
-        PointCoordinates("pointcoord", AUTO),
-        PointCoordinates("pointcoord-map", MAP),
-        PointCoordinates("pointcoord-newton", NEWTON),
-        PointCoordinates("pointcoord-newton-cold", NEWTON_COLD),
-        PointCoordinates("pointcoord-chord", CHORD),
-        PointCoordinates("pointcoord-as-asked", AUTO, as_asked=True),
-        PointCoordinates("printed", PRINTED),
-    )
-}
 
 WORDS = {
     "pointcoord": "point coordinates, by a chain of power series in time, or a map if the chain is too long",
@@ -53,10 +39,20 @@ NAMES = tuple(WORDS)
 OUTSIDE = ("mujoco", "exudyn")
 """Formulations that use programs of others; the extra `peers` installs the programs."""
 
-
+AS_ASKED = "pointcoord-as-asked"
+METHODS = {
+    "pointcoord": AUTO,
+    "pointcoord-map": MAP,
+    "pointcoord-newton": NEWTON,
+    "pointcoord-newton-cold": NEWTON_COLD,
+    "pointcoord-chord": CHORD,
+    AS_ASKED: AUTO,
+    "printed": PRINTED,
+}
+"""Method of each formulation in point coordinates."""
 MODELS = {
     "absolute": "validate.formulations.absolute_coordinates.AbsoluteCoordinates",
-    "reference": "validate.formulations.many_digits.ManyDigits",
+    "reference": "validate.formulations.reference_solution.ManyDigits",
 }
 PROGRAMS = {
     "relative": "validate.peers.in_pinocchio.InPinocchio",
@@ -73,21 +69,15 @@ def formulation(name: str) -> Formulation:
         UsageError: no formulation has this name.
         MissingLibrary: a package that the formulation needs is not installed, or does not load.
     """
-    if name in _POINT_COORDINATES:
-        return _POINT_COORDINATES[name]
+    if name in METHODS:
+        return PointCoordinates(name, METHODS[name], as_asked=name == AS_ASKED)
     if name not in WORDS:
         raise UsageError(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
-    try:
-        if name in MODELS:
-            model: Formulation = _imported(MODELS[name])()
-            return model
-        from validate.formulations.trees import InTree
-
-        return InTree(name, program_of(name))
-    except MissingLibrary:
-        raise
-    except ImportError as error:
-        raise not_there(name, error) from error
+    if name in MODELS:
+        model: Formulation = _imported(name, MODELS[name])()
+        return model
+    tree: Formulation = _imported(name, "validate.formulations.trees.InTree")(name, program_of(name))
+    return tree
 
 
 def program_of(name: str) -> Callable[[Linkage], Program]:
@@ -96,13 +86,14 @@ def program_of(name: str) -> Callable[[Linkage], Program]:
     Raises:
         MissingLibrary: the program is not installed, or does not load.
     """
-    found: Callable[[Linkage], Program] = _imported(PROGRAMS[name])
+    found: Callable[[Linkage], Program] = _imported(name, PROGRAMS[name])
     return found
 
 
-def _imported(path: str) -> Any:
+def _imported(formulation: str, path: str) -> Any:
+    """A class by its path; the packages of its module may be missing."""
     module, _, name = path.rpartition(".")
-    return getattr(import_module(module), name)
+    return getattr(needed(formulation, module), name)
 
 
 def second_there() -> tuple[str, str]:

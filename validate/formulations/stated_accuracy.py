@@ -73,7 +73,7 @@ from validate.formulations.accuracy_of_forces import claims_of_forces
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
 from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
-from validate.formulations.protocol import NOTHING, Accuracy
+from validate.formulations.protocol import NOTHING, Accuracy, Array
 from validate.reference import Design
 from validate.reference.car_data import KNUCKLE, RACK, TIME
 from validate.reference.design import Known, values_only
@@ -94,8 +94,6 @@ from validate.reference.jet import Dual, Jet, part_of, slope_of, value_of
 from validate.reference.kinematics import body_turns, with_rates
 from validate.reference.mechanism import CHASSIS
 from validate.reference.vectors import Scalar, Vector, each
-
-Array = NDArray[np.float64]
 
 LIMIT = 0.45  # of r: above it a first-order estimate gives no bound
 FLATTEST = 1e-3  # least height of a body's triangle / size: a solver would use other points of a flatter body
@@ -246,7 +244,10 @@ class _Held:
         claims = self._claims(off, motion, growth, along)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
         said = {
-            q: {n: np.where(_like(blind, claim), NOTHING, claim) for n, claim in of.items()}
+            q: {
+                n: np.where(blind.reshape(-1, *(1,) * (claim.ndim - 1)), NOTHING, claim)
+                for n, claim in of.items()
+            }
             for q, of in claims.items()
         }
         return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
@@ -301,21 +302,16 @@ class _Held:
         slopes = np.array([np.broadcast_to(slope_of(x), shape) for x in read])
         return np.asarray(np.abs(matrix @ slopes.transpose(2, 0, 1)).sum(axis=-1))
 
-    def _per_length(
-        self, points: Mapping[str, Vector], turns: Mapping[str, Sequence[Vector]], count: int, orders: int
-    ) -> list[Array]:
+    def _per_length(self, motion: _Motion, count: int) -> list[Array]:
         """Error of a place read from a point that is off by 1, and of its derivatives e_d / e, each (N,).
 
         For a rotation R with R' = Omega R, |R^(d+1)| <= sum_k C(d, k) |Omega^(k)| |R^(d-k)|.
-
-        Args:
-            points: of jets with at least `orders` derivatives.
-            turns: angular velocity and so on of every body, as many.
-            count: N.
         """
+        known = motion.known
+        points, turns = known.points_of(motion.rates), body_turns(motion.rates, known)
         found, turned, spins = [np.ones(count)], [np.ones(count)], list[Array]()
         base = points[self.design.plain["bodies"][CHASSIS][0]]
-        for d in range(orders):
+        for d in range(known.derivatives):
             spins.append(np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0))
             turned.append(np.asarray(sum(comb(d, k) * spins[k] * turned[d - k] for k in range(d + 1))))
             still = values_of(part_of(base, d + 1), count)
@@ -329,7 +325,7 @@ class _Held:
         known, count = motion.known, len(off)
         points, turns = known.points_of(motion.off), body_turns(motion.off, known)
         chassis = points[self.design.plain["bodies"][CHASSIS][0]]
-        per_length = self._per_length(points, turns, count, known.derivatives)
+        per_length = self._per_length(motion, count)
 
         @cache
         def moved(name: str, order: int) -> Array:
@@ -342,7 +338,7 @@ class _Held:
             return sum(comb(order, k) * per_length[k][:, None] * moved(name, order - k) for k in orders)
 
         far = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
-        of_car = self._of_car(off, motion, per_length, growth, along)
+        of_car = self._of_car(off, motion, growth, along)
         claims: dict[str, dict[str, Array]] = {}
         for quantity, names in self.asked.items():
             if is_force(quantity):
@@ -379,7 +375,6 @@ class _Held:
         self,
         off: Array,
         motion: _Motion,
-        per_length: Sequence[Array],
         growth: Sequence[Array],
         along: Mapping[tuple[str, str], _Motion],
     ) -> dict[str, Array]:
@@ -389,14 +384,11 @@ class _Held:
             (p, None): self._car(p, off, places, motion.known, growth) for p in self.drawn
         }
         for (prefix, way), driven in along.items():
-            known, moved = driven.known, per_length[1]
             pose = [Dual(jet.value, jet.part(1)) for jet in driven.off]
-            if way != TIME:
-                points, turns = known.points_of(driven.rates), body_turns(driven.rates, known)
-                moved = self._per_length(points, turns, len(off), 1)[1]
-            elif self.solves:
+            moved = self._per_length(driven, len(off))[1]
+            if way == TIME and self.solves:
                 pose = [_with_missed_rates(y, moved) for y in pose]
-            cars[prefix, way] = self._car(prefix, off, pose, known, growth, moved)
+            cars[prefix, way] = self._car(prefix, off, pose, driven.known, growth, moved)
         found = {}
         for number in self.of_car:
             effect = number.effect
@@ -503,7 +495,3 @@ def _off(vector: Vector, count: int) -> Array:
 
 def _lengths(vectors: Array) -> Array:
     return np.asarray(np.linalg.norm(vectors, axis=-1))
-
-
-def _like(where: NDArray[np.bool_], claim: Array) -> NDArray[np.bool_]:
-    return where.reshape(-1, *(1,) * (claim.ndim - 1))

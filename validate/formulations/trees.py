@@ -25,13 +25,20 @@ from validate.peers.program import Program
 TOLERANCE = 1e-10
 
 
-def linkage_in(scene: Scene) -> Linkage:
-    """The car of a scene.
+def closed_in(program: Callable[[Linkage], Program], scene: Scene, tolerance: float) -> tuple[Program, Poses]:
+    """A program's model of a scene's car, and its closed drawing.
 
+    Args:
+        program: makes the program's model of a linkage.
+        tolerance: size of the last Newton correction, rad and car sizes.
     Raises:
-        NoAnswer: its points do not form a linkage.
+        NoAnswer: the points do not form a linkage, or the drawing does not close.
+        SceneError: the drawing becomes a different car when it is closed.
     """
-    return linkage_of(scene.mechanism.plain(tuple(scene.inputs)))
+    made = program(linkage_of(scene.mechanism.plain(tuple(scene.inputs))))
+    closed = made.closed(tolerance)
+    require_the_drawn_car(scene, made.linkage.moved(closed.places))
+    return made, closed
 
 
 @dataclass(frozen=True)
@@ -67,11 +74,9 @@ class InTree:
                 return None
 
         try:
-            linkage = linkage_in(scene)
+            program, closed = closed_in(self.program, scene, TOLERANCE)
+            linkage = program.linkage
             inputs = linkage.inputs({name: law[:, :3] for name, law in problem.laws.items()})
-            program = self.program(linkage)
-            closed = program.closed(TOLERANCE)
-            require_the_drawn_car(scene, linkage.moved(closed.places))
             # An input that is far too large has no pose; the program notices by overflow.
             with np.errstate(over="ignore", invalid="ignore"):
                 poses = program.poses(inputs.values, TOLERANCE, closed)

@@ -1,7 +1,7 @@
 """Solves a scene by several formulations, and compares each answer with the reference.
 
 Every number of a formulation is compared: positions, velocities, accelerations, body rates and wheel angles
-at every instant, each against the error bound that the formulation states (see `comparison.tolerance`).
+at every instant, each against the error bound that the formulation states (see `comparison.pair`).
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import MAP as BY_MAP
 from validate.comparison.compare import compare_solutions
 from validate.formulations.point_coordinates import PointCoordinates
-from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.protocol import FormulationError, Solution, reason_of
 from validate.formulations.reference_solution import reference_solution, told_by
 from validate.formulations.registry import formulation
+from validate.plain_text import named
 from validate.reference import InfeasibleError, NoReferenceError
 
 OURS = "pointcoord"
@@ -88,7 +89,7 @@ def try_scene(value: float, content: Mapping[str, Any], formulations: Sequence[s
     try:
         scene = Scene.from_mapping(content)
     except SceneError as error:
-        refused = tuple(Answer(name, "refused", said(error)) for name in formulations)
+        refused = tuple(Answer(name, "refused", named(error)) for name in formulations)
         return Trial(value, refused, {"reference": "not solved"})
     came = {name: solved(name, scene) for name in formulations}
     reference: Solution | Exception = NOT_ASKED
@@ -99,7 +100,7 @@ def try_scene(value: float, content: Mapping[str, Any], formulations: Sequence[s
             # Inputs that overflow have no exact value to solve for.
             reference = error
     answers = tuple(_compared(scene, *one, reference) for one in came.items())
-    facts = {"reference": said(reference)} if isinstance(reference, Exception) else {}
+    facts = {"reference": named(reference)} if isinstance(reference, Exception) else {}
     return Trial(value, answers, {} if reference is NOT_ASKED else facts, scene, came, reference)
 
 
@@ -129,18 +130,18 @@ def _compared(scene: Scene, name: str, came: Solution | Exception, reference: So
     An error that is not a refusal is a defect of the formulation, and counts as a wrong answer.
     """
     if isinstance(came, FormulationError | SceneError):
-        return Answer(name, "refused", said(came.reason if isinstance(came, FormulationError) else came))
+        return Answer(name, "refused", named(reason_of(came)))
     if isinstance(came, Exception):
-        return Answer(name, "wrong", f"fails: {said(came)}")
+        return Answer(name, "wrong", f"fails: {named(came)}")
     if isinstance(reference, InfeasibleError):
         return Answer(name, "wrong", f"answers where there is no pose: {reference}")
     if isinstance(reference, Exception):
-        return Answer(name, "unjudged", said(reference))
+        return Answer(name, "unjudged", named(reference))
     try:
         with np.errstate(all="ignore"):
             return judged_answer(scene, came, reference)
     except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
-        return Answer(name, "unjudged", f"cannot be compared: {said(error)}")
+        return Answer(name, "unjudged", f"cannot be compared: {named(error)}")
 
 
 def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer:
@@ -163,8 +164,3 @@ def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer
     sizes = (error, bound, worst.share, np.max(answer.accuracy.condition))
     finite = (float(size) if np.isfinite(size) else None for size in sizes)
     return Answer(answer.formulation, outcome, reason, *finite)
-
-
-def said(error: Exception) -> str:
-    """An error's name and its message on one line."""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"

@@ -12,9 +12,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from pointcoord import MissingLibrary
 from validate.formulations.protocol import Solution
 from validate.hard.answer import MAP, NOT_ASKED, OURS, Answer, Outcome, Trial, try_scene
 from validate.hard.subjects import PAPER, SUBJECTS, Content, Subject, hyphens
+from validate.plain_text import named
 from validate.reference import InfeasibleError
 
 SOLVERS = (OURS, "pointcoord-newton", "absolute", "relative")
@@ -101,17 +103,29 @@ class Case:
         return self.scene(self.subject, value)
 
     def examine(self, value: float) -> Trial:
-        """Solve the case at one value; at the values of `mapped` by a map too, if it can be compared."""
-        by_map = [MAP] if value in self.mapped else []
-        trial = try_scene(value, self.content(value), [*self.expected, *by_map])
-        answers, of_map = trial.answers[: len(self.expected)], trial.answers[len(self.expected) :]
-        if (judge := self.judge) is not None:
-            answers = tuple(judge(self.subject, value, trial, answer) for answer in answers)
-        comparable = isinstance(trial.reference, Solution | InfeasibleError) or trial.reference is NOT_ASKED
-        if trial.scene is not None and comparable:
-            answers += of_map
-        facts = self.facts(self.subject, value) if self.facts else {}
-        return replace(trial, answers=answers, facts={**trial.facts, **facts})
+        """Solve the case at one value; at the values of `mapped` by a map too, if it can be compared.
+
+        An error of the trial itself makes all its answers unjudged; the run continues.
+
+        Raises:
+            MissingLibrary: a formulation of the case is not installed.
+        """
+        try:
+            by_map = [MAP] if value in self.mapped else []
+            trial = try_scene(value, self.content(value), [*self.expected, *by_map])
+            answers, of_map = trial.answers[: len(self.expected)], trial.answers[len(self.expected) :]
+            if (judge := self.judge) is not None:
+                answers = tuple(judge(self.subject, value, trial, answer) for answer in answers)
+            known = trial.reference is NOT_ASKED or isinstance(trial.reference, Solution | InfeasibleError)
+            if trial.scene is not None and known:
+                answers += of_map
+            facts = self.facts(self.subject, value) if self.facts else {}
+            return replace(trial, answers=answers, facts={**trial.facts, **facts})
+        except MissingLibrary:
+            raise
+        except Exception as error:
+            reason = f"the trial fails: {named(error)}"
+            return Trial(value, tuple(Answer(name, "unjudged", reason) for name in self.expected))
 
     def without(self, formulations: Collection[str]) -> Case:
         """This case without some formulations, such as those that are not installed."""

@@ -7,23 +7,9 @@ from difflib import get_close_matches
 
 from validate.errors import UsageError
 from validate.hard.case import Case
-from validate.hard.cases import (
-    body_rates,
-    branches,
-    ends,
-    far,
-    laws,
-    links,
-    numbers,
-    points,
-    regressions,
-    turned,
-)
+from validate.hard.cases import body_rates, branches, ends, laws, links, numbers, placed, points, regressions
 
-MODULES = (
-    *(ends, turned, body_rates, points, far),
-    *(laws, branches, links, numbers, regressions),
-)
+MODULES = (ends, body_rates, points, placed, laws, branches, links, numbers, regressions)
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
 
 

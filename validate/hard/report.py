@@ -1,21 +1,74 @@
-"""Results of hard cases as text and tables to print, and as plain data for JSON."""
+"""Runs hard cases, and reports their results as text and tables to print and as plain data for JSON."""
 
 from __future__ import annotations
 
+import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from itertools import groupby
 from typing import Any, get_args
 
-from validate.hard.answer import MAP, Answer, Outcome
+from validate.hard.answer import MAP, Answer, Outcome, Trial
 from validate.hard.case import Case
-from validate.hard.run import Examined, as_expected, counts
 from validate.output.report import counted_as
 from validate.output.table import Part, Table
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table
+ValueAndAnswer = tuple[float, Answer]
+
+
+@dataclass(frozen=True)
+class Examined:
+    """A case with its trials, in the order of its values, and their run time, s.
+
+    Its methods return answers as pairs with the value of the parameter.
+    """
+
+    case: Case
+    trials: tuple[Trial, ...]
+    seconds: float
+
+    def answers(self, formulation: str = "") -> tuple[ValueAndAnswer, ...]:
+        """The answers of a formulation, or of all."""
+        return tuple(
+            (t.value, a) for t in self.trials for a in t.answers if formulation in ("", a.formulation)
+        )
+
+    @property
+    def unexpected(self) -> tuple[ValueAndAnswer, ...]:
+        """Answers that the case does not allow."""
+        return tuple((trial.value, one) for trial in self.trials for one in self.case.unexpected(trial))
+
+    @property
+    def wrong(self) -> tuple[ValueAndAnswer, ...]:
+        """Wrong numbers without a warning."""
+        return tuple((value, one) for value, one in self.answers() if one.outcome == "wrong")
+
+
+def examine(case: Case) -> Examined:
+    """Solve a case at all its values.
+
+    Raises:
+        MissingLibrary: a formulation of the case is not installed.
+    """
+    began = time.perf_counter()
+    trials = tuple(map(case.examine, case.values))
+    return Examined(case, trials, time.perf_counter() - began)
+
+
+def counts(results: Iterable[Examined]) -> dict[str, Counter[Outcome]]:
+    """Numbers of answers by formulation and outcome."""
+    found: dict[str, Counter[Outcome]] = {}
+    for _, answer in (one for result in results for one in result.answers()):
+        found.setdefault(answer.formulation, Counter())[answer.outcome] += 1
+    return found
+
+
+def as_expected(results: Iterable[Examined]) -> bool:
+    """Whether no answer is unexpected, and none is wrong without a warning."""
+    return not any(result.unexpected or result.wrong for result in results)
 
 
 def listing(cases: Sequence[Case]) -> str:

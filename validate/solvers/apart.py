@@ -28,9 +28,9 @@ from typing import Any, Self
 import numpy as np
 
 from validate.errors import UsageError
-from validate.plain_text import shown
+from validate.plain_text import named, shown
 from validate.solvers.load import solver_at
-from validate.solvers.plain import Solve, SolverFailed, no_mapping, raised_at, read_only, said
+from validate.solvers.plain import Solve, SolverFailed, no_mapping, raised_at, read_only
 
 LIMIT = 600.0  # s, for an answer: no motion of a suspension takes that long
 PARTING = 2.0  # s, for a child to end by itself
@@ -182,7 +182,7 @@ def _answer(solve: Solve, given: dict[str, Any]) -> tuple[str, object]:
         return ANSWER, _plain(answer)
     # The child goes on after any error. Ctrl-C does not reach it: a KeyboardInterrupt is the solver's own.
     except BaseException as error:
-        return FAILED, (said(error), raised_at(error))
+        return FAILED, (named(error), raised_at(error))
 
 
 def _plain(answer: Any) -> Any:

@@ -14,8 +14,8 @@ from typing import Any
 
 from pointcoord.wording import meant
 from validate.errors import UsageError
-from validate.plain_text import shown
-from validate.solvers.plain import Solve, as_function, raised_at, said
+from validate.plain_text import named, shown
+from validate.solvers.plain import Solve, as_function, raised_at
 
 FORM = "give MODULE:NAME, such as package.module:Solver"
 
@@ -36,7 +36,7 @@ def solver_at(place: str, with_traceback: bool = False) -> Solve:
         as_module = module_name.removesuffix(".py").strip("./").replace("/", ".")
         hint = f"; try {as_module}:{name or 'NAME'}" if a_file else ""
         raise UsageError(f"{what} is not a module and a name in it; {FORM}{hint}")
-    with what_it_prints_aside(), _traceback_shown(with_traceback):
+    with _kept_aside(with_traceback):
         found: object = _module(what, module_name)
         for word in name.split("."):
             if not hasattr(found, word):
@@ -47,7 +47,7 @@ def solver_at(place: str, with_traceback: bool = False) -> Solve:
         function = as_function(found, what)
 
     def solve(given: Mapping[str, Any]) -> Mapping[str, Any]:
-        with what_it_prints_aside(), _traceback_shown(with_traceback):
+        with _kept_aside(with_traceback):
             return function(given)
 
     return solve
@@ -64,9 +64,9 @@ def _module(what: str, name: str) -> ModuleType:
         if error.name is not None and (name == error.name or name.startswith(f"{error.name}.")):
             problem = f"{what}: the module {error.name!r} is not found"
             raise UsageError(f"{problem}; searched in {here} and in Python's packages") from error
-        raise UsageError(f"{what} cannot be imported: {said(error)}{_at(error)}; install it") from error
+        raise UsageError(f"{what} cannot be imported: {named(error)}{_at(error)}; install it") from error
     except (Exception, SystemExit) as error:
-        raise UsageError(f"{what} cannot be imported: {said(error)}{_at(error)}; fix the module") from error
+        raise UsageError(f"{what} cannot be imported: {named(error)}{_at(error)}; fix the module") from error
 
 
 def _at(error: BaseException) -> str:
@@ -75,8 +75,12 @@ def _at(error: BaseException) -> str:
 
 
 @contextmanager
-def what_it_prints_aside() -> Iterator[None]:
-    """Redirects standard output to standard error, for Python and for libraries that it calls."""
+def _kept_aside(with_traceback: bool) -> Iterator[None]:
+    """Redirects standard output to standard error, for Python and for libraries that it calls.
+
+    Args:
+        with_traceback: print the traceback of an error too.
+    """
     kept = None
     with suppress(OSError, ValueError, AttributeError):
         sys.stdout.flush()
@@ -85,17 +89,11 @@ def what_it_prints_aside() -> Iterator[None]:
     try:
         with redirect_stdout(sys.stderr):
             yield
+    except (Exception, SystemExit):
+        if with_traceback:
+            traceback.print_exc()
+        raise
     finally:
         if kept is not None:
             os.dup2(kept, 1)
             os.close(kept)
-
-
-@contextmanager
-def _traceback_shown(wanted: bool) -> Iterator[None]:
-    try:
-        yield
-    except (Exception, SystemExit):
-        if wanted:
-            traceback.print_exc()
-        raise

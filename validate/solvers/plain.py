@@ -28,14 +28,13 @@ from __future__ import annotations
 
 import importlib
 import traceback
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError
 from pointcoord.effects.point_states import STATES
@@ -43,9 +42,9 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.wording import meant, shown
 from validate.errors import UsageError
 from validate.formulations.asked_numbers import asked_numbers, known_names
-from validate.formulations.protocol import Accuracy, FormulationError, Solution
+from validate.formulations.protocol import Accuracy, Array, FormulationError, Solution
+from validate.plain_text import named
 
-Array = NDArray[np.float64]
 Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
 INSTANTS = "instants"
@@ -118,19 +117,13 @@ def as_function(solver: object, name: str) -> Solve:
             solver = solver()
         except Exception as error:
             remedy = "give a class without arguments, or an object or a function"
-            raise UsageError(f"{name} cannot be made without arguments: {said(error)}; {remedy}") from error
+            raise UsageError(f"{name} cannot be made without arguments: {named(error)}; {remedy}") from error
     method = getattr(solver, METHOD, None)
     found = method if callable(method) else solver
     if not callable(found):
         problem = f"{name} is of type {type(solver).__name__}, which is not a solver"
         raise UsageError(f"{problem}; give a function, or an object or a class with a method {METHOD!r}")
     return cast("Solve", found)
-
-
-def said(error: BaseException) -> str:
-    """The class and the message of an error, in one line."""
-    words = " ".join(str(error).split())
-    return f"{type(error).__name__}: {words}" if words else type(error).__name__
 
 
 def no_mapping(answer: object) -> str:
@@ -166,7 +159,7 @@ class PlainSolver:
         except SolverFailed as error:
             raise FormulationError(self.name, error) from error
         except (Exception, SystemExit) as error:
-            raise FormulationError(self.name, SolverFailed(said(error), raised_at(error))) from error
+            raise FormulationError(self.name, SolverFailed(named(error), raised_at(error))) from error
         if not isinstance(answer, Mapping):
             raise FormulationError(self.name, SolverFailed(no_mapping(answer)))
         numbers, notes, faults = _numbers(self.name, answer, scene)
@@ -215,6 +208,14 @@ def _numbers(
     found: dict[str, dict[str, Any]] = {}
     notes: list[str] = []
     faults: list[str] = []
+
+    def ignore(name: object, what: str, known: Collection[str], there: Collection[str]) -> None:
+        """Note a number that the scene does not ask for; it is a fault if its name is a misspelt one."""
+        hint = meant(str(name), there)
+        line = f"{who} gives {what}, which the scene does not ask for{hint}; it is ignored"
+        misspelt = name not in known and get_close_matches(str(name).lower(), known, n=1, cutoff=ALIKE)
+        (faults if misspelt else notes).append(line if hint else f"{line}; asked for: {', '.join(there)}")
+
     for key, part in answer.items():
         # A quantity of the car may have a number of the same name.
         if key in of_the_car and not (key in asked and isinstance(part, Mapping)):
@@ -224,30 +225,14 @@ def _numbers(
                 if name in asked[key]:
                     found.setdefault(key, {})[name] = array
                 else:
-                    what = f"{QUANTITIES[key].words} of {shown(name)}"
-                    lines = faults if _misspelt(name, known[key]) else notes
-                    lines.append(_ignored(who, what, name, asked[key]))
+                    ignore(name, f"{QUANTITIES[key].words} of {shown(name)}", known[key], asked[key])
         elif key in asked:
             faults.append(
                 f"{who}: {key} is of type {type(part).__name__}; needed: arrays by name; it is ignored"
             )
         elif key != INSTANTS:
-            lines = faults if _misspelt(key, every) else notes
-            lines.append(_ignored(who, shown(key), key, (*asked, *of_the_car)))
+            ignore(key, shown(key), every, (*asked, *of_the_car))
     return found, tuple(notes), tuple(faults)
-
-
-def _misspelt(name: object, known: Collection[str]) -> bool:
-    """Whether a name is unknown but similar to a known one."""
-    return name not in known and bool(get_close_matches(str(name).lower(), known, n=1, cutoff=ALIKE))
-
-
-def _ignored(who: str, what: str, name: object, there: Iterable[str]) -> str:
-    names = tuple(there)
-    hint = meant(str(name), names)
-    return f"{who} gives {what}, which the scene does not ask for{hint}; it is ignored" + (
-        "" if hint else f"; asked for: {', '.join(names)}"
-    )
 
 
 def raised_at(error: BaseException) -> str:

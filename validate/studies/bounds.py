@@ -56,7 +56,7 @@ def bounds(poses: int = 2000, seed: int = 0) -> Study:
     """The study of poses held close to the end of an input."""
     tasks = [Task(PART, number) for number in range(poses)]
     examine, summary = partial(examined, seed=seed), partial(found, seed=seed)
-    return Study("bounds", "pose", {"seed": seed}, COLUMNS, tasks, examine, summary, chunk=8)
+    return Study("bounds", "pose", {"seed": seed}, COLUMNS, tasks, examine, summary)
 
 
 def examined(task: Task, seed: int) -> list[Row]:
@@ -168,22 +168,18 @@ def _summary(checks: pd.DataFrame, refused: Mapping[str, int]) -> Table:
 
 def _by_distance(checks: pd.DataFrame) -> Table:
     """A row for each decade of the distance from the end."""
-    checks = checks.assign(of_size=checks["error"] / checks["size"], most=checks["loss"])
-    columns = {
-        "condition": ".1e",
-        "of_size": ".1e",
-        "loss": ".2g",
-        "most": ".2g",
-        "loose": ".3g",
-        "share": ".2g",
+    forms = {
+        **dict.fromkeys(("condition", "of_size"), ".1e"),
+        **dict.fromkeys(("loss", "most"), ".2g"),
+        **{"loose": ".3g", "share": ".2g"},
     }
-    largest = ("most", "share")
+    groups = checks.assign(of_size=checks["error"] / checks["size"], most=checks["loss"]).groupby(
+        np.floor(np.log10(checks["distance"]))
+    )
+    found = groups.agg({name: "max" if name in ("most", "share") else "median" for name in forms})
     rows = (
-        (
-            *(f"1e{decade:.0f} to 1e{decade + 1:.0f}", str(len(part))),
-            *(f"{part[n].max() if n in largest else part[n].median():{form}}" for n, form in columns.items()),
-        )
-        for decade, part in checks.groupby(np.floor(np.log10(checks["distance"])))
+        (f"1e{decade:.0f} to 1e{decade + 1:.0f}", str(count), *map(format, numbers, forms.values()))
+        for (decade, *numbers), count in zip(found.itertuples(), groups.size(), strict=True)
     )
     head = ("distance / range", "poses", "condition", "error / size", "loss", "largest loss")
     return Table((*head, "bound / error", "largest error / bound"), tuple(rows))

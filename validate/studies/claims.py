@@ -47,7 +47,7 @@ def claims(count: int = 300, first: int = 0, formulation: str = "pointcoord", se
     settings: dict[str, str | int] = {"seed": seed, "formulation": formulation}
     tasks = [Task("scenes", number) for number in range(first, first + count)]
     examine, summary = partial(scene_rows, name=formulation), partial(found, settings=settings)
-    return Study("claims", "scene", settings, COLUMNS, tasks, examine, summary, chunk=2)
+    return Study("claims", "scene", settings, COLUMNS, tasks, examine, summary)
 
 
 def scene_rows(task: Task, name: str) -> list[Row]:

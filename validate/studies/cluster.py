@@ -8,7 +8,7 @@ import signal
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from functools import partial
 from importlib import import_module
 from multiprocessing import resource_tracker
@@ -35,20 +35,20 @@ def run(
     tasks: Sequence[Task],
     store: Store,
     client: Any,
-    told: Callable[[int], None] = lambda done: None,
+    recorded: Callable[[int], None] = lambda done: None,
 ) -> None:
     """Run tasks of a study and record their rows; finished tasks are recorded however the run ends.
 
     If a worker dies, another one runs the tasks that it was running.
 
     Args:
-        told: called with the number of recorded tasks whenever it grows.
+        recorded: called with the number of recorded tasks whenever it grows.
     Raises:
         UsageError: a worker runs another program, or several tasks at once.
         NotFinished: the scheduler is lost; a task kills one worker after the other, or raises an error; the
             records cannot be written.
     """
-    distributed, size = quiet_dask(), max(study.chunk, -(-len(tasks) // MOST))
+    distributed, size = quiet_dask(), -(-len(tasks) // MOST)
     chunks = [tuple(tasks[i : i + size]) for i in range(0, len(tasks), size)]
     held: list[Row] = []
     done, last = 0, time.monotonic()
@@ -59,7 +59,7 @@ def run(
             # Ctrl-C may come between any two steps: then the same rows are written again to the same file.
             store.write(held)
             held, last = [], time.monotonic()
-        told(done)
+        recorded(done)
 
     # pure=False, because otherwise a scheduler may return results of another run.
     futures = client.map(partial(_work_out, study.examine, made_by()), chunks, pure=False)
@@ -139,19 +139,17 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
         MissingLibrary: Dask is not installed.
         UsageError: no scheduler answers, or there is no worker.
     """
-    distributed, cluster = quiet_dask(), address
-    with ExitStack() as stack:
-        if address == LOCAL:
-            cluster = _local(distributed, workers)
-            stack.callback(_quietly, cluster.close)
-        else:
-            _require_scheduler(distributed, address)
+    distributed = quiet_dask()
+    if address == LOCAL:
+        client = _local(distributed, workers)
+    else:
+        _require_scheduler(distributed, address)
         with warnings.catch_warnings():
             # Warnings of different versions: workers with different versions of what matters are refused
             # later.
             warnings.simplefilter("ignore")
-            client = distributed.Client(cluster, set_as_default=False)
-        stack.callback(_quietly, client.close)
+            client = distributed.Client(address, set_as_default=False)
+    try:
         try:
             client.wait_for_workers(1, timeout=FIRST_WORKER)
         except TimeoutError:
@@ -161,6 +159,10 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
                 f"dask worker {where} --nthreads 1"
             ) from None
         yield client
+    finally:
+        # Also if the cluster is lost.
+        with suppress(Exception):
+            client.close(timeout=ANSWER)
 
 
 def quiet_dask() -> Any:
@@ -177,14 +179,15 @@ def quiet_dask() -> Any:
 
 
 def _local(distributed: Any, workers: int | None) -> Any:
-    """A cluster of local processes with one thread each; a process that dies is started again."""
+    """A client of its own local processes with one thread each; a process that dies is started again."""
     # A terminal sends Ctrl-C to all processes, but this program ends the workers. SIGINT is blocked here, so
     # that threads and processes started here never receive it. multiprocessing's resource tracker is started
     # before, because starting it would unblock the signal.
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        return distributed.LocalCluster(
+        return distributed.Client(
+            set_as_default=False,
             n_workers=workers,
             threads_per_worker=1,
             processes=True,
@@ -219,9 +222,3 @@ def _require_scheduler(distributed: Any, address: str) -> None:
             f"the scheduler {shown(address)} does not answer as a Dask scheduler ({problem}); give "
             "--scheduler an address such as tcp://HOST:8786, where dask scheduler runs, or leave it out"
         ) from None
-
-
-def _quietly(close: Callable[..., object]) -> None:
-    """Close a client or a cluster, also if it is lost."""
-    with suppress(Exception):
-        close(timeout=ANSWER)

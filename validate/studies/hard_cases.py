@@ -10,8 +10,7 @@ from validate.exit_status import ExitStatus
 from validate.hard.answer import Answer, Trial
 from validate.hard.case import Case
 from validate.hard.catalogue import chosen
-from validate.hard.report import results_data, summary_parts
-from validate.hard.run import Examined, as_expected, tried
+from validate.hard.report import Examined, as_expected, results_data, summary_parts
 from validate.studies.study import Findings, Row, Study, Task
 
 ANSWER = {
@@ -23,9 +22,7 @@ ANSWER = {
 def hard(cases: Sequence[str] = ()) -> Study:
     """The study of hard cases, by name or all: a task is one value of the parameter of one case.
 
-    A row is the answer of one formulation at one value: the value, the fields of `Answer`, and further facts
-        as
-    JSON.
+    A row is the answer of one formulation at one value: the value, the fields of `Answer`, and facts as JSON.
 
     Raises:
         UsageError: there is no such case.
@@ -39,7 +36,7 @@ def hard(cases: Sequence[str] = ()) -> Study:
 def answers(task: Task) -> list[Row]:
     """The rows of one value: the answers of every formulation of its case."""
     (case,) = chosen([task.part])
-    trial = tried(case, case.values[task.number])
+    trial = case.examine(case.values[task.number])
     every = {"value": trial.value, "facts": json.dumps(dict(trial.facts))}
     return [{**every, **asdict(answer)} for answer in trial.answers]
 

@@ -8,29 +8,40 @@ twenty is compared with the reference, in every quantity. The table at the end c
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Sequence
 
+import numpy as np
 import pandas as pd
 
-from pointcoord import SceneError
+from pointcoord import Scene, SceneError
 from pointcoord.effects.registry import QUANTITIES
 from validate.cars.base_cars import variants
 from validate.cars.random_scenes import KINDS, SEED, RandomScene, random_scene
 from validate.comparison.compare import Outcome, compare_solutions
 from validate.exit_status import ExitStatus
-from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.protocol import FormulationError, Solution, reason_of
+from validate.formulations.reference_solution import (
+    design_of,
+    inputs_at,
+    reference_instant,
+    reference_solution,
+    told_by,
+)
 from validate.formulations.refusals import same_reason, why_refused
-from validate.formulations.registry import formulation
+from validate.hard.answer import solved
 from validate.output.report import counted_as
 from validate.output.table import Part, Table
+from validate.reference import InfeasibleError, NoReferenceError, instants_of
 from validate.studies.study import Findings, Row, Study, Task
-from validate.studies.verdicts import NO_OBSTACLE, NONE_WRONG, judged, obstacle, unanswered
 
 PART = "scenes"
 OURS = "pointcoord"
 OTHER = "absolute"
 ALONE = 1.0 - 1e-9  # from this part up, one model's bound is the whole tolerance
+NO_OBSTACLE = "no obstacle found"
+NONE_WRONG = "none wrong by its own tolerance"
+DIGITS = 15  # digits of the reference if only the existence of a pose matters
+BETWEEN = 24  # number of instants between the first and the last at which a pose is looked for
 HELD = 20  # of the scenes that agree, one in so many is compared with the reference
 # Parts of outcomes that make the exit status 1, such as a wrong answer of the only model that answers.
 FAULTY = ("disagreed", " fails: ", " wrong", "agreed, the reference: no such pose")
@@ -43,11 +54,10 @@ def random_cars(count: int = 20_000) -> Study:
     """The study of random scenes from number 0 up, solved by both models.
 
     A row is a scene: suspension, kind of scene and outcome; for some outcomes the reason and the scene as
-        JSON; if
-    both models agree, the shares as JSON: the largest share of its tolerance for each quantity.
+    JSON; if both models agree, the shares as JSON: the largest share of its tolerance for each quantity.
     """
     tasks = [Task(PART, number) for number in range(count)]
-    return Study("random", "scene", {"seed": SEED}, COLUMNS, tasks, scene_row, found, chunk=4)
+    return Study("random", "scene", {"seed": SEED}, COLUMNS, tasks, scene_row, found)
 
 
 def scene_row(task: Task) -> list[Row]:
@@ -58,25 +68,23 @@ def scene_row(task: Task) -> list[Row]:
 
 def examined(car: RandomScene) -> Row:
     """Solve one scene by both models; returns the outcome and further columns of its row."""
-    answers: list[Solution] = []
-    refusals: list[FormulationError] = []
-    for name in (OURS, OTHER):
-        try:
-            answers.append(_solved(name, car))
-        except FormulationError as error:
-            refusals.append(error)
+    came = {name: solved(name, car.scene) for name in (OURS, OTHER)}
+    for name, one in came.items():
         # Any other error is a defect of a model: it is recorded, and the run continues.
-        except Exception as error:
-            return _kept(car, f"{name} fails: {type(error).__name__}", " ".join(str(error).split()))
+        if not isinstance(one, Solution | FormulationError | SceneError):
+            return _kept(car, f"{name} fails: {type(one).__name__}", " ".join(str(one).split()))
+    answers = [one for one in came.values() if isinstance(one, Solution)]
+    refusals = {name: one for name, one in came.items() if isinstance(one, Exception)}
     if not refusals:
         return _compared(car, *answers)
-    message, reasons = " ".join(str(refusals[0].reason).split()), [why_refused(one) for one in refusals]
+    (who, first), reasons = next(iter(refusals.items())), [why_refused(one) for one in refusals.values()]
+    message = " ".join(str(reason_of(first)).split())
     if answers:
         # Only one model answers: its positions are enough to decide which model is right.
         verdict = judged(car.scene.model_copy(update={"effects": ()}), *answers)
         if verdict == NONE_WRONG:
             verdict = f"answer right, {obstacle(car.scene)}"
-        return _kept(car, f"only {refusals[0].formulation} refuses, {reasons[0]}: {verdict}", message)
+        return _kept(car, f"only {who} refuses, {reasons[0]}: {verdict}", message)
     alike, why = "same reason" if same_reason(*reasons) else "different reasons", unanswered(car.scene)
     outcome = f"both refuse, {alike}: {' | '.join(dict.fromkeys(reasons))}: {why}"
     # The scene of an unexplained refusal is recorded for inspection, even if both models refuse.
@@ -87,15 +95,6 @@ def _kept(car: RandomScene, outcome: str, reason: str | None = None) -> Row:
     """The columns of an outcome, with the whole scene for inspection."""
     content = car.scene.model_dump(mode="json", exclude_none=True)
     return {"outcome": outcome, "reason": reason or None, "scene": json.dumps(content)}
-
-
-def _solved(name: str, car: RandomScene) -> Solution:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        try:
-            return formulation(name).solve(car.scene)
-        except SceneError as error:
-            raise FormulationError(name, error) from error
 
 
 def _compared(car: RandomScene, first: Solution, second: Solution) -> Row:
@@ -129,6 +128,59 @@ def _shares(outcome: Outcome) -> str:
             name = own if QUANTITIES[row.quantity].of == "car" else row.quantity
             largest[name] = max(largest.get(name, 0.0), row.share)
     return json.dumps(largest)
+
+
+def judged(scene: Scene, *answers: Solution) -> str:
+    """The solutions that the reference contradicts, in words, or why this is not known."""
+    try:
+        reference = reference_solution(scene)
+    except NoReferenceError as error:
+        return _unproven(error)
+    asked = told_by(reference, scene)
+    wrong = [
+        one.formulation
+        for one in answers
+        if compare_solutions(scene, one, reference, "judged", asked).disagreements
+    ]
+    return f"{' and '.join(wrong)} wrong" if wrong else NONE_WRONG
+
+
+def unanswered(scene: Scene) -> str:
+    """Why a scene that all models refuse has no answer, as far as the reference can tell."""
+    try:
+        for time in scene.instants.tolist():
+            reference_instant(scene, inputs_at(scene, time))
+    except InfeasibleError:
+        return "an instant has no pose"
+    except NoReferenceError as error:
+        return _unproven(error)
+    return obstacle(scene)
+
+
+def obstacle(scene: Scene) -> str:
+    """Where between its drawing and its last instant a scene has no pose, so that a path cannot continue.
+
+    The path from the drawing to the first instant is straight in the functions of the inputs that the
+    reference's equations contain.
+    """
+    times = np.linspace(scene.time.start, scene.time.stop, BETWEEN + 2)
+    instants = instants_of(design_of(scene), (inputs_at(scene, t) for t in times.tolist()), DIGITS)
+    for where in ("on the way from the drawing to the start", *["between the instants"] * (len(times) - 1)):
+        try:
+            next(instants)
+        except InfeasibleError:
+            return f"no pose {where}"
+        except NoReferenceError:
+            return f"no provable pose {where}"
+    return NO_OBSTACLE
+
+
+def _unproven(error: NoReferenceError) -> str:
+    return (
+        "no such pose on the way from the drawing, proven"
+        if isinstance(error, InfeasibleError)
+        else f"not provable: {error.reason}"
+    )
 
 
 def found(rows: Sequence[Row]) -> Findings:

@@ -51,7 +51,6 @@ class Study:
         tasks: all tasks, in the order in which they are run.
         examine: returns the rows of a task, at least one; it is sent to other processes.
         summary: returns the findings from all rows, in the order of the tasks.
-        chunk: number of tasks that take some tenths of a second.
     """
 
     name: str
@@ -61,7 +60,6 @@ class Study:
     tasks: Sequence[Task]
     examine: Callable[[Task], list[Row]]
     summary: Callable[[Sequence[Row]], Findings]
-    chunk: int = 1
 
 
 @cache

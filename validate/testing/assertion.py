@@ -11,7 +11,7 @@ import numpy as np
 
 from pointcoord import PointcoordError, Scene
 from pointcoord.wording import meant
-from validate.comparison.compare import Outcome, compare, compare_solutions
+from validate.comparison.compare import Outcome, compare
 from validate.comparison.given import given
 from validate.diagnosis import explain_outcome
 from validate.errors import UsageError
@@ -90,11 +90,7 @@ def assert_agrees(
     exact = required_accuracy(accuracy)
     taken = Scene.load(scene) if isinstance(scene, str) else scene
     name = scene if isinstance(scene, str) else taken.title or "the scene"
-    one = PlainSolver(WHO, lambda _: states, exact)
-    if isinstance(against, Solution):
-        outcome = compare_solutions(taken, one.solve(taken), against, name)
-    else:
-        outcome = compare(taken, one, against, name)
+    outcome = compare(taken, PlainSolver(WHO, lambda _: states, exact), against, name)
     if faults := (*outcome.faults, *_missing(outcome, needed)):
         raise AssertionError("; ".join(faults))
     if outcome.disagreements:
@@ -143,13 +139,13 @@ def assert_refuses(
     except FormulationError as error:
         raise AssertionError(str(error)) from None
     side = given(solution, taken.instants)
-    if side.solution.faults:
-        raise AssertionError("; ".join(side.solution.faults))
-    arrays = [array for part in side.solution.numbers.values() for array in part.values()]
+    if side.faults:
+        raise AssertionError("; ".join(side.faults))
+    arrays = [array for part in side.numbers.values() for array in part.values()]
     if not arrays:
         raise AssertionError(f"the solver gives nothing that {name!r} asks for")
     finite = np.all([np.isfinite(a.reshape(len(a), -1)).all(axis=-1) for a in arrays], axis=0)
-    answered = [time for time in taken.instants[side.found][finite].tolist() if time in without]
+    answered = [time for time in side.times[finite].tolist() if time in without]
     if answered:
         raise AssertionError(
             f"the solver answers {name!r} at t = {answered[0]:.9g} s, where there is no pose: "

@@ -8,7 +8,7 @@ from pointcoord import PointcoordError
 from validate.cars.car import Car
 from validate.cars.input_ends import at, drawn_inputs, end, redrawn
 from validate.formulations.reference_solution import design_of
-from validate.hard.cars import drawn_angle
+from validate.hard.subjects import drawn_angle
 from validate.reference import NoReferenceError, pose_exists
 
 EXAMPLES = settings.default.max_examples if settings.default else 100

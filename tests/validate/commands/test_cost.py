@@ -116,7 +116,7 @@ def test_what_is_measured_is_what_the_options_say(
     fake(lambda study, progress: asked.append(study) or [[ONE]])
     assert main(["cost", *words.split(), "--rows", str(tmp_path / "rows.parquet"), "--quiet"]) == 0
     (study,) = asked
-    assert tuple(scene.name for scene in study.scenes) == scenes
+    assert tuple(study.scenes) == scenes
     assert study.quick == ("--quick" in words)
 
 

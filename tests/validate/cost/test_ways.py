@@ -9,19 +9,20 @@ import pytest
 from changed_scenes import scene_with
 
 from pointcoord import PointcoordError, Scene
-from validate.cost.errors import Truth, errors_of, truth_of
+from validate.cost.errors import errors_of, truth_of
 from validate.cost.scenes import NEAR_TOGGLE, own_scene, study_instants
 from validate.cost.way import Answer, Way
 from validate.cost.ways import scipy_solvers
 from validate.cost.ways.registry import OURS, WAYS, ways_named
 from validate.errors import NoAnswer
+from validate.formulations.protocol import Solution
 
 # What solves each instant, each as finely as it can be set.
 EXACT = [way.name for way in WAYS if way.name not in ("map", "series")]
 PEERS = ("mujoco", "exudyn")
 # One of each suspension and closure, and the pose that is hardest.
 CARS = ("bounce-and-steer", "off-axis-strut", "double-wishbone", NEAR_TOGGLE)
-TRUTHS: dict[str, Truth] = {}
+TRUTHS: dict[str, Solution] = {}
 
 
 def way(name: str) -> Way:

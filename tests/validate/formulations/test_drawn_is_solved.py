@@ -19,7 +19,7 @@ from validate.cars.car import Car
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.formulations.registry import formulation
-from validate.hard.cars import drawn_angle, scene_content
+from validate.hard.subjects import drawn_angle, scene_content
 from validate.reference import NoReferenceError
 
 Array = NDArray[np.float64]

@@ -93,13 +93,13 @@ def _without(*orders: int) -> Callable[[np.ndarray], np.ndarray]:
 
 def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
     """The heaving chassis moves the absolute model, but its velocity and acceleration are forgotten."""
-    solve = absolute.solve
+    solve = absolute.Assembled.solve
 
-    def wrong(model: absolute.Model, inputs: dict, **options: bool) -> absolute.Solution:
-        forgotten = {name: inputs[name] * (np.arange(inputs[name].shape[1]) == 0) for name in model.moves}
-        return solve(model, inputs | forgotten, **options)
+    def wrong(car: absolute.Assembled, inputs: dict, **options: bool) -> absolute.Solution:
+        forgotten = {name: inputs[name] * (np.arange(inputs[name].shape[1]) == 0) for name in car.model.moves}
+        return solve(car, inputs | forgotten, **options)
 
-    patch.setattr(absolute, "solve", wrong)
+    patch.setattr(absolute.Assembled, "solve", wrong)
 
 
 def _loops_at_rest(patch: pytest.MonkeyPatch) -> None:

@@ -33,10 +33,7 @@ def scene(name: str, points: dict[str, Any] | None = None, arm: Any = None) -> S
 def refused(model: str, wrong: Scene) -> tuple[str, Refusal]:
     with pytest.raises((FormulationError, SceneError)) as caught:
         formulation(model).solve(wrong)
-    error = caught.value
-    if isinstance(error, SceneError):
-        return HARDPOINTS, refusal_of(model, error, wrong)
-    return why_refused(error), refusal_of(model, error.reason, wrong)
+    return why_refused(caught.value), refusal_of(model, caught.value, wrong)
 
 
 @pytest.mark.parametrize(

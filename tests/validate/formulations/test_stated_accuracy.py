@@ -14,8 +14,8 @@ from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Problem, asked_of
 from validate.formulations.protocol import NOTHING, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_for
-from validate.formulations.trees import linkage_in
-from validate.hard.cars import ASKED, scene_content
+from validate.formulations.trees import closed_in
+from validate.hard.subjects import ASKED, scene_content
 from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.motion import numbers
 from validate.solvers.plain import PlainSolver, Solve
@@ -135,9 +135,8 @@ def test_what_a_model_states_of_itself_covers_its_errors_and_is_near_to_them(nam
 
 def test_it_covers_what_an_early_end_of_newtons_method_leaves() -> None:
     scene = Scene.load("double-wishbone")
-    linkage, problem = linkage_in(scene), Problem.of(scene)
-    program, inputs = InPinocchio(linkage), linkage.inputs(problem.laws)
-    home = program.closed(1e-10)
+    problem, (program, home) = Problem.of(scene), closed_in(InPinocchio, scene, 1e-10)
+    linkage, inputs = program.linkage, program.linkage.inputs(problem.laws)
     best, coarse = (program.poses(inputs.values, tolerance, home) for tolerance in (1e-10, 1e-2))
     exact, found = (
         numbers(linkage, inputs, poses, program.rates(poses, inputs.series)) for poses in (best, coarse)

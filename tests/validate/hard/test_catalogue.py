@@ -22,12 +22,10 @@ from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
 from validate.hard import answer as trying
 from validate.hard.answer import MAP, OURS, Answer, judged_answer, try_scene
-from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.case import REFUSED, RIGHT, Case, Expected, family
 from validate.hard.catalogue import CASES
-from validate.hard.report import case_parts, summary_parts
-from validate.hard.run import as_expected, examine
-from validate.hard.subjects import PAPER, Subject
+from validate.hard.report import as_expected, case_parts, examine, summary_parts
+from validate.hard.subjects import PAPER, Subject, scene_content
 from validate.output.table import text_of
 
 
@@ -42,7 +40,7 @@ def test_cases_are_called_and_described_as_the_catalogue_promises() -> None:
     assert len(groups) < 2 * len(set(groups))
 
 
-MOVING = scene_content(PAPER_CAR, [1.5, 0.3], [0.0, 40.0], stop=0.2)
+MOVING = scene_content(PAPER.car, [1.5, 0.3], [0.0, 40.0], stop=0.2)
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +107,7 @@ def test_a_crash_or_a_warning_is_a_wrong_answer_and_a_refusal_is_none(
     error: Exception, outcome: str, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stand_in(monkeypatch, failing(error))
-    (answer,) = try_scene(1.0, scene_content(PAPER_CAR), ("stand-in",)).answers
+    (answer,) = try_scene(1.0, scene_content(PAPER.car), ("stand-in",)).answers
     assert (answer.outcome, answer.reason) == (outcome, reason)
 
 
@@ -119,7 +117,7 @@ CASES_MADE: list[Case] = []
 @family(CASES_MADE, "0. Made", "rack travel, mm", (1.0, 1e-3, 1e-6), {OURS: RIGHT}, [PAPER])
 def made(_: Subject, value: float) -> dict[str, Any]:
     """It is made."""
-    return scene_content(PAPER_CAR, [1.5, 0.1], value, stop=0.2, samples=2)
+    return scene_content(PAPER.car, [1.5, 0.1], value, stop=0.2, samples=2)
 
 
 (STEERED,) = CASES_MADE
@@ -173,7 +171,7 @@ def test_any_answer_is_wrong_where_the_links_cannot_meet_though_the_map_alone_an
     monkeypatch: pytest.MonkeyPatch, solution: Solution
 ) -> None:
     stand_in(monkeypatch, lambda scene: solution, MAP)
-    beyond = replace(STEERED, scene=lambda *_: scene_content(PAPER_CAR, rack=131.0), expected={OURS: REFUSED})
+    beyond = replace(STEERED, scene=lambda *_: scene_content(PAPER.car, rack=131.0), expected={OURS: REFUSED})
     result = examine(replace(beyond, values=(1.0,)))
     assert [one.outcome for _, one in result.answers(OURS)] == ["refused"]
     ((_, answer),) = result.wrong

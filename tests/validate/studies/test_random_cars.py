@@ -8,16 +8,15 @@ from counted_study import worked_out
 
 from pointcoord import Scene
 from validate.cars.base_cars import variants
-from validate.cars.random_scenes import KINDS, RandomScene, random_scene
+from validate.cars.random_scenes import KINDS, random_scene
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Solution
 from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
 from validate.output.table import text_of
 from validate.studies import random_cars as deep
-from validate.studies.random_cars import random_cars
+from validate.studies.random_cars import NO_OBSTACLE, NONE_WRONG, judged, obstacle, random_cars, unanswered
 from validate.studies.study import Row
-from validate.studies.verdicts import NO_OBSTACLE, NONE_WRONG, judged, obstacle, unanswered
 
 
 def test_every_scene_has_one_outcome_and_it_is_counted() -> None:
@@ -56,16 +55,17 @@ def test_the_model_with_a_planted_fault_is_the_one_found_wrong(model: str, quant
 
 
 def test_a_fault_that_both_models_share_is_found_by_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
-    honest = deep._solved
+    honest = deep.solved
 
-    def shared(name: str, car: RandomScene) -> Solution:
-        solution = honest(name, car)
+    def shared(name: str, scene: Scene) -> Solution:
+        solution = honest(name, scene)
+        assert isinstance(solution, Solution)
         moved = solution.position["wheel_centre"] + 1e-3
         return solution.with_numbers({"position": {**solution.position, "wheel_centre": moved}})
 
     cars = (random_scene(number) for number in range(0, 200, deep.HELD))
     car = next(car for car in cars if deep.examined(car)["outcome"] == "agreed, and with the reference")
-    monkeypatch.setattr(deep, "_solved", shared)
+    monkeypatch.setattr(deep, "solved", shared)
     found = deep.examined(car)
     assert found["outcome"] == "agreed, the reference: pointcoord and absolute wrong"
     assert found["scene"] is not None

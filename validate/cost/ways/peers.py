@@ -9,19 +9,17 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from validate.cost.way import Answer, Solve, Way, laws_at
 from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
-from validate.formulations.modelled import asked_of, require_the_drawn_car
+from validate.formulations.modelled import asked_of
+from validate.formulations.protocol import Array
 from validate.formulations.registry import OUTSIDE, WORDS, program_of
-from validate.formulations.trees import linkage_in
+from validate.formulations.trees import closed_in
 from validate.peers.motion import numbers
-
-Array = NDArray[np.float64]
 
 
 def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
@@ -31,10 +29,8 @@ def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
         name: the formulation of the program.
         tolerance: size of the last Newton correction.
     """
-    linkage = linkage_in(scene)
-    program = program_of(name)(linkage)
-    closed = program.closed(tolerance)
-    require_the_drawn_car(scene, linkage.moved(closed.places))
+    program, closed = closed_in(program_of(name), scene, tolerance)
+    linkage = program.linkage
     first = linkage.inputs(laws_at(scene, np.array([scene.time.start])))
     start = program.poses(first.values, tolerance, closed)
     moves = plan_effects(scene.effects).derivative > 0

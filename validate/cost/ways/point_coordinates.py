@@ -12,7 +12,6 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.method import CHORD, MAP, NEWTON, NEWTON_COLD, SERIES, Method
@@ -20,8 +19,8 @@ from pointcoord.results.motion import read
 from pointcoord.results.samples import Samples
 from pointcoord.simulation import Task, checked_task, solve_by_map, solve_task
 from validate.cost.way import Answer, Solve, Way
+from validate.formulations.protocol import Array
 
-Array = NDArray[np.float64]
 COUNTED = ("factorisations", "residuals", "segments", "series_orders")
 
 

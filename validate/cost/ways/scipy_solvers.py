@@ -11,7 +11,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares, root
 
 from pointcoord import Scene
@@ -24,8 +23,7 @@ from pointcoord.time_functions import TimeFunction
 from validate.cost.way import Solve, Way
 from validate.cost.ways.point_coordinates import by_method
 from validate.errors import NoAnswer
-
-Array = NDArray[np.float64]
+from validate.formulations.protocol import Array
 
 # Residual of the equations, whose terms are up to 1: a thousand times the residual with a difference
 # Jacobian.

@@ -10,9 +10,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from validate.hard.cars import PAPER_CAR, SQUARE, scene_content
 from validate.hard.case import Case, family, values_of
-from validate.hard.subjects import NAMED, PAPER, SUBJECTS, Content, Subject, hyphens
+from validate.hard.subjects import NAMED, PAPER, SQUARE, SUBJECTS, Content, Subject, hyphens, scene_content
 
 VALUES = (1e-1, 1e-7, 0.0)
 RACK_RATE = 150.0  # mm/s, the paper's steering scene
@@ -24,7 +23,7 @@ _rates = partial(family, CASES, "Body rates")
 @_rates("rate of the arm while the rack is driven, rad/s; then the arm is held", VALUES, subjects=[PAPER])
 def arm_all_but_held(_: Subject, value: float) -> Content:
     """Two points of the knuckle hardly move while the rack moves: the paper's formula is nearly 0/0."""
-    return scene_content(PAPER_CAR, [SQUARE, value], [0.0, RACK_RATE, 25.0], stop=0.4)
+    return scene_content(PAPER.car, [SQUARE, value], [0.0, RACK_RATE, 25.0], stop=0.4)
 
 
 @_rates(
@@ -32,7 +31,7 @@ def arm_all_but_held(_: Subject, value: float) -> Content:
 )
 def omega_in_the_knuckle_plane(_: Subject, value: float) -> Content:
     """Omega lies in the plane of the knuckle's points: the divisor of the paper's formula is zero."""
-    return scene_content(PAPER_CAR, [PLANE_ANGLE + value, 1.0])
+    return scene_content(PAPER.car, [PLANE_ANGLE + value, 1.0])
 
 
 def hardly_moves(driven: str, subject: Subject, value: float) -> Content:

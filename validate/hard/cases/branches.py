@@ -20,11 +20,20 @@ from functools import partial
 import numpy as np
 
 from validate.cars.car import Law, content_of
-from validate.hard.cars import drawn_angle, scene_content
 from validate.hard.case import REFUSED, Case, decades, family, right_from
-from validate.hard.cases.points import assembled, upper_arm_flat
-from validate.hard.last_values import ends_of, last_value
-from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
+from validate.hard.cases.points import upper_arm_flat
+from validate.hard.reach import ends_of, last_value
+from validate.hard.subjects import (
+    NAMED,
+    OTHERS,
+    PAPER,
+    WISHBONE,
+    Content,
+    Subject,
+    drawn_angle,
+    hyphens,
+    scene_content,
+)
 
 # Arm angle, rad, and rack travel, mm, at which the two assembly modes of the tie rod just meet: with less
 # rack travel the arm cannot pass this angle, with more it can. Third, half the range of the motion, rad; a
@@ -78,7 +87,7 @@ def flat_drawing(side: float, subject: Subject, share: float) -> Content:
     The tie rod's outer end is near the plane of kingpin and rack, on either side. For a wishbone the arm
     moves: its upper ball joint is drawn near the plane of its pivots and the lower ball joint.
     """
-    p = assembled(subject.name)
+    p = subject.assembled.array
     if subject is PAPER:
         ball, outer = p["lower_ball_joint"], p["tie_rod_outer"]
         normal = np.cross(p["strut_lower"] - ball, p["tie_rod_inner"] - ball)

@@ -1,10 +1,9 @@
-"""The ends of the inputs, where arm, tie rod or the knuckle's upper end lock: values near each end, and
-beyond.
+"""The ends of the inputs, where arm, tie rod or the knuckle's upper end lock: values near each and beyond.
 
 An end is a fold: two assembly modes meet there. Their distance is the square root of the distance from the
 end; rates and the condition number grow as its inverse root. A value before the end has a pose, a value
 beyond it has none. If an input is driven beyond its end, or starts beyond it, the refusal is compared with
-the true end (see `reach`).
+the true end (see `hard.reach`).
 """
 
 from __future__ import annotations
@@ -13,8 +12,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from validate.hard.case import Case, Values, family, right_from
-from validate.hard.cases.reach import End, Lock
-from validate.hard.last_values import ends_of
+from validate.hard.reach import End, Lock, ends_of
 from validate.hard.subjects import NAMED, OTHERS, ROLLING, hyphens
 
 # The distance down to which each model must be right, as a share of the range; nearer, it may refuse with a
@@ -31,6 +29,8 @@ from validate.hard.subjects import NAMED, OTHERS, ROLLING, hyphens
 # car. So it stops at some 1e-12, and ten times this distance is always reached.
 NEAR_END = dict.fromkeys(("pointcoord", "absolute", "relative"), right_from(1e-11))
 LAWS = {"held": "", "moving": "; the motion ends near it, with rates as the inverse root of the distance"}
+FIRST = ", and the first instant lies beyond"
+NO_POSE = "beyond the end there is no pose, at the end two assembly modes meet"
 near_ends: list[Case] = []
 beyond_ends: list[Case] = []
 
@@ -48,9 +48,25 @@ def _near(end: End, name: str, added: str, group: str, values: Values, laws: Ite
 
 
 def _beyond(end: End, name: str, moving: Values, start: Values) -> None:
-    for moves, values in ((True, moving), (False, start)):
+    """Add the cases of an input driven beyond its end, and beyond it at the first instant."""
+    subject, driven = end.subject, end.driven
+    whole = "its range" if subject.is_a("turn", driven) else f"the range of {driven}"
+    whole = "the angle from the end to the upright arm" if subject.is_a("arm", driven) else whole
+    for way, first, values in (("reach", "", moving), ("start-beyond", FIRST, start)):
+        one = replace(end, moving=not first)
         if values:
-            replace(end, moving=moves).driven_beyond(beyond_ends, name, values)
+            family(
+                *(beyond_ends, "Reachable range", f"overshoot beyond the last value, in parts of {whole}"),
+                values,
+                subjects=[subject],
+                name=f"{way}-{name}",
+                suffix="",
+                why=f"{end.where}{first}; {NO_POSE}.",
+                judge=one.judge,
+                facts=lambda *_, one=one: {"end [mm or rad]": float(one.last.value)},
+                unit=subject.units[driven],
+                beyond=True,
+            )(one.beyond)
 
 
 def _all_of(*links: str) -> Lock:

@@ -19,7 +19,6 @@ import numpy as np
 from pointcoord import Scene
 from validate.cars.car import Car, Point, as_tuple, content_of
 from validate.hard.answer import Answer
-from validate.hard.cars import drawn_at
 from validate.hard.case import (
     IF_ANY,
     REFUSED,
@@ -107,7 +106,7 @@ def tables_of(subject: Subject) -> Tables:
 @cache
 def closed(subject: Subject) -> Car:
     """The car with a closed drawing and all its points given, so that its tables can be changed."""
-    car = subject.car if subject.car.closure == "drawn" else drawn_at(subject.car, subject.drawn)
+    car = subject.assembled
     scene = Scene.from_mapping(subject.absolute(dict.fromkeys(subject.driven, 0.0), car))
     points = scene.mechanism.plain(subject.driven)["points"]
     return replace(car, points={name: tuple(place) for name, place in points.items()}, closure="drawn")

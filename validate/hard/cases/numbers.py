@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache, partial
@@ -20,43 +19,37 @@ from validate.hard.cases.links import GROUP, held_apart
 from validate.hard.subjects import Content, Subject
 
 Place = tuple[str | int, ...]
-Pairs = list[tuple[str, str]]
 SINE = {"sine": {"amplitude": 5.0, "angular_frequency": 2.0, "phase": 0.3, "offset": 1.0}}
 TABLE = {"table": {"times": [0.0, 0.1, 0.2, 0.3], "values": [0.0, 1.0, 3.0, 2.0]}}
 OF_HEAVE = (SINE, {"polynomial": [10.0, 20.0, 30.0]}, {"constant": 10.0})
 CASES: list[Case] = []
 
 
-def apart(subject: Subject) -> Pairs:
-    """Pairs of drawn points that a link or an axis keeps at a distance."""
-    held = {frozenset(pair) for pair in held_apart(subject.plain)}
-    return [pair for pair in itertools.combinations(subject.car.points, 2) if frozenset(pair) in held]
+def pairs(held: bool, subject: Subject) -> list[tuple[str, str]]:
+    """Pairs of drawn points that a link or an axis keeps at a distance; or the pairs without a link."""
+    links = {frozenset(pair) for pair in held_apart(subject.plain)}
+    every = itertools.combinations(subject.car.points, 2)
+    return [pair for pair in every if (frozenset(pair) in links) is held]
 
 
-def loose(subject: Subject) -> Pairs:
-    """Pairs of drawn points without a link between them."""
-    held = apart(subject)
-    return [pair for pair in itertools.combinations(subject.car.points, 2) if pair not in held]
-
-
-def in_one_place(pairs: Callable[[Subject], Pairs], subject: Subject, value: float) -> Content:
+def in_one_place(held: bool, subject: Subject, value: float) -> Content:
     """The scene with the second point of a pair moved onto the first."""
-    onto, moved = pairs(subject)[int(value) - 1]
+    onto, moved = pairs(held, subject)[int(value) - 1]
     points = {**subject.car.points, moved: subject.car.points[onto]}
     inputs = {**subject.home, "arm_angle": 1.65} if subject.level else subject.home
     return subject.absolute(inputs, replace(subject.car, points=points))
 
 
-def _pairs(pairs: Callable[[Subject], Pairs], step: int = 1, **more: Any) -> None:
+def _pairs(held: bool, step: int = 1, **more: Any) -> None:
     family(
-        *(CASES, GROUP, "number of the pair of points", every(pairs, step)),
-        facts=lambda one, value: {"place": "{1} on {0}".format(*pairs(one)[int(value) - 1])},
+        *(CASES, GROUP, "number of the pair of points", every(partial(pairs, held), step)),
+        facts=lambda one, value: {"place": "{1} on {0}".format(*pairs(held, one)[int(value) - 1])},
         **more,
-    )(partial(in_one_place, pairs))
+    )(partial(in_one_place, held))
 
 
 _pairs(
-    apart,
+    True,
     # In other mechanisms two rods may meet at one point of a body, and a crank may have no length.
     expected=lambda one: REFUSED if one.level else IF_ANY,
     given=False,
@@ -64,7 +57,7 @@ _pairs(
     why="Two points that a link or an axis keeps at a distance are drawn in one place.",
 )
 _pairs(
-    loose,
+    False,
     step=3,
     expected=RIGHT_OR_REFUSED,
     name="points-in-one-place",

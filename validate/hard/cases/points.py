@@ -14,30 +14,19 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache, partial
+from functools import partial
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from validate.cars.car import unit
-from validate.hard.cars import CARS, drawn_angle, drawn_at, scene_content
 from validate.hard.case import RIGHT, Case, family, right_from
-from validate.hard.subjects import NAMED, Content, Subject
+from validate.hard.subjects import NAMED, Array, Content, Subject, drawn_angle, scene_content
 
-Array = NDArray[np.float64]
 Points = Mapping[str, Array]
 BALL, OUTER, INNER = "lower_ball_joint", "tie_rod_outer", "tie_rod_inner"
 LOWER, TOP, ROD_END = "strut_lower", "strut_top", "strut_rod_end"
-
-
-@cache
-def assembled(car: str = "paper") -> dict[str, Array]:
-    """The points of a car assembled at its drawn inputs, each coordinate correctly rounded, mm."""
-    if CARS[car].closure == "drawn":
-        return CARS[car].array
-    return drawn_at(CARS[car], NAMED[car].drawn).array
 
 
 def put(
@@ -106,7 +95,7 @@ DRAWS: Mapping[str, Callable[..., Points]] = {draw.__name__: draw for draw in DR
 def in_motion(row: Mapping[str, Any], subject: Subject, value: float) -> Content:
     """The scene of a row: its car in motion, starting at zero rack travel."""
     ((draw, given),) = row["draw"].items()
-    there = subject.car.drawn_as(DRAWS[draw](assembled(subject.name), value, **given))
+    there = subject.car.drawn_as(DRAWS[draw](subject.assembled.array, value, **given))
     size, angle = value if row.get("shrinks") else 1.0, subject.drawn["arm_angle"]
     if row["motion"] == "mixed":
         law = (angle, 0.1 * size, 0.05 * size)

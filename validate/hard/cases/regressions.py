@@ -5,11 +5,10 @@ from __future__ import annotations
 from functools import partial
 
 from validate.cars.car import Car
-from validate.hard.cars import PAPER_CAR, SQUARE, drawn_angle, scene_content
 from validate.hard.case import RIGHT_OR_REFUSED, Case, family, right_from
 from validate.hard.cases.ends import FULL
-from validate.hard.last_values import last_value
-from validate.hard.subjects import NAMED, PAPER, Content, Subject
+from validate.hard.reach import last_value
+from validate.hard.subjects import NAMED, PAPER, SQUARE, Content, Subject, drawn_angle, scene_content
 
 SEARCHED = NAMED["searched"]
 HELD = 27.68275866007217  # mm, where its rack was held
@@ -47,7 +46,7 @@ def turn_at_a_coarse_tolerance(_: Subject, value: float) -> Content:
     low, high = (float(last_value(PAPER, "rack", ahead).value) for ahead in (False, True))
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     swing = {"sine": {"amplitude": half * (1.0 - value), "angular_frequency": 1.0, "offset": middle}}
-    return scene_content(PAPER_CAR, SQUARE, swing, stop=3.0, samples=4, tolerance=1e9)
+    return scene_content(PAPER.car, SQUARE, swing, stop=3.0, samples=4, tolerance=1e9)
 
 
 @_found(
@@ -57,7 +56,7 @@ def turn_at_a_coarse_tolerance(_: Subject, value: float) -> Content:
 )
 def strut_drawn_folded(_: Subject, value: float) -> Content:
     """Random scenes had the end of the strut rod drawn beyond the strut's top: their line is reversed."""
-    top, lower = PAPER_CAR.points["strut_top"], PAPER_CAR.points["strut_lower"]
+    top, lower = PAPER.car.points["strut_top"], PAPER.car.points["strut_lower"]
     x, y, z = (t + value * (t - p) for t, p in zip(top, lower, strict=True))
-    points = {**PAPER_CAR.points, "strut_rod_end": (x, y, z)}
+    points = {**PAPER.car.points, "strut_rod_end": (x, y, z)}
     return scene_content(Car(points, closure="collinear"), [1.4, 0.2], stop=1.0)

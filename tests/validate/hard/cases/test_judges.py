@@ -18,7 +18,7 @@ from validate.hard.answer import Answer, Trial
 from validate.hard.case import Case
 from validate.hard.cases import laws, links
 from validate.hard.catalogue import CASES
-from validate.hard.run import examine
+from validate.hard.report import examine
 from validate.hard.subjects import PAPER
 
 BY_NAME = {case.name: case for case in CASES}

@@ -1,12 +1,13 @@
-"""Cars far from the origin, and very small and very large cars.
+"""Cars rotated as a whole, far from the origin, very small and very large: the mechanism is unchanged.
 
-The error may grow with the size of the mechanism, but not with its distance from the origin. The paper's
-hardpoints are whole millimetres, so a shift by whole millimetres is exact. Errors of rates far away are
-compared with the error bounds of the car at its original position.
+No axis of the frame may matter. The error may grow with the size of the mechanism, but not with its distance
+from the origin. The paper's hardpoints are whole millimetres, so a shift by whole millimetres is exact.
+Errors of rates far away are compared with the error bounds of the car at its original position.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import cache, partial
 
@@ -14,11 +15,11 @@ import numpy as np
 
 from pointcoord import Scene
 from pointcoord.numerics.rounding import EPS
+from validate.cars.car import any_rotation, rotation
 from validate.formulations.protocol import Solution
 from validate.hard.answer import Answer, Trial, solved
-from validate.hard.cars import SQUARE
-from validate.hard.case import RIGHT, Case, decades, family, right_from
-from validate.hard.subjects import BESIDE, HEAVING, PAPER, ROLLING, SUBJECTS, Content, Subject
+from validate.hard.case import HARD, IF_ANY, RIGHT, Case, Expected, decades, family, right_from
+from validate.hard.subjects import BESIDE, HEAVING, PAPER, ROLLING, SQUARE, SUBJECTS, Array, Content, Subject
 
 AWAY = (1.0, -1.0, 3.0)
 # A model subtracts a local origin within a few sizes of the car, wherever the car is: its local coordinates
@@ -32,7 +33,31 @@ NEARER = right_from(1e-9)
 FAR = {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER}
 CARS = (PAPER, BESIDE, *SUBJECTS[1:], ROLLING)
 CASES: list[Case] = []
+_turned = partial(family, CASES, "Turned cars")
 _far = partial(family, CASES, "Far from the origin, and mixed sizes")
+
+
+def all_moving(turn: Array, subject: Subject) -> Content:
+    """All inputs of a rotated car move, with velocities and accelerations."""
+    return subject.content([-0.1, 0.4], [0.0, 40.0], car=subject.car.turned(turn), stop=0.5)
+
+
+def right(subject: Subject) -> Expected:
+    """`RIGHT`; for Bricard's ring, which the reference cannot prove when it is rotated, `IF_ANY`."""
+    return IF_ANY if subject.name in HARD else RIGHT
+
+
+@_turned("number of a random rotation", (1.0, 7.0, 12.0), right, (*SUBJECTS, ROLLING))
+def turned_at_random(subject: Subject, number: float) -> Content:
+    """No axis of the car is parallel to an axis of the frame, so nothing cancels by chance."""
+    return all_moving(any_rotation(int(number)), subject)
+
+
+@_turned("90 degrees about x less this, rad; then exactly 90", (1e-1, 1e-8, 0.0), right)
+def quarter_turn_about_x(subject: Subject, value: float) -> Content:
+    """The car is rotated to other axes of the frame, so that coordinates change places."""
+    # At 0 the rotation is a permutation without rounding.
+    return all_moving(rotation(0, math.sin(value), math.cos(value)), subject)
 
 
 def moved_car(subject: Subject, distance: float) -> Content:

@@ -1,4 +1,7 @@
-"""A refusal which says the end of an input wrongly is found out."""
+"""Where the ends of inputs are, and that a refusal which states an end wrongly is found out.
+
+That each end parts poses from none is tested by the hard cases next to it.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +9,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import mpmath
 import pytest
 
 from pointcoord import AssemblyError, Scene
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cases.ends import tie_rod_within
-from validate.hard.cases.reach import End, fault_of_kept, refusal_held
-from validate.hard.subjects import PAPER
+from validate.hard.reach import End, fault_of_kept, last_value, refusal_held
+from validate.hard.subjects import CARS, NAMED, PAPER
 
 PAPER_RACK = End(PAPER, "rack", True, lock=tie_rod_within(3))
 
@@ -78,3 +82,23 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
     assert "tie_rod_outer of the kept instant 1" in fault_of_kept(moved, scene, end, "rack")
     cut = with_kept(replace(kept, times=kept.times[:-1]))
     assert "instants are kept" in fault_of_kept(cut, scene, end, "rack")
+
+
+@pytest.mark.parametrize("car", ["paper", "turned"])
+def test_the_arm_ends_where_its_ball_joint_is_highest_or_lowest_on_its_circle(car: str) -> None:
+    # With u the axis and d the arm: height u_z (u . d) +- |d - u (u . d)| |z - u u_z|, worked out in
+    # 50 digits from the coordinates as they are.
+    names = ("lower_arm_front", "lower_arm_rear", "lower_ball_joint")
+    with mpmath.workdps(50):
+        front, rear, ball = (mpmath.matrix(CARS[car].points[n]) for n in names)
+        z = mpmath.matrix(CARS[car].up)
+        axis, arm = rear - front, ball - front
+        u = axis / mpmath.norm(axis)
+        along, rise = (u.T * arm)[0], (u.T * z)[0]
+        half = mpmath.norm(arm - along * u) * mpmath.norm(z - rise * u)
+        for ahead, sign in ((True, -1), (False, 1)):
+            expected = mpmath.acos((rise * along + sign * half) / mpmath.norm(arm))
+            found = last_value(NAMED[car], "arm_angle", ahead)
+            value = mpmath.mpf(found.value.numerator) / found.value.denominator
+            # halved down to 1e-16 of the range
+            assert abs(value - expected) <= 2e-16 * found.reach

@@ -1,6 +1,10 @@
-"""Inputs driven to their ends and beyond: each refusal is compared with the true end.
+"""The ends of inputs: the last values that can be reached, and refusals compared with them.
 
-There is no pose beyond the end. So a formulation is `right` here if it refuses the motion and its error
+An end is a fold, at which the reference proves that a path cannot continue. To find it, the mechanism is
+redrawn at the values of the other inputs, to many digits. The reference then drives the one input beyond the
+end that pointcoord finds.
+
+There is no pose beyond the end. So a formulation is `right` there if it refuses the motion and its error
 gives: the last value to 1e-9 of the input's range, the input and the value asked for, the motion up to the
 end with right positions, and, for pointcoord, the links that lie in line.
 """
@@ -10,26 +14,109 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from pointcoord import AssemblyError, Scene
+from pointcoord.drawing_stands import End as SeenEnd
+from pointcoord.drawing_stands import reach_of
 from pointcoord.numerics.rounding import EPS
 from validate.cars.car import Law
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
 from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.hard.answer import Answer, Trial
-from validate.hard.case import Case, Values, family
-from validate.hard.last_values import LastValue, last_value
-from validate.hard.subjects import Content, Subject
-from validate.reference import NoReferenceError
+from validate.hard.subjects import Content, Subject, drawn_at
+from validate.plain_text import named
+from validate.reference import Design, InfeasibleError, NoReferenceError
+from validate.reference.exact import as_fraction
+from validate.reference.route import CLEAR, reached
 
-SHARE = 1e-9  # accuracy of the end, as a share of the input's range
+NEAR = 1e-6  # largest error of pointcoord's end, as a share of the range
+BEYOND = 1e-3  # how far beyond pointcoord's end the reference is driven, as a share of the range
+SHARE = 1e-9  # accuracy of the end that a refusal gives, as a share of the range
 Inputs = Mapping[str, float]
 Lock = Callable[[tuple[str, ...]], bool]
 """A test whether the links that limit a motion, the strongest first, are the links that lie in line."""
+
+
+@dataclass(frozen=True)
+class LastValue:
+    """One end of an input, with the other inputs held.
+
+    Attributes:
+        value: the end, rad or mm; poses exist up to this value.
+        reach: distance from this end to the opposite end, rad or mm.
+        ahead: whether it is the upper end.
+    """
+
+    value: Fraction
+    reach: float
+    ahead: bool
+
+    def beyond(self, share: float) -> float:
+        """The value beyond this end by a share of the reach, rad or mm; before it for a negative share."""
+        return float(self.value + (1 if self.ahead else -1) * Fraction(share) * Fraction(self.reach))
+
+
+def last_value(subject: Subject, driven: str, ahead: bool, held: Inputs | None = None) -> LastValue:
+    """The end of an input.
+
+    Args:
+        ahead: whether the upper end is wanted.
+        held: values of all inputs within their ranges, from which this input is driven; `home` if not given.
+    Raises:
+        ValueError: the reference finds no end near pointcoord's end.
+    """
+    there = held or subject.home
+    return _last_value(subject, driven, ahead, tuple(there[name] for name in subject.driven))
+
+
+def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
+    """The ends of a mechanism's inputs, with the others as drawn: the input, and whether it is the upper end.
+
+    Inputs of the kind `turn` are left out: they have no end, or end where something else locks.
+    """
+    drawn = tuple(subject.drawn[name] for name in subject.driven)
+    return tuple(
+        (name, bool(ahead))
+        for name in subject.driven
+        if not subject.is_a("turn", name)
+        for ahead, end in enumerate(_seen(subject, name, drawn))
+        if end.limits
+    )
+
+
+@cache
+def _last_value(subject: Subject, driven: str, ahead: bool, values: tuple[float, ...]) -> LastValue:
+    held = dict(zip(subject.driven, values, strict=True))
+    low, high = _seen(subject, driven, values)
+    reach, seen = high.value - low.value, Fraction((low, high)[ahead].value)
+    # Redrawn at the pose of the held inputs, to many digits, so that one input alone leads from there to its
+    # end.
+    plain = subject.plain
+    if held != subject.drawn:
+        pose = reference_instant(subject.scene, {name: (value, 0, 0) for name, value in held.items()})
+        plain["points"] = {name: pose.position[name] for name in plain["points"]}
+    design = Design.from_plain(plain)
+    beyond = {**held, driven: seen + Fraction(BEYOND * (reach if ahead else -reach))}
+    try:
+        reached(design, CLEAR, design.driven({name: (value, 0, 0) for name, value in beyond.items()}))
+    except InfeasibleError as fold:
+        end = as_fraction(fold.inputs[driven], driven)
+        if abs(end - seen) <= Fraction(NEAR * reach):
+            return LastValue(end, reach, ahead)
+    raise ValueError(f"{driven} of {subject.name!r} has no end near {float(seen)!r}")
+
+
+@cache
+def _seen(subject: Subject, driven: str, values: tuple[float, ...]) -> tuple[SeenEnd, SeenEnd]:
+    """Both ends of an input as pointcoord finds them, with the other inputs held at these values."""
+    held = dict(zip(subject.driven, values, strict=True))
+    there = subject.car if held == subject.drawn else drawn_at(subject.car, held)
+    return reach_of(Scene.from_mapping(subject.absolute(held, there)), driven)
 
 
 @dataclass(frozen=True)
@@ -88,24 +175,6 @@ class End:
         lost = "rounding removed the overshoot: there is a pose"
         return replace(answer, outcome="unjudged", reason=lost) if answer.outcome == "right" else answer
 
-    def driven_beyond(self, cases: list[Case], name: str, values: Values) -> None:
-        """Add the case of an input driven beyond its end, or beyond it at the first instant."""
-        subject, driven = self.subject, self.driven
-        whole = "its range" if subject.is_a("turn", driven) else f"the range of {driven}"
-        whole = "the angle from the end to the upright arm" if subject.is_a("arm", driven) else whole
-        first = "" if self.moving else ", and the first instant lies beyond"
-        family(
-            *(cases, "Reachable range", f"overshoot beyond the last value, in parts of {whole}", values),
-            subjects=[subject],
-            name=f"{'reach' if self.moving else 'start-beyond'}-{name}",
-            suffix="",
-            why=f"{self.where}{first}; beyond the end there is no pose, at the end two assembly modes meet.",
-            judge=self.judge,
-            facts=lambda *_: {"end [mm or rad]": float(self.last.value)},
-            unit=subject.units[driven],
-            beyond=True,
-        )(self.beyond)
-
 
 def refusal_held(refusal: FormulationError, scene: Scene, end: End) -> Answer:
     """Compare a refusal with the true end; it is right if it has no fault."""
@@ -122,13 +191,13 @@ def refusal_held(refusal: FormulationError, scene: Scene, end: End) -> Answer:
             [stops] * (error > bound) + list(_faults_of_words(reason, reached, end)) + [kept] * bool(kept)
         )
     else:
-        faults = [f"does not say how far it came: {type(reason).__name__}: {reason}"]
+        faults = [f"does not say how far it came: {named(reason)}"]
     words, condition = "; ".join(faults) or " ".join(str(reason).split()), getattr(reason, "condition", None)
     return Answer(refusal.formulation, "wrong" if faults else "right", words, condition=condition, **sizes)
 
 
 def _faults_of_words(reason: Any, reached: Inputs, end: End) -> Iterator[str]:
-    """The facts that an error lacks or states wrongly."""
+    """The facts that an error does not state, or states wrongly."""
     driven, last = end.driven, end.last
     wanted: Inputs = getattr(reason, "wanted", getattr(reason, "inputs", {}))
     for other, held in end.start.items():
