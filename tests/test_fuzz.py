@@ -30,7 +30,7 @@ from pointcoord import KinematicMap, MapError, Scene, kinematic_map, simulate
 from validate.cli import main
 
 DEEP = os.environ.get("HYPOTHESIS_PROFILE") == "deep"
-FILES, SCENES, BLOCK = 2_000 if DEEP else 4, 10_000 if DEEP else 120, 60
+FILES, SCENES, BLOCK = 2_000 if DEEP else 4, 10_000 if DEEP else 60, 60
 # Every so many scenes are solved by all formulations as well.
 COMPARED = 10
 # Processor time, s, so that a busy machine changes nothing; how much more memory the process may take, bytes.

@@ -107,19 +107,6 @@ def test_steered_wheels_are_what_the_formulas_make_of_their_angles(
 
 
 @by_each
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_wheels_on_circles_about_one_point_have_an_ackermann_of_a_hundred(who: str, sign: float) -> None:
-    """The middle of the turn is 5 m to the side of the middle of the rear axle."""
-    with workdps(DIGITS):
-        inner, outer = (float(atan(WHEELBASE / mpf(5000 + s * HALF_TRACK))) for s in (-1, 1))
-    turns = {"left": inner, "right": outer} if sign > 0 else {"left": -outer, "right": -inner}
-    numbers = solved_by(who, axle(UPRIGHT, ["ackermann"], turns)).numbers
-    assert numbers["dimension"]["turning_radius"] == pytest.approx(5000.0, abs=1e-9)
-    assert numbers["ackermann"]["ackermann"] == pytest.approx(100.0, abs=1e-9)
-    assert numbers["steer_error"]["ackermann_error"] == pytest.approx(0.0, abs=1e-13)
-
-
-@by_each
 @pytest.mark.parametrize(("left", "right"), [(0.0, 0.0), (0.1, -0.05), (0.0, 0.1)])
 def test_wheels_that_are_not_steered_to_the_same_side_turn_about_nothing(
     who: str, left: float, right: float

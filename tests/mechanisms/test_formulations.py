@@ -1,7 +1,7 @@
 """Every formulation is right within what it claims, by the reference.
 
-On a scene of every mechanism and closure, and on a car that rolls, pitches and heaves; by two of them with
-every number that there is.
+On a scene of every mechanism and closure, and on the cars beside this file: one rolls, pitches and heaves,
+one is steered by its steering wheel, and one drives over a kerb. Two formulations give every number.
 """
 
 from __future__ import annotations
@@ -23,6 +23,14 @@ OF_EVERY_NUMBER = ("pointcoord", "absolute")
 OTHERS = ("pointcoord-newton", "pointcoord-map", "relative", *OUTSIDE)
 # Redundant everywhere: claims of its numbers hold, and are too wide to test the reference.
 REDUNDANT = "bricard"
+EVERY = (*one_of_each(), TURNED, TURNED + FAR)
+# Trees of joints give no gradients and nothing of an axle, which these ask for.
+OWN = ("kerb", "steering-wheel")
+TREES = ("relative", *OUTSIDE)
+ASKED = [(name, who) for name in (*one_of_each(), TURNED) for who in OTHERS]
+ASKED += [(name, who) for name in OWN for who in (*OF_EVERY_NUMBER, *OTHERS)]
+# A map has at most three inputs that move.
+ASKED.remove(("kerb", "pointcoord-map"))
 # Motions that meet a singular pose after some instants: the scene, and its input from the drawing on.
 BEYOND = {
     "branches cross": ("n-four-bar", "crank", [0.0, -1.7]),
@@ -32,7 +40,7 @@ BEYOND = {
 
 
 def compared(name: str, who: str, every: bool) -> Outcome:
-    scene, reference = asked(name, every), exact(name)
+    scene, reference = asked(name, every), exact(name, name in EVERY)
     found = formulation(who).solve(scene)
     outcome = compare_solutions(scene, found, reference, name, told_by(reference, scene))
     assert not outcome.disagreements, outcome.disagreements
@@ -53,7 +61,7 @@ def test_every_number_is_one_of_some_car() -> None:
     assert any("loads" in asked(name, True).effects for name in one_of_each())
 
 
-@pytest.mark.parametrize("name", [*one_of_each(), TURNED, TURNED + FAR])
+@pytest.mark.parametrize("name", EVERY)
 @pytest.mark.parametrize("who", OF_EVERY_NUMBER)
 def test_every_number_of_a_car_is_right_within_what_is_claimed(name: str, who: str) -> None:
     outcome = compared(name, who, True)
@@ -65,12 +73,11 @@ def test_every_number_of_a_car_is_right_within_what_is_claimed(name: str, who: s
     assert not lacking or name != "axle-steer"
 
 
-@pytest.mark.parametrize("name", [*one_of_each(), TURNED])
-@pytest.mark.parametrize("who", OTHERS)
+@pytest.mark.parametrize(("name", "who"), ASKED)
 def test_what_a_scene_asks_for_is_right_within_what_is_claimed(name: str, who: str) -> None:
     outcome = compared(name, who, False)
     found = outcome.solutions[0]
-    assert not outcome.missing
+    assert not outcome.missing or (name in OWN and who in TREES)
     if name == REDUNDANT:
         return
     # A model that claims much tests little. These cars raise 32 u by some ten in a place, by another ten in
@@ -78,7 +85,7 @@ def test_what_a_scene_asks_for_is_right_within_what_is_claimed(name: str, who: s
     # as far off as a radian's share, however small it is.
     places = np.concatenate([*found.numbers["position"].values()])
     far = max(1.0, float(np.abs(places).max() / np.ptp(places, axis=0).max()))
-    for row in outcome.rows:
+    for row in (row for row in outcome.rows if row.verdict != "not given"):
         assert row.share <= 1.0, row
         if row.name not in OF_A_TURN:  # quotients by a steer angle
             size = max(float(np.abs(array).max()) for array in found.numbers[row.quantity].values())

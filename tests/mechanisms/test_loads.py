@@ -1,14 +1,13 @@
-"""Forces of loads at the wheels by all three mechanics: statics by hand, balances of bodies in fractions."""
+"""Forces of loads at the wheels by all three mechanics: statics by hand, and balances of bodies."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from fractions import Fraction
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import pytest
 from changed_scenes import scene_with
-from mpmath import cos, mpf, sin, sqrt, workdps
+from mpmath import cos, mp, mpf, sin, sqrt, workdps
 from three_mechanics import DIGITS, assert_exact, by_each, scene_of, solved_by
 
 from validate.comparison.compare import compare
@@ -43,17 +42,15 @@ ONES: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 WITHIN = 1e-10
 
 
-def solved(rows: Sequence[Sequence[Fraction]]) -> list[Fraction]:
-    """Linear equations, the right-hand side last, by elimination."""
-    left = [[Fraction(x) for x in row] for row in rows]
-    for i in range(len(left)):
-        pivot = next(k for k in range(i, len(left)) if left[k][i])
-        left[i], left[pivot] = left[pivot], left[i]
-        left[i] = [x / left[i][i] for x in left[i]]
-        for k in range(len(left)):
-            if k != i:
-                left[k] = [x - left[k][i] * y for x, y in zip(left[k], left[i], strict=True)]
-    return [row[-1] for row in left]
+@pytest.fixture(autouse=True)
+def many_digits() -> Iterator[None]:
+    with workdps(DIGITS):
+        yield
+
+
+def solved(columns: Sequence[Sequence[Any]], right: Sequence[Any]) -> list[mpf]:
+    """Linear equations by their columns."""
+    return [*mp.lu_solve(mp.matrix([[*column] for column in columns]).T, mp.matrix([*right]))]
 
 
 def wrench(force: Vector, at: Vector) -> tuple[Any, ...]:
@@ -66,24 +63,15 @@ def against_load(contact: Vector) -> list[Any]:
     return [*load[:3], *(x - m for x, m in zip(load[3:], MOMENT, strict=True))]
 
 
-def number(value: Fraction | int) -> mpf:
-    return mpf(Fraction(value).numerator) / Fraction(value).denominator
-
-
 def assert_forces(who: str, mechanism: Mapping[str, Any], exact: Mapping[Any, Any], **laws: Any) -> Any:
     """Forces as drawn, of rods by tension over length, of joints as vectors."""
     solution = solved_by(who, scene_of(mechanism, ["loads"], **laws))
-    with workdps(DIGITS):
-        assert_exact(solution, {name: [value] * 3 for name, value in exact.items()}, WITHIN)
+    assert_exact(solution, {name: [value] * 3 for name, value in exact.items()}, WITHIN)
     return solution
 
 
-def tension(density: Fraction, way: Vector) -> mpf:
-    return number(density) * sqrt(number(dot(way, way)))
-
-
-def vector(values: Sequence[Fraction]) -> list[mpf]:
-    return [number(value) for value in values]
+def tension(density: mpf, way: Vector) -> mpf:
+    return density * sqrt(mpf(dot(way, way)))
 
 
 def right_wheel(name: str, points: Mapping[str, Vector]) -> dict[str, Any]:
@@ -116,24 +104,23 @@ def test_a_damper_beside_a_hinge_carries_the_moment_about_it(who: str) -> None:
     assert [*solution.numbers["rod_force"]] == ["damper"]
     assert not solution.numbers["joint_force"]  # what holds beside it is a hinge
     exact = []
-    with workdps(DIGITS):
-        for time in (mpf(0), mpf(1) / 2, mpf(1)):
-            angle = mpf(turn[0]) + mpf(turn[1]) * time
+    for time in (mpf(0), mpf(1) / 2, mpf(1)):
+        angle = mpf(turn[0]) + mpf(turn[1]) * time
 
-            def turned(y: int, z: int, angle: mpf = angle) -> tuple[mpf, mpf]:
-                return y * cos(angle) - z * sin(angle), y * sin(angle) + z * cos(angle)
+        def turned(y: int, z: int, angle: mpf = angle) -> tuple[mpf, mpf]:
+            return y * cos(angle) - z * sin(angle), y * sin(angle) + z * cos(angle)
 
-            y, z = turned(610, -120)
-            contact = (y + 300 * sin(angle), z - 300 * cos(angle))
-            low, top = turned(450, -140), (mpf(350), mpf(280))
-            line = (top[0] - low[0], top[1] - low[1])
-            # About the hinge: the load's moment, and the damper's arm, which pulls `low` towards `top`.
-            moment = contact[0] * FORCE[2] - contact[1] * FORCE[1] + MOMENT[0]
-            arm = (low[0] * line[1] - low[1] * line[0]) / sqrt(line[0] ** 2 + line[1] ** 2)
-            exact.append(-moment / arm)
-        assert_exact(solution, {"damper": exact}, WITHIN)
-        with pytest.raises(AssertionError):
-            assert_exact(solution, {"damper": [force * (1 + mpf("1e-9")) for force in exact]}, WITHIN)
+        y, z = turned(610, -120)
+        contact = (y + 300 * sin(angle), z - 300 * cos(angle))
+        low, top = turned(450, -140), (mpf(350), mpf(280))
+        line = (top[0] - low[0], top[1] - low[1])
+        # About the hinge: the load's moment, and the damper's arm, which pulls `low` towards `top`.
+        moment = contact[0] * FORCE[2] - contact[1] * FORCE[1] + MOMENT[0]
+        arm = (low[0] * line[1] - low[1] * line[0]) / sqrt(line[0] ** 2 + line[1] ** 2)
+        exact.append(-moment / arm)
+    assert_exact(solution, {"damper": exact}, WITHIN)
+    with pytest.raises(AssertionError):
+        assert_exact(solution, {"damper": [force * (1 + mpf("1e-9")) for force in exact]}, WITHIN)
 
 
 LINKS = {
@@ -155,12 +142,10 @@ def test_five_links_and_the_height_of_the_wheel_hold_the_knuckle(who: str) -> No
     columns = [wrench(minus(a, b), b) for a, b in LINKS.values()]  # on the knuckle, per tension over length
     columns.append(wrench((0, 0, 1), WHEEL["wheel_centre"]))
     load = against_load(CONTACT)
-    densities = solved([[column[i] for column in columns] + [load[i]] for i in range(6)])
-    with workdps(DIGITS):
-        exact = {
-            ("rod_force", name): tension(density, minus(a, b))
-            for (name, (a, b)), density in zip(LINKS.items(), densities, strict=False)
-        }
+    exact = {
+        ("rod_force", name): tension(density, minus(a, b))
+        for (name, (a, b)), density in zip(LINKS.items(), solved(columns, load), strict=False)
+    }
     assert_forces(who, right_wheel("five_link", {**ends, **WHEEL}), exact, wheel_travel=0.0)
 
 
@@ -170,10 +155,10 @@ def test_wishbones_hold_the_knuckle_and_the_damper_holds_them_by_rocker_and_push
     pushed, pulled = minus(p["pushrod_inner"], p["pushrod_outer"]), minus(p["damper_top"], p["damper_rocker"])
     tie = minus(p["tie_rod_inner"], p["tie_rod_outer"])
 
-    def about(hinge: str, force: Vector, at: str) -> Fraction:
+    def about(hinge: str, force: Vector, at: str) -> Any:
         """The moment about a hinge."""
         first = p[f"{hinge}_front"]
-        return Fraction(dot(minus(p[f"{hinge}_rear"], first), cross(minus(p[at], first), force)))
+        return dot(minus(p[f"{hinge}_rear"], first), cross(minus(p[at], first), force))
 
     # Unknown: the forces on the knuckle in both ball joints, and tension over length of tie rod, pushrod and
     # damper. The knuckle balances, and each arm and the rocker about its hinge.
@@ -185,7 +170,7 @@ def test_wishbones_hold_the_knuckle_and_the_damper_holds_them_by_rocker_and_push
     columns.append((*[0] * 6, -arm, 0, rocker))
     columns.append((*[0] * 8, -about("rocker", pulled, "damper_rocker")))
     load = [*against_load(CONTACT), 0, 0, 0]
-    want = solved([[column[i] for column in columns] + [load[i]] for i in range(9)])
+    want = solved(columns, load)
     ways = {"tie_rod": tie, "pushrod": pushed, "damper": pulled}
     push = times(pushed, want[7])
     # What is left of each body's balance are the forces at its hinge.
@@ -194,23 +179,22 @@ def test_wishbones_hold_the_knuckle_and_the_damper_holds_them_by_rocker_and_push
         "upper_arm": [(times(want[3:6], -1), upper)],
         "rocker": [(times(push, -1), "pushrod_inner"), (times(pulled, want[8]), "damper_rocker")],
     }
-    with workdps(DIGITS):
-        exact: dict[Any, Any] = {
-            name: tension(density, way) for (name, way), density in zip(ways.items(), want[6:], strict=True)
-        }
-        joints = {lower: want[:3], upper: want[3:6]}
-        joints["tie_rod_inner"] = times(tie, want[6])  # what the rack does
-        for body, forces in hinged.items():
-            first, second = f"{body}_front", f"{body}_rear"
-            line = minus(p[second], p[first])
-            force, moment = (0, 0, 0), (0, 0, 0)
-            for acting, at in forces:
-                force, moment = minus(force, acting), minus(moment, cross(minus(p[at], p[first]), acting))
-            at_second = times(cross(moment, line), Fraction(1, dot(line, line)))
-            along = times(line, Fraction(dot(force, line), dot(line, line)))
-            joints |= {second: at_second, first: minus(minus(force, along), at_second)}
-            exact["hinge_thrust", first] = number(dot(force, line)) / sqrt(number(dot(line, line)))
-        exact |= {("joint_force", name): vector(force) for name, force in joints.items()}
+    exact: dict[Any, Any] = {
+        name: tension(density, way) for (name, way), density in zip(ways.items(), want[6:], strict=True)
+    }
+    joints = {lower: want[:3], upper: want[3:6]}
+    joints["tie_rod_inner"] = times(tie, want[6])  # what the rack does
+    for body, forces in hinged.items():
+        first, second = f"{body}_front", f"{body}_rear"
+        line = minus(p[second], p[first])
+        force, moment = (0, 0, 0), (0, 0, 0)
+        for acting, at in forces:
+            force, moment = minus(force, acting), minus(moment, cross(minus(p[at], p[first]), acting))
+        at_second = times(cross(moment, line), mpf(1) / dot(line, line))
+        along = times(line, mpf(dot(force, line)) / dot(line, line))
+        joints |= {second: at_second, first: minus(minus(force, along), at_second)}
+        exact["hinge_thrust", first] = dot(force, line) / sqrt(mpf(dot(line, line)))
+    exact |= {("joint_force", name): force for name, force in joints.items()}
     mechanism = right_wheel("double_wishbone_pushrod", p)
     solution = assert_forces(who, mechanism, exact, wheel_travel=0.0, rack=0.0)
     assert {*solution.numbers["joint_force"]} == {*joints}
@@ -244,16 +228,15 @@ def test_a_strut_holds_the_knuckle_along_its_axis_by_the_damper_and_across_it_by
     across = [cross(strut, e) for e in ONES[:2]]
     columns += [(*wrench(way, top), 0) for way in across]
     load = [*against_load(plus(p["wheel_centre"], (60, -80, -240))), 0]
-    want = solved([[column[i] for column in columns] + [load[i]] for i in range(7)])
+    want = solved(columns, load)
     side = plus(*(times(way, share) for way, share in zip(across, want[5:], strict=True)))
     mechanism = right_wheel("macpherson", p) | {"side": "left"}
-    with workdps(DIGITS):
-        exact = {
-            ("joint_force", "lower_ball_joint"): vector(want[:3]),
-            "tie_rod": tension(want[3], tie),
-            "damper": tension(want[4], strut),
-            ("joint_force", "strut_top"): vector(side),
-        }
+    exact = {
+        ("joint_force", "lower_ball_joint"): want[:3],
+        "tie_rod": tension(want[3], tie),
+        "damper": tension(want[4], strut),
+        ("joint_force", "strut_top"): side,
+    }
     assert_forces(who, mechanism, exact, wheel_travel=0.0, rack=0.0)
 
 

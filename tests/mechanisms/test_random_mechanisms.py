@@ -40,7 +40,7 @@ def test_a_mechanism_at_random_moves_as_the_reference_says_by_every_formulation(
     try:
         effects = Scene.from_mapping(content).mechanism.effects
         scene = Scene.from_mapping(content | {"effects": effects})
-        first = formulation("pointcoord").solve(scene)
+        first = formulation(FORMULATIONS[1]).solve(scene)
         reference = reference_solution(scene)
     except (SceneError, NoReferenceError):
         assume(False)
@@ -49,8 +49,8 @@ def test_a_mechanism_at_random_moves_as_the_reference_says_by_every_formulation(
         assume(not why_refused(error))
         raise
     told = told_by(reference, scene)
-    for name in FORMULATIONS:
-        solution = first if name == "pointcoord" else formulation(name).solve(scene)
+    for name in FORMULATIONS[1:]:
+        solution = first if name == FORMULATIONS[1] else formulation(name).solve(scene)
         outcome = compare_solutions(scene, solution, reference, "random", told)
         # A tree of joints gives angles, lengths and rates of points, and not all that is made of these.
         assert name == "relative" or all(row.verdict != "not given" for row in outcome.rows)

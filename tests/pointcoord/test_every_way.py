@@ -92,7 +92,8 @@ def as_poses(scene: Scene, copies: int, tolerance: float) -> tuple[Numbers, Numb
 
 
 WAYS: dict[str, Way] = {
-    **{method: partial(by_method, method=method) for method in METHODS if method != "auto"},
+    # Series are tried with every mechanism in tests/mechanisms/test_formulations.py.
+    **{method: partial(by_method, method=method) for method in METHODS if method not in ("auto", "series")},
     "among close instants": among_close_instants,
     "from a pickle, in another order": from_a_pickle,
     "reporting one point": reporting_one_point,
@@ -111,7 +112,7 @@ OTHERS = [name for name in one_of_each() if not name.startswith("axle-")]
 CASES = [(name, way) for i, name in enumerate(OTHERS) for k, way in enumerate(WAYS) if (i + k) % 3 == 0]
 CASES += [(COSTLY[k % 3 or 2 * (way in MAPPED)], way) for k, way in enumerate(WAYS)]
 # A chassis that heaves askew.
-CASES += [(f"bounce-on-a-heaving-chassis{ASKEW}", "series")]
+CASES += [(f"bounce-on-a-heaving-chassis{ASKEW}", "newton")]
 
 
 def given(effect: str, way: str) -> bool:
@@ -131,7 +132,7 @@ def test_every_number_is_within_its_proven_bound_of_the_reference(name: str, way
     assert outside(told, truth, bounds, exact(name).accuracy.claims) == []
 
 
-@pytest.mark.parametrize("numbers", [*(range(k, k + 5) for k in range(0, 20, 5)), (238, 2490)], ids=str)
+@pytest.mark.parametrize("numbers", [range(5), range(5, 10), (238, 2490)], ids=str)
 def test_every_number_of_a_car_at_random_is_within_its_proven_bound(numbers: Sequence[int]) -> None:
     """As far as both sides answer: turned anyhow, moved and scaled. The last ones are rings drawn askew, of
     which the reference leaves out other rows, which differ in the last digits; of one that has moved it

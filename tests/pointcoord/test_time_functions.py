@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import make_interp_spline
 
 from pointcoord.numerics.infinitesimal import slope_of, with_slope
 from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction, cosine_and_sine
@@ -45,26 +44,6 @@ def test_sine_series_sums_to_the_sine(
     remainder = abs(amplitude) * abs(frequency * h) ** (order + 1) / factorial(order + 1)
     rounding = EPS * (abs(offset) + abs(amplitude)) * (18 + (order + 8) * np.exp(abs(frequency * h)))
     assert abs(np.polynomial.polynomial.polyval(h, series) - exact) <= remainder + rounding
-
-
-@plain
-@given(seed=st.integers(0, 2**32 - 1), count=st.integers(4, 9))
-def test_table_is_the_not_a_knot_spline(seed: int, count: int) -> None:
-    rng = np.random.default_rng(seed)
-    times = np.cumsum(rng.uniform(0.5, 1.5, size=count))
-    values = rng.uniform(-1.0, 1.0, size=count)
-    table = Table(tuple(times.tolist()), tuple(values.tolist()))
-    other = make_interp_spline(times, values, k=3)  # B-splines; not-a-knot is its default
-    # Strictly inside the pieces, where the third derivative is single-valued too.
-    instants = np.concatenate([times[:-1] + share * np.diff(times) for share in (0.1, 0.5, 0.9)])
-    series = table.series(instants, ORDER)
-    # Two solves of a system of condition number below 100, steps above 0.5: the k-th derivative is
-    # below 50 * 2^k times the values.
-    for k in range(4):
-        tolerance = 100 * 2**k * 50 * EPS * 20
-        assert np.abs(series[:, k] - other(instants, nu=k) / factorial(k)).max() <= tolerance
-    assert not series[:, 4:].any()
-    assert np.abs(table.series(times, 0)[:, 0] - values).max() <= 100 * 50 * EPS
 
 
 @pytest.mark.parametrize("phase", [1e9, -1e16, 1e300])

@@ -101,9 +101,9 @@ def with_everything(content: Content, name: str) -> Content:
 
 
 @cache
-def exact(name: str) -> Solution:
-    """By the reference, with every effect, which the scene as it is may ask for fewer of."""
-    return reference_solution(asked(name))
+def exact(name: str, every: bool = True) -> Solution:
+    """By the reference, with every effect that the car has or with those of the scene."""
+    return reference_solution(asked(name, every))
 
 
 def every_effect(name: str) -> Scene:

@@ -1,6 +1,7 @@
 """What is compared, written and printed is named in pointcoord's registries and nowhere else."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -32,6 +33,11 @@ def named(text: str) -> set[str]:
     tree = ast.parse(text)
     texts = {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)}
     return texts | {n.attr for n in ast.walk(tree) if isinstance(n, ast.Attribute)}
+
+
+@cache
+def named_in(path: Path) -> set[str]:
+    return named(path.read_text(encoding="utf-8"))
 
 
 def files() -> list[Path]:
@@ -70,7 +76,7 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
     }
     assert NAMES[kind]
     for path in files():
-        found = named(path.read_text(encoding="utf-8")) & NAMES[kind]
+        found = named_in(path) & NAMES[kind]
         assert found <= allowed.get(path.name, set()), path
 
 

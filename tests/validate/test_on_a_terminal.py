@@ -52,14 +52,14 @@ def on_terminal(
 
 
 def validated(
-    scene: str = "double-wishbone", columns: int = 120, both: bool = False, folder: Path = ROOT, **more: str
+    scene: str = "semi-trailing-arm", columns: int = 120, both: bool = False, folder: Path = ROOT, **more: str
 ) -> str:
     return on_terminal([*PROGRAM, "validate", "-v", scene], columns, both, folder, **more)
 
 
 @pytest.fixture(scope="module")
 def piped() -> str:
-    return run("validate", "-v", "double-wishbone").stdout
+    return run("validate", "-v", "semi-trailing-arm").stdout
 
 
 def test_a_dumb_terminal_shows_what_a_pipe_has(piped: str) -> None:

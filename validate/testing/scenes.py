@@ -49,7 +49,8 @@ def scenes_to_try(
             found[name] = _loaded(name)
     if hard:
         for case in cases.values():
-            found.update(_taken(case, case.answered, near))
+            if suspension in (None, case.subject.car.suspension):
+                found.update(_taken(case, case.answered, near))
     return _of_kind(found, suspension, closure)
 
 
@@ -71,7 +72,7 @@ def impossible_scenes(
             raise ValueError(f"{name!r} is not a case without a pose; there are: {', '.join(cases)}")
     found: dict[str, Scene] = {}
     for name, case in cases.items():
-        if not names or name in names:
+        if (not names or name in names) and suspension in (None, case.subject.car.suspension):
             found.update(_taken(case, case.values, near))
     return _of_kind(found, suspension, closure)
 

@@ -31,26 +31,6 @@ def table(rows: int, middle: float, size: float, turns: float = 3.0, noise: floa
     return {"table": {"times": times.tolist(), "values": values.tolist()}}
 
 
-@pytest.mark.parametrize(("name", "tolerance"), [("steer", 1e-9), ("double-wishbone", 1e-3)])
-def test_positions_and_rates_are_held_to_the_tolerance_of_the_scene(name: str, tolerance: float) -> None:
-    scene = Scene.load(name).model_copy(update={"tolerance": tolerance})
-    motion = simulate(scene, "map")
-    proof = motion.proof(rates=True)
-    assert proof.bound.max() <= tolerance
-    assert proof.carried_bound.max() <= tolerance
-    patches = motion.solved.patches
-    free, (_, half) = patches.domain.free, patches.boxes
-    # S_i of the patches, per unit of each input; the largest of any patch.
-    sizes = (np.abs(patches.coefficients[:, 1 : 1 + len(free)]).max(axis=-1) / half).max(axis=0)
-    laws = np.array([scene.functions[name].series(motion.times, 2) * (1.0, 1.0, 2.0) for name in free])
-    _, speed, later = (sizes[:, None, None] * np.abs(laws)).sum(axis=0).T
-    # Rounding is bounded apart: some hundred units of it, relative to the same.
-    part = tolerance / motion.unit + 1e-13
-    for quantity, size in (("velocity", speed), ("acceleration", later + speed**2 / motion.unit)):
-        for point, errors in proof.proven[quantity].items():
-            assert (errors.max(axis=-1) <= part * size).all(), (quantity, point)
-
-
 def test_an_input_that_leaves_its_reach_and_comes_back_between_instants_is_refused(make_scene: Make) -> None:
     arm = [1.6, 0.05]
     far = standing(make_scene(arm)).reach["rack"][1].value

@@ -4,8 +4,10 @@ Where the numbers are small integers every operation of the map is exact, so equ
 """
 
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -19,16 +21,20 @@ seeds = st.integers(0, 2**32 - 1)
 plain = settings(deadline=None)
 
 
-def random_map(rng: np.random.Generator, most_terms: int = 5) -> QuadraticMap:
-    rows = []
-    for _ in range(UNKNOWNS):
-        ends = rng.integers(0, SIZE, size=(rng.integers(1, most_terms + 1), 4)).tolist()
+def random_map(rng: np.random.Generator, unknowns: int = UNKNOWNS) -> QuadraticMap:
+    """Rows of one to five products of differences, some products in more than one row."""
+    size = unknowns + SIZE - UNKNOWNS
+    ends, rows = rng.integers(0, size, (unknowns, 4)).tolist(), []
+    for _ in range(unknowns):
+        chosen = rng.integers(0, unknowns, rng.integers(1, 6))
+        coefficients = rng.choice([-2.0, -1.0, 0.5, 1.0, 4.0], len(chosen)).tolist()
         rows.append(
             tuple(
-                Product(float(rng.choice([-2.0, -1.0, 0.5, 1.0, 4.0])), (a, b), (c, d)) for a, b, c, d in ends
+                Product(c, (ends[i][0], ends[i][1]), (ends[i][2], ends[i][3]))
+                for c, i in zip(coefficients, chosen, strict=True)
             )
         )
-    return quadratic_map(rows, UNKNOWNS, SIZE)
+    return quadratic_map(rows, unknowns, size)
 
 
 def integers(rng: np.random.Generator, *shape: int) -> Array:
@@ -84,3 +90,25 @@ def test_the_jacobian_moves_by_its_uncertainty_at_most_and_at_a_corner(seed: int
     corner[:, [b, d]] -= data[:, [b, d]]
     change = np.abs(one.jacobian(corner) - one.jacobian(y))
     assert np.array_equal(change, one.jacobian_uncertainty(data))
+
+
+@pytest.mark.parametrize("unknowns", [6, 104])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_lipschitz_constant_is_the_sum_over_all_pairs_of_unknowns(unknowns: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    system = random_map(rng, unknowns)
+    inverse = rng.uniform(-1.0, 1.0, (2, unknowns, unknowns))
+    weights = rng.uniform(0.1, 2.0, (3, 2, unknowns))
+    # By the definition: the Jacobian's derivative by each unknown, from the polar form of unit vectors.
+    units = np.eye(unknowns, system.size)
+    curvature = np.array([2.0 * system.polar(units, unit) for unit in units])  # (k, j, rows)
+    found = system.lipschitz(inverse, weights)
+    for one, member in product(range(3), range(2)):
+        g = weights[one, member]
+        bent = np.abs(curvature @ inverse[member].T)  # (k, j, i)
+        wanted = (np.einsum("kji,j,k->i", bent, g, g) / g).max()
+        assert found[one, member] == pytest.approx(wanted, rel=1e-12)
+        assert system.lipschitz(inverse[member], g) == pytest.approx(wanted, rel=1e-12)
+    plain = np.abs(np.einsum("kjr,mir->mkji", curvature, inverse)).sum(axis=(1, 2)).max(axis=-1)
+    assert system.lipschitz(inverse) == pytest.approx(plain, rel=1e-12)
+    assert system.lipschitz(inverse[0]) == pytest.approx(plain[0], rel=1e-12)

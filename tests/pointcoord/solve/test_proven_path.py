@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from parabola import AT_ONE, PARABOLA
 from sample_cars import CARS
 
 from pointcoord import Scene
@@ -75,18 +74,6 @@ def test_what_is_proven_of_a_step_holds_all_along_it(
     z = (np.abs(np.eye(n) - inverse @ system.jacobian(places)) @ g / g).max(axis=-1)
     assert (z + np.sqrt(2.0 * omega * eta) <= ROOM + 1e-6).all()
     assert float(proof.alone[0]) <= (1.0 - z.max()) / omega * (1.0 + 1e-6)
-
-
-@pytest.mark.parametrize("w", [-1.0, -1e-3, 0.0, 1e-9])
-def test_no_step_is_proven_up_to_a_fold(w: float) -> None:
-    # The radius of convergence is the way to the fold, 1 / (1 - w) of the path.
-    factors = factorise(PARABOLA.jacobian(AT_ONE[None]))
-    known = np.zeros((1, 9, 3))
-    known[0, 0], known[0, 1, 0] = AT_ONE[1:], w - 1.0
-    series = expand(PARABOLA, factors, AT_ONE[None], known)
-    lengths = 0.98 ** np.arange(200.0)
-    length = float(prove(PARABOLA, factors.preconditioner, series, None, lengths).length[0])
-    assert 0.3 / (1.0 - w) < length < 1.0 / (1.0 - w)
 
 
 @by_mechanism

@@ -17,6 +17,7 @@ searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 2)  # an end ta
 NEAR = 1e-11
 
 
+@settings(max_examples=EXAMPLES // 4)
 @given(cars_of(DRAWN))
 def test_a_drawing_stands_where_its_arm_is_drawn(car: Car) -> None:
     assert drawn_inputs(car)["arm_angle"] == pytest.approx(drawn_angle(car), rel=1e-12, abs=1e-10)

@@ -211,10 +211,10 @@ STANDS_IN = f"absolute is not available, {{0}} is used instead: {NEEDS}"
 @pytest.mark.parametrize(
     ("hidden", "words", "status", "said"),
     [
-        ("pinocchio", "validate steer five-link", 0, [STANDS_IN.format("mujoco"), "2 of 2 scenes agree"]),
+        ("pinocchio", "validate n-four-bar", 0, [STANDS_IN.format("mujoco"), "1 of 1 scene agrees"]),
         (
             "pinocchio mujoco exudyn",
-            "validate steer five-link",
+            "validate slider-crank n-four-bar",
             0,
             [
                 STANDS_IN.format("reference"),
@@ -225,7 +225,7 @@ STANDS_IN = f"absolute is not available, {{0}} is used instead: {NEEDS}"
         # Hard cases are tried by what is there.
         (
             "pinocchio",
-            "hard arm-highest-held",
+            "hard arm-hardly-moves",
             0,
             [f"absolute is left out: {NEEDS}", "relative is left out: ", "All as expected"],
         ),

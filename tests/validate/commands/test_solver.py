@@ -6,9 +6,8 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-import plain_solvers
 import pytest
-from program import ENVIRONMENT, PROGRAM, ROOT, complaints
+from program import ROOT, complaints
 
 from pointcoord import Scene
 from validate.ci.summary import markdown
@@ -104,19 +103,17 @@ def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_sum
     assert line.endswith(f"possible explanation: {markdown(why)}")
 
 
-def test_json_is_alone_on_standard_output(solvers: Path) -> None:
-    words = ["validate", "--solver", "own.prints:solve", "off-axis-strut.toml", "--json", "-"]
-    # The tests' own folder, not ROOT's: ROOT is where the packages are installed.
-    env = {**ENVIRONMENT, "PYTHONPATH": f"{ROOT}:{Path(plain_solvers.__file__).parent}"}
-    done = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, env=env, check=True)
-    (scene,) = json.loads(done.stdout)["scenes"]
+def test_json_is_alone_on_standard_output(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert run("prints", "off-axis-strut.toml", "--json", "-") == 0
+    out, err = capfd.readouterr()
+    (scene,) = json.loads(out)["scenes"]
     assert scene["verdict"] == "agree"
     # It gives no dimensions of the wheel.
     given = [row for row in scene["comparisons"][0]["rows"] if row["quantity"] != "dimension"]
     assert {row["verdict"] for row in given} == {"agrees"}
     # It is imported once.
-    assert done.stderr.splitlines().count("hello") == 1
-    assert "hi" in done.stderr.split()
+    assert err.splitlines().count("hello") == 1
+    assert "hi" in err.split()
 
 
 @pytest.mark.parametrize(

@@ -94,7 +94,7 @@ def test_offsets_and_a_table_of_designs_mean_the_same(tmp_path: Path) -> None:
 def test_a_table_is_written_in_the_memory_of_a_block(ending: str, tmp_path: Path) -> None:
     found = sweep(scene_with(SCENE, samples=101), offsets={"lower_ball_joint.z": np.linspace(-1.0, 1.0, 8)})
     write_table(str(tmp_path / f"few{ending}"), rows_of_sweep([found]))  # what is made once stays
-    copies = 16
+    copies = 8
 
     def peak(count: int) -> int:
         tracemalloc.start()

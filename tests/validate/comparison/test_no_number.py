@@ -80,6 +80,7 @@ def straight_ahead() -> Scene:
     content = Scene.load("axle-steer").model_dump(exclude_none=True)
     content["mechanism"]["rack_per_turn"] = 50.0
     content["inputs"]["steering_wheel"] = {"sweep": [-6.0, 6.0]}
+    content["time"]["samples"] = 9
     del content["inputs"]["rack"]
     return Scene.from_mapping(content, "straight ahead")
 

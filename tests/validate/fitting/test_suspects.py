@@ -49,7 +49,7 @@ def found_in(name: str, text: str, among: Sequence[str] = ()) -> Suspects:
         ("double-wishbone", {"upper_ball_joint.y": 5.0}, ()),
         ("off-axis-strut", {"lower_ball_joint.z": -4.0}, SOME[:3]),
         ("double-wishbone", {"upper_ball_joint.y": 3.0, "tie_rod_inner.z": -2.0}, SOME[1:]),
-        ("off-axis-strut", {"tie_rod_inner.z": 3.0, "strut_top.y": -4.0}, ()),
+        ("off-axis-strut", {"tie_rod_inner.z": 3.0, "strut_top.y": -4.0}, ("strut_top", *SOME[:2])),
     ],
 )
 def test_planted_faults_of_one_and_of_two_coordinates_are_found(

@@ -30,7 +30,7 @@ MODELS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 SHARES = st.floats(-1.0, 1.0)
 # A car is solved by four models, so the short profile searches briefly.
 EXAMPLES = settings.default.max_examples if settings.default else 100
-searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 20)
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 12)
 
 
 def scene_at(car: Car, angle: float, rack: float) -> Scene:

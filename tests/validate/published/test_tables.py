@@ -109,8 +109,6 @@ def test_a_wrong_digit_ends_the_program_with_status_1_and_is_named_in_words_json
 ) -> None:
     json_file, junit = tmp_path / "results.json", tmp_path / "junit.xml"
     words = ["validate", "--tables", "--json", str(json_file), "--junit", str(junit)]
-    assert main(words) == 0
-    assert f"{len(HELD)} of {len(HELD)} printed columns agree" in capsys.readouterr().out
     planted(copy / "lotus-bump-lengths.csv", "damper travel", 0.01)
     assert main(words) == 1
     said = capsys.readouterr().out
