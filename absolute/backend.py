@@ -1,4 +1,4 @@
-"""Pinocchio for all modules of the package, or one line that says how to install it."""
+"""Imports Pinocchio for the package; if it is missing, the error says how to install it."""
 
 try:
     import pinocchio as pin

@@ -4,13 +4,11 @@
     two points of two bodies   a hinge               slide   a point on a line of a body
 
 Joints consist of two kinds of rows: two points meet along some directions, and directions of two bodies stay
-at right angles. A free point, of no body, becomes a body that does not turn. A wheel's contact point is the
-lowest point of a disc that turns about the wheel's axis and has a level radius; its height is then that of a
-body's point.
+at right angles. A point of no body becomes a body that does not turn. A wheel's contact point is the lowest
+point of a disc, a body that turns about the wheel's axis so that one of its radii stays level.
 
 The chassis stands still, unless inputs turn it: then it is a body on a driven hinge. With several such
-inputs, each hinge carries a body on which the next one turns. The frame of all this moves with the car's
-displacement.
+inputs, each hinge carries a body on which the next one turns. Everything moves with the car's displacement.
 """
 
 import math
@@ -20,25 +18,20 @@ from typing import Any
 
 import numpy as np
 
+from absolute.description import car_of, directions_of, is_number, one_of, point_of, vector_of
 from absolute.errors import DescriptionError
-from absolute.model import CAR, CHASSIS, Corner, Drawing, Input, Load, Model, Row
+from absolute.model import CHASSIS, Corner, Drawing, Input, Load, Model, Row
 from absolute.vectors import EPS, Array, cross
 
-# Within these limits, products of three vectors between points, mm^3, and squares of lengths are normal.
-LARGEST_COORDINATE, SMALLEST_SIZE = 1e100, 1e-100
-# In units of size: coordinates of two points nearer than this agree in half of their digits, so that rounding
-# in the given coordinates turns the line between them by half of its digits.
+# Squares of the lengths of a larger drawing, mm, are normal.
+SMALLEST_SIZE = 1e-100
+# In units of size: coordinates of two nearer points agree in half of their digits, so that the line between
+# them has only the other half.
 SHORTEST_AXIS = math.sqrt(EPS)
-# Products of directions that were rotated in doubles have an error of a few roundings.
-ROUNDED = 16.0 * EPS
-# Largest error of the right angle between `up` and `right`: 1e-6 rad lets only rounding pass.
-LARGEST_SKEW = 1e-6
 SIDES = ("left", "right")
-# Direction from the middle of the car to the axle, rearward.
-CAR_AXLES = {"front": -1.0, "rear": 1.0}
 ROLES = ("wheel_axis", "steering_axis", "damper")
 INPUTS = ("angle", "travel", "steers", "height", "contact", "distance", "turns", "moves")
-# The body on which a turning car turns; no other body has an empty name.
+# The body on which the car turns; no other body has an empty name.
 GROUND = ""
 NOTHING, AXES = np.zeros(3), np.eye(3)
 # Two bodies, and a point in each: first body, its point, second body, its point.
@@ -52,36 +45,36 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
         mechanism: plain data, mm and rad:
             bodies: name -> names of its points; `chassis` is one of them. rods: name -> two points.
             slides: name -> points, body, through, along, turns.
-            inputs: the driven ones, name -> one of angle, travel, steers, height, contact, distance, or of
-                turns and moves, which turn and displace the whole car.
+            inputs: name -> one of angle, travel, steers, height, contact, distance; or of turns and moves,
+                which turn and displace the whole car.
             roles: knuckle, a body; wheel_axis, steering_axis and damper, two points each, if they exist.
             points: name -> (x, y, z). up, right: directions, of any length. side: "left" or "right".
             sides: for a mechanism with parts, part -> side; names of its roles and inputs begin with the part
                 and a dot.
-            wheel_radius: radius of the wheel, mm, or None where nothing needs it. rack_per_turn: travel of
-                the rack per turn of the steering wheel, mm, or None where nothing needs it.
-            car: numbers of the car, as far as given: axle, "front" or "rear"; wheelbase, mm;
-                centre_of_gravity_height above the ground as drawn, mm; brake_share and drive_share, the parts
-                of the braking and of the driving force that act at this axle, 0 to 1; spring_rate, N/mm, and
-                spring_free_length, mm, of a spring between the ends of the damper.
-            loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
+            wheel_radius, rack_per_turn: radius of the wheel, and travel of the rack per turn of the steering
+                wheel, mm, or None.
+            car: some numbers of the car: axle, "front" or "rear"; wheelbase, mm; centre_of_gravity_height
+                above the ground as drawn, mm; brake_share and drive_share, the parts of the braking and of
+                the driving force that act at this axle, 0 to 1; spring_rate, N/mm, and spring_free_length,
+                mm, of a spring between the ends of the damper.
+            loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel.
     Raises:
-        DescriptionError: an unknown name, points that do not define a line, directions not at right angles,
-            too few rows.
+        DescriptionError: an unknown name, points that do not define a line, directions that are not
+            perpendicular, too few rows.
     """
     return _Compiler(mechanism).model()
 
 
 class _Compiler:
-    """Holds a mechanism while its rows are made."""
+    """A mechanism while its rows are made."""
 
     def __init__(self, mechanism: Mapping[str, Any]) -> None:
         self.of = mechanism
-        self.points = {name: _point_of(name, value) for name, value in mechanism["points"].items()}
+        self.points = {name: point_of(name, value) for name, value in mechanism["points"].items()}
         bodies = mechanism["bodies"]
-        _one_of("the ground", bodies, CHASSIS)
+        one_of("the ground", bodies, CHASSIS)
         for body, names in bodies.items():
-            _one_of(f"a point of body {body!r}", self.points, *names)
+            one_of(f"a point of body {body!r}", self.points, *names)
             if not names:
                 raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
         self.named = {body: tuple(bodies[body]) for body in sorted(bodies, key=lambda body: body != CHASSIS)}
@@ -93,10 +86,10 @@ class _Compiler:
         self.inputs: list[Input] = []
         self.moves: dict[str, Array] = {}
         self.reported: dict[tuple[str, ...], tuple[str, str]] = {}
-        self.directions = self._directions()
+        self.directions = directions_of(mechanism)
         self.middle, self.size = self._extent()
         self.corners = self._corners()
-        # Includes free points and auxiliary bodies, which are added as rows need them.
+        # With free points and auxiliary bodies, which are added as rows need them.
         self.bodies: dict[str, tuple[str, ...]] = {}
         self.anchors: dict[str, Array] = {}
         self.unturned: set[str] = set()
@@ -117,7 +110,7 @@ class _Compiler:
             self._rod(name, tuple(ends))
         for name, given in self.driven.items():
             kind = next((kind for kind in INPUTS if kind in given), "")
-            _one_of(f"the kind of input {name!r}", INPUTS, kind or str(list(given)))
+            one_of(f"the kind of input {name!r}", INPUTS, kind or str(list(given)))
             getattr(self, f"_{kind}")(name, given)
         self._check()
         holders: dict[str, str] = {}
@@ -158,42 +151,30 @@ class _Compiler:
 
     # Reading the description
 
-    def _directions(self) -> dict[str, Array]:
-        up, right = (_unit_of(name, _vector_of(name, name, self.of[name])) for name in ("up", "right"))
-        skew = float(up @ right)
-        if abs(skew) > LARGEST_SKEW:
-            raise DescriptionError(
-                f"up and right are {np.degrees(np.arccos(skew)):.6g} degrees apart; a right angle is needed",
-                "right",
-                skew,
-            )
-        directions = {"up": up, "right": right, "forward": np.cross(up, right)}
-        return directions | {"down": -up, "left": -right, "rearward": np.cross(right, up)}
-
     def _direction(self, name: str, given: Mapping[str, Any]) -> Array:
         along = given.get("along", "up")
-        _one_of(f"`along` of input {name!r}", self.directions, along)
+        one_of(f"`along` of input {name!r}", self.directions, along)
         return self.directions[along]
 
     def _corners(self) -> dict[str, Corner]:
         """Part -> its wheel, whose names begin with the part; "" -> the only wheel."""
         radius = self.of.get("wheel_radius")
-        if radius is not None and not (_is_number(radius) and radius > 0.0):
+        if radius is not None and not (is_number(radius) and radius > 0.0):
             raise DescriptionError(
                 f"wheel_radius is {radius!r}; a length above 0 is needed, in mm", "wheel_radius", radius
             )
-        side, car, roles = self.of.get("side"), _car_of(self.of.get("car")), self.of.get("roles", {})
+        side, car, roles = self.of.get("side"), car_of(self.of.get("car")), self.of.get("roles", {})
         sides = self.of.get("sides") or {"": "left" if side is None else side}
         corners = {}
         for part, side in sides.items():
-            _one_of(f"side of {part!r}" if part else "side", SIDES, side)
+            one_of(f"side of {part!r}" if part else "side", SIDES, side)
             prefix = f"{part}." if part else ""
             own = {role: tuple(roles[prefix + role]) for role in ROLES if prefix + role in roles}
             for role, ends in own.items():
-                _one_of(f"an end of the {prefix}{role}", self.points, *ends)
+                one_of(f"an end of the {prefix}{role}", self.points, *ends)
             knuckle = roles.get(f"{prefix}knuckle", "")
             if knuckle:
-                _one_of(f"the {prefix}knuckle", self.named, knuckle)
+                one_of(f"the {prefix}knuckle", self.named, knuckle)
             elif "wheel_axis" in own:
                 knuckle = next((b for b, names in self.named.items() if own["wheel_axis"][1] in names), "")
             axes = np.array([self.directions[name] for name in (side, "rearward", "up")])
@@ -203,13 +184,13 @@ class _Compiler:
     def _loads(self) -> dict[str, Load]:
         loads = {}
         for part, given in self.of.get("loads", {}).items():
-            _one_of("the part of a load", self.corners, part)
+            one_of("the part of a load", self.corners, part)
             vectors = {"force": given.get("force"), "moment": given.get("moment", NOTHING)}
-            loads[part] = Load(*(_vector_of(f"{n} of load {part!r}", part, of) for n, of in vectors.items()))
+            loads[part] = Load(*(vector_of(f"{n} of load {part!r}", part, of) for n, of in vectors.items()))
         return loads
 
     def _dampers(self) -> dict[str, Row]:
-        """Rows of the dampers' lengths, where loads exist for the dampers to carry."""
+        """Rows of the dampers' lengths, if there are loads."""
         rows = {}
         for part, corner in self.corners.items() if self.of.get("loads") else ():
             if "damper" in corner.roles:
@@ -226,7 +207,7 @@ class _Compiler:
         return next((body for body in moving if body in knuckles), moving[0])
 
     def _are_shared(self, points: Iterable[str]) -> bool:
-        """Whether two bodies share these points and no other body has them, so their force is determined."""
+        """Whether exactly two bodies have these points, so that their force is determined."""
         return all(point not in self.guided and len(self._holders(point)) == 2 for point in points)
 
     def _extent(self) -> tuple[Array, float]:
@@ -248,8 +229,8 @@ class _Compiler:
     # Bodies and lines
 
     def _add(self, body: str, points: tuple[str, ...]) -> str:
-        """Add a body. Its origin is the point with the shortest lines to its others, since rounding would
-        turn these lines; the middle of the drawing for the chassis and for what the chassis turns on.
+        """Add a body. Its origin is the point with the shortest lines to the others, which rounding would
+        turn most; the middle of the drawing for the chassis and the bodies on which it turns.
         """
         places = np.array([self.points[point] for point in points]).reshape(-1, 3)
         apart = np.linalg.norm(places[:, None] - places, axis=-1)
@@ -263,7 +244,7 @@ class _Compiler:
         return [body for body, names in self.bodies.items() if point in names]
 
     def _held(self, point: str) -> list[str]:
-        """Bodies with a point; a free point gets a body that does not turn."""
+        """The bodies with a point; a free point becomes a body that does not turn."""
         if not self._holders(point):
             self.unturned.add(self._add(f"free point {point}", (point,)))
         return self._holders(point)
@@ -303,7 +284,7 @@ class _Compiler:
         self, owner: str, kind: str, ends: Ends, along: Array = NOTHING, beside: Array = NOTHING
     ) -> Row:
         """A row of places in two bodies; `beside` leads from the points to the places, mm. It is added to the
-        arms, since a sum of coordinates would be rounded to their digits."""
+        arms, because coordinates have fewer digits."""
         first, start, second, end = ends
         one, other = (
             (self.points[point] - self.anchors[body]) / self.size + beside / self.size
@@ -316,13 +297,14 @@ class _Compiler:
         self.joints += [self._between(owner, "offset", ends, way) for way in along]
 
     def _across(self, owner: str, first: str, second: str, one: Array, other: Array) -> None:
-        """Directions of two bodies stay at right angles. The reversed joint satisfies the row too, but no
-        path in small steps leads to it."""
+        """Directions of two bodies stay perpendicular. The reversed joint satisfies the row too, but small
+        steps do not lead to it.
+        """
         self.joints.append(self._row(owner, "angle", first, second, one, NOTHING, other))
 
     def _hinge(self, owner: str, first: str, second: str, point: str, axis: Array) -> None:
         x, y, z = frame = frame_about(axis)
-        # Along the hinge's own axes, so that a single row is redundant where hinges are parallel.
+        # Along the hinge's axes, so that a single row is redundant if hinges are parallel.
         self._meet(owner, (first, point, second, point), frame)
         self._across(owner, first, second, y, z)
         self._across(owner, first, second, x, z)
@@ -379,26 +361,26 @@ class _Compiler:
     def _line_of(self, slide: str) -> tuple[str, Array]:
         """A point on the line of a slide, and the line's direction."""
         through, along = self.slides[slide]["through"], self.slides[slide]["along"]
-        _one_of(f"the point `through` of slide {slide!r}", self.points, through)
-        _one_of(f"`along` of slide {slide!r}", (*self.directions, *self.points), along)
+        one_of(f"the point `through` of slide {slide!r}", self.points, through)
+        one_of(f"`along` of slide {slide!r}", (*self.directions, *self.points), along)
         if along in self.directions:
             return through, self.directions[along]
         return through, self._line(f"slide {slide!r}", through, along)[0]
 
     def _slide(self, name: str) -> None:
-        """Put points on the line; with `turns` false, a body with two of them does not turn about it."""
+        """Put points on a line; with `turns` false, a body with two of them does not turn about it."""
         slide, what = self.slides[name], f"slide {name!r}"
         body, points = slide["body"], tuple(slide["points"])
-        _one_of(f"the body of {what}", self.named, body)
+        one_of(f"the body of {what}", self.named, body)
         through, along = self._line_of(name)
-        _one_of(f"a point of {what}", self.points, *points)
+        one_of(f"a point of {what}", self.points, *points)
         frame = frame_about(along)
         for point in points:
             label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
             owners = self._holders(point)
             held = self._other_than(body, point, what) if owners else self._held(point)[0]
             self._meet(label, (body, through, held, point), frame[:2])
-            # A point of no body carries force itself if a rod at an angle to the slide pulls it.
+            # The force on a point of no body is reported if a rod at an angle to the slide pulls it.
             rods = [ends for ends in self.rods.values() if point in ends]
             felt = len(owners) == 1 or (not owners and any(not {*ends} <= {*points} for ends in rods))
             if felt and slide["turns"] and self.guided.count(point) == 1:
@@ -422,7 +404,7 @@ class _Compiler:
     def _rod(self, name: str, ends: tuple[str, ...]) -> None:
         if len(ends) != 2:
             raise DescriptionError(f"rod {name!r} has {len(ends)} points; two are needed", name, ends)
-        _one_of(f"an end of rod {name!r}", self.points, *ends)
+        one_of(f"an end of rod {name!r}", self.points, *ends)
         for end in ends:
             self._held(end)
         self.joints.append(self._distance_row(f"rod {name}", *ends)[0])
@@ -430,24 +412,24 @@ class _Compiler:
     # Inputs
 
     def _over(self, name: str, ends: Ends, way: Array, beside: Array = NOTHING, **more: Any) -> None:
-        """An input that is the offset of a place in a body from one in another, along a direction."""
+        """An input that is the offset of places in two bodies along a direction."""
         drawn, per_unit = float(way @ (self.points[ends[3]] - self.points[ends[1]])), more.get("steers", 1.0)
         row = self._between(name, "offset", ends, way, beside)
         self.inputs.append(Input(row, name, per_unit / self.size, drawn / per_unit + 0.0, **more))
 
     def _turn(self, name: str, first: str, second: str, axis: Array, **more: Any) -> None:
-        """An input that is the rotation of a body against another, from the drawing."""
+        """An input that is the rotation of one body against another, from the drawing."""
         x, y, _ = frame_about(axis)
         row = self._row(name, "turn", first, second, x, NOTHING, -y)
         self.inputs.append(Input(row, name, 1.0, 0.0, **more))
 
     def _angle(self, name: str, given: Mapping[str, Any]) -> None:
         body, start = given["angle"], given["from"]
-        _one_of(f"the body of input {name!r}", self.named, body)
-        _one_of(f"`from` of input {name!r}", (*self.directions, "drawing"), start)
+        one_of(f"the body of input {name!r}", self.named, body)
+        one_of(f"`from` of input {name!r}", (*self.directions, "drawing"), start)
         if start == "drawing":
             on = given.get("on", CHASSIS)
-            _one_of(f"`on` of input {name!r}", self.named, on)
+            one_of(f"`on` of input {name!r}", self.named, on)
             shared = [point for point in self.named[body] if point in self.named[on]]
             if body == on or len(shared) != 2:
                 raise DescriptionError(
@@ -459,7 +441,7 @@ class _Compiler:
             self._turn(name, on, body, self._line(f"input {name!r}", *shared)[0])
             return
         of, about = given["of"], given["about"]
-        _one_of(f"a point of input {name!r}", self.named[body], of, about)
+        one_of(f"a point of input {name!r}", self.named[body], of, about)
         along, length = self._line(f"input {name!r}", about, of)
         way, factor = self.directions[start], length / self.size
         drawn = math.acos(min(max(float(way @ (self.points[of] - self.points[about])) / length, -1.0), 1.0))
@@ -471,7 +453,7 @@ class _Compiler:
 
     def _steers(self, name: str, given: Mapping[str, Any]) -> None:
         per_turn = self.of.get("rack_per_turn")
-        if not _is_number(per_turn) or not per_turn:
+        if not is_number(per_turn) or not per_turn:
             raise DescriptionError(
                 f"input {name!r} needs rack_per_turn, not {per_turn!r}; give the travel of the rack for a "
                 "turn of the steering wheel, in mm",
@@ -482,7 +464,7 @@ class _Compiler:
 
     def _slides(self, name: str, slides: Iterable[str], per_unit: float) -> None:
         """An input that drives slides, by `per_unit` mm per unit of its value."""
-        _one_of(f"a slide of input {name!r}", self.slides, *slides)
+        one_of(f"a slide of input {name!r}", self.slides, *slides)
         for slide in slides:
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second, (through, way) = self._other_than(body, point, f"slide {slide!r}"), self._line_of(slide)
@@ -490,13 +472,13 @@ class _Compiler:
 
     def _height(self, name: str, given: Mapping[str, Any]) -> None:
         point = given["height"]
-        _one_of(f"the point of input {name!r}", self.points, point)
+        one_of(f"the point of input {name!r}", self.points, point)
         body = self._other_than(CHASSIS, point, f"input {name!r}")
         self._over(name, (CHASSIS, point, body, point), self._direction(name, given))
 
     def _contact(self, name: str, given: Mapping[str, Any]) -> None:
         inner, centre = given["contact"]
-        _one_of(f"a point of input {name!r}", self.points, inner, centre)
+        one_of(f"a point of input {name!r}", self.points, inner, centre)
         carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
         radius = self.of.get("wheel_radius")
         if carrier is None or radius is None:
@@ -512,7 +494,7 @@ class _Compiler:
             )
         level = level / np.linalg.norm(level)
         over = given.get("over", CHASSIS)
-        _one_of(f"`over` of input {name!r}", (CHASSIS, "ground"), over)
+        one_of(f"`over` of input {name!r}", (CHASSIS, "ground"), over)
         on_ground = over == "ground"
         base = next(iter(self.bodies)) if on_ground else CHASSIS
         disc = self._add(f"disc of {name}", (inner, centre))
@@ -522,12 +504,12 @@ class _Compiler:
         self._over(name, (base, centre, disc, centre), up, beside=down, over_ground=on_ground)
 
     def _distance(self, name: str, given: Mapping[str, Any]) -> None:
-        _one_of(f"a point of input {name!r}", self.points, *given["distance"])
+        one_of(f"a point of input {name!r}", self.points, *given["distance"])
         row, length = self._distance_row(f"input {name!r}", *given["distance"])
         self.inputs.append(Input(row, name, 1.0 / self.size, length))
 
     def _turns(self, name: str, given: Mapping[str, Any]) -> None:
-        _one_of(f"the point of input {name!r}", self.points, given["about"])
+        one_of(f"the point of input {name!r}", self.points, given["about"])
         axis, (ground, car) = self._direction(name, given), self.carriers[name]
         self._hinge(f"line of {name}", ground, car, given["about"], axis)
         rolls = given["along"] in ("forward", "rearward")
@@ -545,7 +527,7 @@ def frame_about(z: Array) -> Array:
 
 
 def turned_least(what: str, frame: Array, z: Array) -> Array:
-    """Axes x, y, z as rows, turned by the smallest rotation that brings their z to the given direction."""
+    """Axes x, y, z as rows after the smallest rotation that brings their z to the given direction."""
     cosine = float(frame[2] @ z)
     if cosine <= 0:
         raise DescriptionError(
@@ -557,72 +539,3 @@ def turned_least(what: str, frame: Array, z: Array) -> Array:
         )
     axis = cross(frame[2], z)
     return np.asarray(frame + cross(axis, frame) + cross(axis, cross(axis, frame)) / (1.0 + cosine))
-
-
-def _car_of(given: Any) -> dict[str, float]:
-    """The numbers of a car; DescriptionError for an unknown name, a wrong type or a value out of range."""
-    if not isinstance(given, Mapping | None):
-        raise DescriptionError(f"car is {given!r}; a table of {list(CAR)} is needed", "car", given)
-    car = {}
-    for name, value in (given or {}).items():
-        _one_of("a name in car", CAR, name)
-        if name == "axle":
-            _one_of("axle", CAR_AXLES, value)
-        elif not (_is_number(value) and (0.0 <= value <= 1.0 if name.endswith("share") else value > 0.0)):
-            allowed = "from 0 to 1" if name.endswith("share") else "above 0, in mm or N/mm,"
-            raise DescriptionError(f"{name} is {value!r}; a number {allowed} is needed", name, value)
-        car[name] = CAR_AXLES[value] if name == "axle" else float(value)
-    return car
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _one_of(what: str, allowed: Iterable[str], *values: object) -> None:
-    names = list(allowed)
-    for value in values:
-        if value not in names:
-            raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)
-
-
-def _vector_of(what: str, name: str, value: object) -> Array:
-    """Three finite floats; DescriptionError that names `what` and the value if they are not."""
-    try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        array = np.empty(0)
-    if array.shape != (3,) or not np.isfinite(array).all():
-        raise DescriptionError(f"{what} is {value!r}; three finite numbers are needed", name, value)
-    return array
-
-
-def _point_of(name: str, value: object) -> Array:
-    """Coordinates of a point, mm; DescriptionError that names the point and the value if they are wrong."""
-    point = _vector_of(f"point {name!r}", name, value)
-    if np.abs(point).max() > LARGEST_COORDINATE:
-        raise DescriptionError(
-            f"point {name!r} is {point.tolist()}; products of such coordinates overflow: correct it or use a "
-            f"larger unit of length, so that all are below {LARGEST_COORDINATE:g} mm",
-            name,
-            point.tolist(),
-        )
-    return point
-
-
-def _unit_of(name: str, vector: Array) -> Array:
-    """The direction of a vector. A vector of length 1 to rounding is returned as it is, without rounding.
-
-    Raises:
-        DescriptionError: it is zero.
-    """
-    largest = float(np.abs(vector).max())
-    if largest < 2.0 and abs(float(vector @ vector) - 1.0) <= ROUNDED:
-        return vector
-    if largest == 0:
-        raise DescriptionError(
-            f"{name} is {vector.tolist()}; a direction must not be zero", name, vector.tolist()
-        )
-    # Scaled before the norm: squares of the smallest and largest numbers under- or overflow.
-    scaled = vector / largest
-    return np.asarray(scaled / np.linalg.norm(scaled))

@@ -1,4 +1,4 @@
-"""Dual numbers: values with their derivatives, so that formulas are differentiated as they are evaluated."""
+"""Dual numbers, values with derivatives: a formula is differentiated while it is evaluated."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ class Dual:
     """A number or a vector (components first) at N instants, and its derivatives by K inputs.
 
     Attributes:
-        value: (..., N). slopes: (..., N, K). N or K may be 1 where values are equal for all.
+        value: (..., N). slopes: (..., N, K). N or K may be 1 if all values are equal.
     """
 
     value: Array
@@ -53,7 +53,7 @@ def constant(value: Array | float) -> Dual:
 
 
 def hypot(*parts: Dual) -> Dual:
-    """The square root of the sum of squares; its derivative does not exist where it is zero."""
+    """The square root of the sum of squares; it has no derivative where it is zero."""
     length = np.sqrt(np.sum([part.value * part.value for part in parts], axis=0))
     return _chain(length, *((part.value / length, part) for part in parts))
 

@@ -1,17 +1,16 @@
 """Effects: numbers of the car at each instant of a solved motion, by name.
 
-Each number is one function of points; its derivatives by inputs follow from the same function (see `Dual`).
-With n the direction from the inner point of the spin axis to the wheel centre W, and k the line from the
-lower to the upper point of the steering axis, the contact point of a wheel of radius r is the lowest of a
-thin disc,
+A number is a function of points, which also gives its derivatives by inputs (see `Dual`). With n the
+direction from the inner point of the spin axis to the wheel centre W, and k the line from the lower to the
+upper point of the steering axis, the contact point of a wheel of radius r is the lowest point of a thin disc,
 
     c = W - r unit(up - (up . n) n),
 
-and is measured from the point at the same height on the line along k. Vectors are taken along outboard,
-rearward and up, which do not turn with the car.
+and is measured from the point at the same height on the line along k. Components are along outboard, rearward
+and up as drawn.
 
-As the wheel travels, c as a point of the knuckle has a velocity v, and the knuckle an angular velocity w. In
-the plane of a horizontal h and up through c, the knuckle's points move about the instant centre
+As the wheel travels, c as a point of the knuckle has the velocity v, and the knuckle the angular velocity w.
+In the plane through c of a horizontal h and up, the knuckle's points move about the instant centre
 
     c - (v . up / w . a) h + (v . h / w . a) up,    a = h x up.
 """
@@ -39,10 +38,10 @@ TIME = "time"
 GRADIENTS = {"travel": "mm", "rack": "mm", "roll": "rad", TIME: "s"}
 # Share of a velocity that may be rounding at the largest condition number that is accepted.
 ROUNDING = EPS / SMALLEST_RCOND
-# Limit below which rounding cannot be told from zero: as a share of a velocity; for the knuckle's rotation,
-# in rad for a rack travel of one wheel radius.
+# Below this a number may be rounding: as a share of a velocity; for the knuckle's rotation, in rad for a rack
+# travel of one wheel radius.
 LEAST = 1e-9
-# In wheel radii: an instant centre that is farther away counts as infinitely far.
+# In wheel radii: an instant centre that is farther away has no number.
 FARTHEST = 1e9
 
 
@@ -52,10 +51,9 @@ class Effect:
 
     Attributes:
         unit: unit of the value.
-        value: motion at a wheel -> (N,); or, for an axle, motions at the left and the right wheel -> (N,).
-        by: kind of input by which it takes derivatives, for each wheel: "rack", the input that is the travel
-            of a slide; "travel", the one that is not; "roll", the one that rolls the chassis; "time", all of
-            them as they move; or "" for none.
+        value: motion at a wheel -> (N,); for an axle, motions at the left and the right wheel -> (N,).
+        by: the input of each wheel by which it takes derivatives: "rack", the travel of a slide; "travel",
+            the other input; "roll", the one that rolls the chassis; "time", all as they move; "" for none.
     """
 
     unit: str
@@ -64,7 +62,7 @@ class Effect:
 
 
 def _along(motion: Motion, role: str) -> Dual:
-    """The components of a role's line, (3, N)."""
+    """Components of the line of a role, (3, N)."""
     return motion.components(motion.line(*motion.corner.ends(role)))
 
 
@@ -88,7 +86,7 @@ def contact(motion: Motion, drawn: bool = False) -> Dual:
 
 
 def _contact_moved(motion: Motion) -> Dual:
-    """Components of the vector from the drawn contact point to the contact point, (3, N)."""
+    """Components of the contact point's displacement from the drawing, (3, N)."""
     return motion.components(motion.moved(_centre(motion)) + (contact(motion) - contact(motion, drawn=True)))
 
 
@@ -99,7 +97,7 @@ def _contact_place(motion: Motion) -> Array:
 
 
 def _of_line(role: str, number: Callable[..., Dual]) -> Number:
-    """A number from the components of a role's line."""
+    """A number from the components of the line of a role."""
     return lambda motion: number(*_along(motion, role))
 
 
@@ -140,7 +138,7 @@ ANGLES: Mapping[str, Number] = {
 
 
 def _level_with(axis: Dual, point: Dual) -> Dual:
-    """Vector to a point from the axis at the same height; `point` is given from any point of the axis."""
+    """Vector to a point from the axis at the same height; `point` counts from any point of the axis."""
     return point - axis * (point[UP] / axis[UP])
 
 
@@ -209,8 +207,7 @@ def _rising(velocity: Array) -> Array:
 
 def _travelled(motion: Motion) -> Array:
     """Upward velocity of the wheel centre in the chassis' frame, per unit of the wheel's input, (N,)."""
-    moved = motion.components(motion.in_the_car.moved(_centre(motion)))
-    return _rising(_slope(motion, moved, "travel"))
+    return _rising(_centre_velocity(motion.in_the_car))
 
 
 def _spin(motion: Motion, by: str) -> Array:
@@ -225,16 +222,16 @@ def _contact_velocity(motion: Motion) -> Array:
 
 
 def _over_the_contact(motion: Motion, velocity: Array) -> Array:
-    """Height above the contact point where the normal to its velocity meets the middle plane, front view.
+    """Height above the contact point where the normal to a velocity meets the middle plane, in the front
+    view.
 
-    The velocity is that of the contact point as a point of the knuckle; the middle plane goes through the
-    origin. NaN where the velocity is level.
+    The middle plane goes through the origin. NaN where the velocity is level.
     """
     return np.asarray(_contact_place(motion)[OUTBOARD] * _ratio(velocity[OUTBOARD], _rising(velocity)))
 
 
 def arm_roll_centre_height(motion: Motion) -> Array:
-    """Roll centre height by the arms: the knuckle also turns about its steering axis, by as much as leaves a
+    """Roll centre height by the arms: the knuckle also turns about its steering axis so that its motion is a
     pure rotation.
 
     With u the velocity of the axis' lower point and w the angular velocity of the knuckle, (w + f k) . u = 0.
@@ -265,33 +262,30 @@ def instant_centre(h: int, component: int, sense: float = 1.0) -> Values:
     return of
 
 
-def _anti(motion: Motion, velocity: Array, share: str) -> Array:
-    """100 share s (v . rearward / v . up) wheelbase / (height of the centre of gravity - contact travel) with
-    s = -1 at the front and 1 at the rear, (N,)."""
+def _centre_velocity(motion: Motion) -> Array:
+    """Components of the wheel centre's velocity with travel, (3, N)."""
+    return _slope(motion, motion.components(motion.moved(_centre(motion))), "travel")
+
+
+def _anti(share: str, velocity_of: Callable[[Motion], Array]) -> Values:
+    """Share of the load transfer in braking or driving that the linkage carries, %: anti-dive, anti-lift,
+    anti-squat.
+
+    100 share s (v . rearward / v . up) wheelbase / (height of the centre of gravity - contact travel) with s
+    = -1 at the front and 1 at the rear; v is the velocity of the point of the knuckle on which the force
+    acts. A brake fixes the contact point in the knuckle. A shaft from the chassis drives the wheel, so a
+    driving force acts at the wheel centre. NaN where the point does not rise with travel.
+    """
     names = ("axle", "wheelbase", "centre_of_gravity_height", share)
-    sign, wheelbase, drawn_height, part = motion.corner.numbers(*names)
-    height = drawn_height - LENGTHS["contact_travel"](motion).value
-    return np.asarray(
-        100.0 * part * sign * _ratio(velocity[REARWARD] * wheelbase, _rising(velocity) * height)
-    )
 
+    def of(motion: Motion) -> Array:
+        sign, wheelbase, drawn_height, part = motion.corner.numbers(*names)
+        height = drawn_height - LENGTHS["contact_travel"](motion).value
+        velocity = velocity_of(motion)
+        ratio = _ratio(velocity[REARWARD] * wheelbase, _rising(velocity) * height)
+        return np.asarray(100.0 * part * sign * ratio)
 
-def anti_brake(motion: Motion) -> Array:
-    """Share of the load transfer in braking that the linkage carries, %: anti-dive, at the rear anti-lift.
-
-    The brake fixes the contact point in the knuckle. NaN where the contact point does not rise with travel.
-    """
-    return _anti(motion, _contact_velocity(motion), "brake_share")
-
-
-def anti_drive(motion: Motion) -> Array:
-    """Share of the load transfer in driving that the linkage carries, %: anti-squat, at the front anti-lift.
-
-    A shaft from the chassis drives the wheel, so the force acts on the knuckle at the wheel centre. NaN where
-    the wheel centre does not rise with travel.
-    """
-    velocity = motion.components(motion.moved(_centre(motion)))
-    return _anti(motion, _slope(motion, velocity, "travel"), "drive_share")
+    return of
 
 
 def damper_per_wheel(motion: Motion) -> Array:
@@ -336,8 +330,8 @@ def screw_pitch(motion: Motion) -> Array:
 def _of_screw(number: OfAxis) -> Values:
     """A number of the screw axis.
 
-    For an angular velocity w and a velocity v of the wheel centre, the vector from the axis to the wheel
-    centre is v x w / w^2, up to a part along the axis.
+    The vector from the axis to the wheel centre, with velocity v, is v x w / w^2, up to a part along the
+    axis.
     """
 
     def of(motion: Motion) -> Array:
@@ -367,14 +361,14 @@ OF_VELOCITIES: Mapping[str, tuple[str, Values]] = {
     "front_view_centre_height": ("mm", instant_centre(OUTBOARD, UP)),
     "side_view_swing_arm": ("mm", instant_centre(REARWARD, REARWARD)),
     "side_view_centre_height": ("mm", instant_centre(REARWARD, UP)),
-    "anti_brake": ("%", anti_brake),
-    "anti_drive": ("%", anti_drive),
+    "anti_brake": ("%", _anti("brake_share", _contact_velocity)),
+    "anti_drive": ("%", _anti("drive_share", _centre_velocity)),
 }
 
 
 def _values(number: Number, by: str) -> Values:
-    """A number, or its derivative: per mm of travel, all other inputs and the chassis held; per mm of the
-    slide or rad of roll, all else held; per second, with everything moving."""
+    """A number, or its derivative: per mm of travel, per mm of the slide or per rad of roll while all else is
+    held; or per second, while everything moves."""
 
     def of(motion: Motion) -> Array:
         found = number(motion)
@@ -403,7 +397,7 @@ def _drawn_apart(left: Motion, right: Motion) -> Array:
 def _apart(left: Motion, right: Motion) -> Array:
     """Components along right and up of the vector from the left to the right contact point, (2, N).
 
-    The drawn places are subtracted first: far from the origin, each place would lose digits.
+    The drawn places are subtracted first, since places far from the origin have fewer digits.
     """
     drawn = _drawn_apart(left, right)
     one, other = (of.components(of.moved(_centre(of)) + contact(of)).value for of in (left, right))
@@ -435,8 +429,9 @@ def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
 
 
 def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
-    """Steer angles of the inner and of the outer wheel, NaN where the wheels are not steered to one side; the
-    wheelbase, and the track as drawn."""
+    """Steer angles of the inner and the outer wheel, NaN unless both are steered to one side; the wheelbase,
+    and the track as drawn.
+    """
     (wheelbase,) = left.corner.numbers("wheelbase")
     one, other = (steer_angle(of).value for of in (left, right))
     sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
@@ -499,7 +494,8 @@ class Asked(NamedTuple):
 
 def effects_in(model: Model) -> dict[str, Asked]:
     """All effects of a model by name: `NAME` of EFFECTS, or `PART.NAME` in a mechanism with parts; and those
-    of AXLE_EFFECTS if it has two parts on opposite sides. The model may lack roles or car data for some."""
+    of AXLE_EFFECTS if it has two parts on opposite sides. Some may need roles or car data that it has not.
+    """
     found = {
         f"{part}.{name}" if part else name: Asked(effect, (part,))
         for part in model.corners
@@ -516,7 +512,7 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
     """The effects with these names.
 
     Raises:
-        InputError: an effect does not exist; the message names those that do.
+        InputError: an effect does not exist; the message names all that do.
     """
     known = effects_in(model) if names else {}
     for name in names:
@@ -543,7 +539,7 @@ def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]
     """name -> (N,) for a motion.
 
     Raises:
-        DescriptionError: the mechanism lacks a role or a wheel radius that an effect needs.
+        DescriptionError: an effect needs a role, a wheel radius or car data that the mechanism has not.
     """
     numbers: dict[str, Array] = {}
     for name, asked in effects.items():

@@ -1,4 +1,4 @@
-"""The errors of this package: each names what, where, which value, what is allowed, and what to try."""
+"""The errors of this package. Each names what, where, the value, what is allowed, and what to try."""
 
 from collections.abc import Mapping
 
@@ -9,10 +9,10 @@ class AbsoluteError(Exception):
     """Base of every error raised here.
 
     Attributes:
-        name: the point, body, joint, input or effect at fault; empty if no single one is.
+        name: the point, body, joint, input or effect at fault; "" if there is not a single one.
         value: the value found there.
-        instant: index of the first bad instant, or None if the fault is not at an instant.
-        partial: the motion solved before the failing instant, or None if no instant was solved.
+        instant: index of the first bad instant, or None.
+        partial: the motion before that instant, or None if no instant was solved.
     """
 
     partial: Solution | None = None
@@ -25,23 +25,23 @@ class AbsoluteError(Exception):
 
 
 class DescriptionError(AbsoluteError):
-    """The description of the linkage is unusable: a name, a point, an axis or the row count is wrong."""
+    """The description of the mechanism is wrong: a name, a point, an axis or the number of rows."""
 
 
 class InputError(AbsoluteError):
-    """Inputs of a wrong name, shape or value; an unknown effect."""
+    """An input has a wrong name, shape or value, or there is no such effect."""
 
 
 class PoseError(AbsoluteError):
-    """The drawn bodies do not fit together, or the mechanism reaches no pose or no unique pose.
+    """The drawn bodies do not fit together, or there is no pose or no unique pose at the inputs.
 
     Attributes:
-        instant: index of the instant, or None while the drawing itself is being assembled.
-        inputs: the inputs asked for, by name (rad or mm).
-        reached: the inputs of the last pose that could be solved on the way there.
-        condition: estimate of the condition number (1-norm) at that last pose.
-        limits: the joints that block each other there, the strongest first; empty where none do.
-        limit: the input that meets the end of its range there, or "" where none does; equal to `name`.
+        instant: index of the instant, or None for the drawing.
+        inputs: the requested inputs by name, rad or mm.
+        reached: the inputs of the last pose that could be solved.
+        condition: estimate of the condition number (1-norm) at that pose.
+        limits: the joints that block each other there, the strongest first; may be empty.
+        limit: the input that meets the end of its range there, or ""; equal to `name`.
     """
 
     def __init__(
@@ -59,6 +59,6 @@ class PoseError(AbsoluteError):
         self.limits, self.limit = limits, limit
 
 
-# Earlier names of errors that are now one class; a missing Pinocchio raises Python's own ImportError.
+# Earlier names. A missing Pinocchio raises Python's ImportError.
 AssemblyError = UnreachableError = SingularError = PoseError
 MissingPinocchioError = ImportError

@@ -1,8 +1,8 @@
 """Follows the poses of a motion from instant to instant without leaving the branch.
 
 From a known pose, many instants are predicted at once, to second order, and corrected together by Newton's
-method. The last one before the first that is too far becomes the next known pose. If already the first is too
-far, a fraction of the way to it is taken as the next pose.
+method. The last one that is near enough becomes the next known pose. If there is none, a pose between is
+solved first.
 """
 
 import math
@@ -30,30 +30,29 @@ from absolute.vectors import EPS, Array, cross
 # Inputs (..., inputs) and rates of them -> (1 + rates, ..., rows): targets of the rows, and their rates.
 Targets = Callable[..., Array]
 
-# Largest change of all bodies together in one step (2-norm, rad and units of size): over this distance the
-# second-order prediction holds for any linkage that is not near a fold.
+# Largest change of all bodies together in one step (2-norm, rad and units of size): up to this distance the
+# second-order prediction is good for any linkage that is not near a fold.
 LONGEST_STEP = 0.5
 # Limits of the curved part of a step relative to its straight part, and of Newton's first correction relative
 # to the step. At a distance x from a fold the other branch is 2 x away, and a step s has a curved part of s /
 # 2 x: so a step ends within half the way to the fold, and within a quarter of the way to the other branch.
 LARGEST_CURVE = 0.25
 LARGEST_CORRECTION = 0.1
-# A step below sqrt(eps) that still curves this much means a fold within eps of the target.
+# A step below sqrt(eps) that still curves too much means a fold within eps of the target.
 SHORTEST_STEP = math.sqrt(EPS)
-# A guard against endless work: thousands of the longest steps to one instant would be many turns.
+# Against endless work: thousands of the longest steps to one instant would be many turns.
 MOST_STEPS = 2000
 # Instants per step: enough to share the cost of a call, few enough to stay in fast memory.
 MOST_INSTANTS = 64
-# Ratio of the smallest to the largest singular value below which a fold is near. A motion is followed until a
-# fold is about sqrt(eps) away, where the ratio is of that order times ratios of lengths; this is ten thousand
-# times as much.
+# A fold is near if the ratio of the smallest to the largest singular value is below this. A motion is
+# followed until a fold is about sqrt(eps) away, where the ratio is of that order times ratios of lengths.
 LARGEST_SHARE = 1e-4
-# Joints with less than this share of the largest force do not take part in the blocking.
+# Joints with less than this share of the largest force do not block.
 SMALLEST_FORCE = 0.1
 
 
 class BlockedError(Exception):
-    """The way is blocked; carries the inputs where it ends and the last good pose."""
+    """The path is blocked: the inputs where it ends, and the last good pose."""
 
     def __init__(self, reached: Array, pose: Configurations) -> None:
         super().__init__(f"blocked at {reached.tolist()}")
@@ -63,23 +62,23 @@ class BlockedError(Exception):
 def follow(
     mechanism: Mechanism, start: Configurations, at: Array, goals: Array, targets: Targets
 ) -> Iterator[Configurations]:
-    """The poses at goals, in consecutive runs, each reached on the straight way from a pose before it.
+    """The poses at goals, in consecutive runs, each reached on the straight path from a pose before it.
 
-    A pose is accepted if it is near, the way to it curves little, its first correction is small, it closes,
+    A pose is accepted if it is near, the path to it curves little, its first correction is small, it closes,
     rows left out hold, and its determinants have the signs of the start: assemblies meet where one is zero.
-    Where other rows should be left out, the rows are chosen anew.
+    If other rows should be left out, the rows are chosen anew.
 
     Args:
-        start: one pose, at inputs `at`, (inputs,). goals: (N, inputs). targets: targets of the rows from the
-            inputs.
+        start: one pose, at inputs `at`, (inputs,). goals: (N, inputs).
+        targets: function of the inputs that gives the targets of the rows.
     Raises:
-        BlockedError: steps have become too short to continue: the mechanism locks there.
+        BlockedError: steps became too short: the mechanism locks there.
     """
     pose, longest, done, steps = start, LONGEST_STEP, 0, 0
     while done < len(goals):
         ends = goals[done : done + MOST_INSTANTS]
         ways = ends - at
-        # Unit vectors, since squares of long ways overflow.
+        # Unit vectors, since squares of long paths overflow.
         whole = np.abs(ways).max(axis=1, initial=0.0)
         units = ways / np.where(whole > 0.0, whole, 1.0)[:, None]
         straight, curve, furthest = _predicted(mechanism, pose, partial(targets, at), units, longest)
@@ -91,7 +90,7 @@ def follow(
         length = share * whole[:count, None, None, None]
         straight, curve = length * straight[:count], length**2 * curve[:count]
         size, floor = lengths(straight), float(rounding_of(pose.condition[0]))
-        # A way of zero length may end at its start; any other must make progress.
+        # A path of zero length may end at its start; any other must make progress.
         short = share < 1.0 and (size[0] <= SHORTEST_STEP or (ends[0] == at).all())
         there = newton(
             mechanism,
@@ -150,10 +149,10 @@ def _predicted(
 
 
 def through(mechanism: Mechanism, drawn: Configurations, goals: Array) -> Iterator[Configurations]:
-    """The poses at inputs (N, inputs) at N instants: on straight ways, else one input after another.
+    """The poses at inputs (N, inputs) at N instants: on straight paths, else one input after another.
 
     Raises:
-        PoseError: at the first instant without a pose, after yielding those before it.
+        PoseError: an instant has no pose; the poses before it have been yielded.
     """
     pose, at, done = drawn, mechanism.drawn_inputs.copy(), 0
     # After whole turns the car stands as drawn.
@@ -175,7 +174,7 @@ def through(mechanism: Mechanism, drawn: Configurations, goals: Array) -> Iterat
 
 
 def _around(mechanism: Mechanism, pose: Configurations, at: Array, goal: Array) -> Configurations | None:
-    """The pose at a goal, one input after another where the straight way is blocked; None if that is too."""
+    """The pose at a goal by changing one input after another; None if these paths are blocked too."""
     changed = np.flatnonzero(at != goal)
     for order in (changed, changed[::-1]) if len(changed) > 1 else ():
         corners = np.tile(at, (len(order), 1))
@@ -199,9 +198,9 @@ def _refusal(
     where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
     limits = limits_at(mechanism, blocked.pose)
     if not limits:
-        # Far from singular: the way continues, but only without the rows that were left out.
+        # Far from singular, only the rows that were left out block the path.
         limits = mechanism.stack.owners_of(blocked.pose.choice.left_out)
-    # Change of the targets along the straight way, at its end.
+    # Change of the targets at the end of the straight path.
     change = mechanism.targets(blocked.reached, goal - start)[1]
     limit = limiting_input(mechanism, blocked.pose, change[mechanism.joint_rows :])
     facts = instant, wanted, reached, condition, limits, limit
@@ -223,10 +222,10 @@ def _refusal(
 
 
 def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:
-    """Joints that block each other near a singular pose, the strongest first; empty where none is near.
+    """Joints that block each other near a singular pose, the strongest first; empty far from one.
 
-    Near such a pose some forces y in the rows are in equilibrium without any load, y J = 0 nearly. They are
-    taken in the group of bodies whose block is nearest to singular.
+    Near such a pose some forces y in the rows are in equilibrium without a load, y J = 0 nearly. They are
+    those of the group of bodies whose block is nearest to singular.
     """
     numbers, jacobian = np.arange(mechanism.stack.count)[pose.choice.kept], pose.kept[0]
     groups = pose.choice.groups
@@ -248,8 +247,8 @@ def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:
 def limiting_input(mechanism: Mechanism, pose: Configurations, change: Array) -> str:
     """The input whose change, (inputs,) in units of its row, the bodies cannot follow near a singular pose.
 
-    There some y has y J = 0 nearly, so rows can only change normal to y. The input with the largest product
-    of its change and its component of y is named.
+    With y J = 0 nearly, the rows can only change normal to y. The input has the largest product of its change
+    and its component of y.
     """
     left = np.linalg.svd(pose.kept[0])[0]
     # The rows of the inputs come last and are all kept.
@@ -258,5 +257,5 @@ def limiting_input(mechanism: Mechanism, pose: Configurations, change: Array) ->
 
 
 def limited_by(limits: tuple[str, ...]) -> str:
-    """The limits of an error as part of its message."""
+    """The limits as part of a message."""
     return f"limited by {', '.join(limits)}; " if limits else ""

@@ -17,8 +17,8 @@ FURTHEST = 0.8
 def assemble(mechanism: Mechanism) -> Configurations:
     """The assembled pose on the branch of the drawing, at the inputs of the drawing.
 
-    The rows keep a shrinking share of their violation in the drawing: rows(q) = (1 - share) rows(drawn) +
-    share * target, without meeting a singular pose.
+    The violation of the rows in the drawing shrinks, rows(q) = (1 - share) rows(drawn) + share * target,
+    without meeting a singular pose.
 
     Raises:
         PoseError: the drawing itself is singular or could mean two assemblies, or closing it locks the
@@ -76,12 +76,12 @@ def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
 
 
 def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> None:
-    """Refuse a drawing whose open joints can be read in two ways on different sides of a singular pose.
+    """Refuse a drawing whose open joints could close to assemblies on different sides of a singular pose.
 
-    The sign of a determinant tells in which of two assemblies a group of bodies is, and the way to the closed
-    pose keeps it. The Jacobian of an open joint can be taken at either of its two halves, which are the same
-    when the joint is closed (see `RowStack.read_at_foot`). Where the two differ in a sign, ways of closing
-    that keep one or the other end in different assemblies.
+    The sign of a determinant tells in which of two assemblies a group of bodies is, and the path to the
+    closed pose keeps it. The Jacobian of an open joint can be taken at either of its two halves, which
+    coincide when the joint is closed (see `RowStack.read_at_foot`). If the two differ in a sign, paths that
+    keep one or the other lead to different assemblies.
     """
     stack, of = mechanism.stack, np.array(mechanism.stack.owners)
 

@@ -7,12 +7,11 @@ Jacobian, and w the loads as forces and moments on the velocities of the bodies,
 
 and f of a row is the work of the loads per mm that the row grows while all others are held. So f of a rod is
 its tension. The rows of a ball joint, the position of its point in the second body relative to the first,
-push the second body by -f. A hinge has the rows of one of its points and of two right angles; each of the
-latter applies a moment to the second body, -f times its rate's dependence on that body's angular velocity.
-With d from the first hinge point P to the second, Q, a force F and a moment M about P become
-F_Q = M x d / (d . d) at Q and the rest of F at P; a hinge has no moment about d. Along d only the sum of both
-forces is determined. A point on a slide has forces across the line, and along the line if an input drives its
-travel.
+push the second body by -f. A hinge has the rows of one of its points and two right angles; each of these
+applies a moment to the second body, -f times the derivative of its rate by that body's angular velocity. With
+d from the first hinge point P to the second, Q, a force F and a moment M about P become F_Q = M x d / (d . d)
+at Q and the rest of F at P; a hinge has no moment about d. Along d only the sum of both forces is determined.
+A point on a slide has forces across the line, and along the line if an input drives its travel.
 
 Chassis and inputs hold the mechanism. In a corner with a damper, however, the damper's length is held, and
 the input that moves the wheel is free.
@@ -32,18 +31,11 @@ from absolute.vectors import Array, cross
 
 
 def forces(motion: Motion) -> dict[str, dict[str, Array]]:
-    """Forces in the links.
+    """`rod_force`, `joint_force` and `hinge_thrust` of `Solution`; NaN if the pose is singular with dampers
+    held.
 
-    Returns:
-        rod_force: name of a rod, or `damper` with its part in front if it holds a corner -> (N,) tension, N.
-        joint_force: point of a ball joint, hinge or slide -> (N, 3) force, N, on the body that
-            `Model.reported_joints` names, along the axes of the points; at both points of a hinge, only
-            across its line; on a slide, along the line only if an input drives it.
-        hinge_thrust: first point of a hinge -> (N,) sum of both forces along the line to the second, N.
-        NaN where the pose is singular while dampers are held.
     Raises:
-        DescriptionError: there is no load, or a role is missing; or rows are redundant, so that forces are
-            not determined.
+        DescriptionError: there is no load, a role is missing, or redundant rows leave forces undetermined.
     """
     mechanism, model = motion.mechanism, motion.mechanism.model
     _require_determined(mechanism)

@@ -1,4 +1,4 @@
-"""The mechanism in Pinocchio: one free-flying body each, and the rows that join the bodies."""
+"""The mechanism in Pinocchio: free-flying bodies, and the rows that join them."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -13,8 +13,8 @@ from absolute.vectors import Array, Places, product_rule
 
 # Redundant rows depend on each other only approximately while the drawing is not closed.
 LARGEST_DEPENDENT = 0.1
-# Rows are chosen anew if the kept ones span less than this share of the volume that the best choice spans.
-# They span zero where a row that was left out becomes independent.
+# Rows are chosen anew if the kept ones span less than this share of the largest volume. They span zero where
+# a row that was left out becomes independent.
 LEAST_SPANNED = 0.5
 
 
@@ -47,7 +47,7 @@ class Choice(NamedTuple):
 
     Attributes:
         kept: numbers of the rows kept. left_out: numbers of the other rows, which are only checked.
-        groups: bodies that the rows kept fix one group after the other.
+        groups: groups of bodies that the kept rows fix one after the other.
     """
 
     kept: slice | Places
@@ -56,19 +56,20 @@ class Choice(NamedTuple):
 
 
 class Mechanism:
-    """Bodies of a model as free flyers on the universe, in units of size, with all their rows.
+    """Bodies of a model as free flyers, in units of size, with all their rows.
 
     The body that stands still is the universe: the chassis, or the body on which it turns. Displacements of
     the car are added to the solution afterwards.
 
     Attributes:
         model, drawing, stack: the described model, its drawing, its rows.
-        columns: the unknown ones among [o', w] of all bodies; the first one stands, points do not turn.
+        columns: indices of the unknowns among [o', w] of all bodies; the first body stands, points do not
+        turn.
         joint_rows: number of rows before the rows of the inputs.
         choice: choice of rows in the drawing.
         bodies: number of bodies. pin_model: the Pinocchio model of the moving ones.
         drawn: configuration of the drawing, (7 * moving bodies,).
-        values: names of the inputs' values, one per row; then those of displacements of the car, if heights
+        values: names of the inputs' values, one per row; then of the displacements of the car, if heights
             over the ground depend on them.
         drawn_inputs: (values,) the values in the drawing, rad or mm.
     """
@@ -98,7 +99,7 @@ class Mechanism:
         self.choice = self._chosen()
 
     def _chosen(self) -> Choice:
-        """The rows to keep in the drawing; whether the others are redundant is checked once it is closed.
+        """The rows to keep in the drawing; `initial_assembly` checks whether the others are redundant.
 
         Raises:
             DescriptionError: the others are not redundant in the drawing, even approximately.
@@ -123,7 +124,7 @@ class Mechanism:
         return before if spanned >= LEAST_SPANNED * most else self._leaving_out(left_out)
 
     def _vanishing(self, placed: Placed) -> tuple[Array, Array]:
-        """(joint rows, surplus) vanishing linear combinations of joint rows; and singular values."""
+        """(joint rows, surplus) linear combinations of joint rows that vanish; and singular values."""
         combined, strengths, _ = np.linalg.svd(self.stack.jacobian(placed)[: self.joint_rows])
         return combined[:, self.stack.unknowns - self.stack.count :], strengths
 
@@ -149,7 +150,7 @@ class Mechanism:
         return rotation.reshape(*origin.shape, 3), origin
 
     def spread(self, step: Array) -> Array:
-        """(..., bodies, 2, 3) [o', w] from the unknowns, with zeros for what is known."""
+        """(..., bodies, 2, 3) [o', w] from the unknowns; the others are zero."""
         every = np.zeros((*step.shape[:-1], 6 * self.bodies))
         every[..., self.columns] = step
         return every.reshape(*step.shape[:-1], self.bodies, 2, 3)
@@ -165,7 +166,7 @@ class Mechanism:
         return moved
 
     def named(self, values: Sequence[float]) -> dict[str, float]:
-        """Values by name; where inputs share a name, the value of the first."""
+        """Values by name; the first one if several inputs share a name."""
         named: dict[str, float] = {}
         for name, value in zip(self.values, values, strict=True):
             named.setdefault(name, value)
@@ -194,13 +195,12 @@ class Mechanism:
 def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
     """Groups of the moving bodies that their rows fix one after the other, each as small as possible.
 
-    A group has as many rows among its own bodies, the standing body and earlier groups as it has freedoms:
-    first a driven link, then what is attached to such links (Assur groups). A group's determinant changes
-    sign where its assemblies meet. So it tells more than the determinant of the Jacobian, which is the
-    product of all. Each body is matched with as many rows as it has freedoms. A body depends on all other
-    bodies in its own rows, and bodies that depend on each other are a group (Dulmage and Mendelsohn, 1958).
-    If rows cannot be
-    matched, all bodies are one group: some body can still move.
+    A group has as many rows among its bodies, the standing body and earlier groups as it has freedoms: first
+    a driven link, then links attached to it, and so on (Assur groups). A group's determinant changes sign
+    where its assemblies meet, so it tells more than their product, the determinant of the Jacobian. Each body
+    is matched with as many rows as it has freedoms and depends on the other bodies of these rows. Bodies that
+    depend on each other are a group (Dulmage and Mendelsohn, 1958). If the matching is incomplete, some body
+    can still move, and all bodies are one group.
 
     Args:
         first, second: the two bodies of each row. sizes: freedoms of each body, zero for the first.
@@ -224,7 +224,7 @@ def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
 
 
 def _largest(vanishing: Array) -> Places:
-    """Numbers of as many rows as there are combinations, (rows, combinations), with the largest shares."""
+    """Numbers of the rows with the largest shares in (rows, combinations), as many as combinations."""
     from scipy.linalg import qr
 
     return np.sort(qr(vanishing.T, mode="r", pivoting=True)[1][: vanishing.shape[1]]).astype(np.intp)

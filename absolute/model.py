@@ -1,4 +1,4 @@
-"""A linkage made by `compile`: bodies and their places in the drawing, rows, wheels."""
+"""A linkage as `compile` makes it: bodies as drawn, rows, inputs, wheels."""
 
 import json
 from collections.abc import Mapping
@@ -20,11 +20,6 @@ CAR: Mapping[str, str | float] = {
     "drive_share": 0.5,
     "spring_rate": 30.0,
     "spring_free_length": 350.0,
-}
-KINDS = {
-    "travel": "is not the travel of a slide",
-    "rack": "is the travel of a slide",
-    "roll": "rolls the chassis",
 }
 
 
@@ -77,14 +72,14 @@ class Input(NamedTuple):
 class Drawing:
     """Bodies as drawn, in units of the mechanism's size; body frames are parallel to the points' frame.
 
-    Given coordinates subtract with one rounding of the difference, however close the points are; coordinates
-    from the middle are already rounded. So the origin of a body that moves in the car is one of its points.
+    The difference of two given coordinates has one rounding, however close the points are; coordinates from
+    the middle are rounded already. So the origin of a body that moves in the car is one of its points.
 
     Attributes:
         points: name -> (3,), mm.
         middle: mean of the points, mm. Positions are measured from here, so that results do not depend on the
             distance of the car from its origin.
-        size: largest distance of a point from the middle, mm: the unit of length.
+        size: unit of length: largest distance of a point from the middle, mm.
         bodies: name -> index; 0 is the body that stands still.
         anchors: (bodies, 3) origin of each body, mm: the middle for the chassis.
         holders: name of a point -> the first body that has it.
@@ -146,27 +141,27 @@ class Corner:
     car: Mapping[str, float]
 
     def ends(self, role: str) -> tuple[str, str]:
-        """The two points of a role; DescriptionError if the mechanism lacks the role."""
+        """The two points of a role; DescriptionError without the role."""
         if role not in self.roles:
             raise _lacking(f"the role {role!r}", f"the two points of {role} in [roles]", role)
         return self.roles[role]
 
     @property
     def carrier(self) -> str:
-        """The knuckle; DescriptionError if there is none."""
+        """The knuckle; DescriptionError without one."""
         if not self.knuckle:
             raise _lacking("the role 'knuckle'", "the body that carries the wheel in [roles]", "knuckle")
         return self.knuckle
 
     @property
     def radius(self) -> float:
-        """The wheel's radius, mm; DescriptionError if not given."""
+        """The wheel's radius, mm; DescriptionError without it."""
         if self.wheel_radius is None:
             raise _lacking("wheel_radius", "it in [mechanism], in mm", "wheel_radius")
         return self.wheel_radius
 
     def numbers(self, *names: str) -> list[float]:
-        """Some of the car's numbers; DescriptionError that names all missing ones."""
+        """Some numbers of the car; the DescriptionError names all missing ones."""
         lacking = [name for name in names if name not in self.car]
         if lacking:
             lines = ", ".join(f"{name} = {json.dumps(CAR[name])}" for name in lacking)
@@ -212,30 +207,25 @@ class Model:
     reported: tuple[str, ...]
     unturned: frozenset[str]
 
-    @property
-    def values(self) -> tuple[str, ...]:
-        """Names of the inputs' values, each once."""
-        return tuple(dict.fromkeys(drive.value for drive in self.inputs))
-
     def input_of(self, part: str, by: str, what: str) -> str:
-        """The one driven input of a part, or of all, that is the travel of a slide ("rack"), is not the
-        travel of a slide ("travel"), or rolls the chassis ("roll").
+        """The one driven input of a part that is the travel of a slide ("rack"), or is not ("travel"), or the
+        one input of the model that rolls the chassis ("roll").
 
         Raises:
-            DescriptionError: there is no such input, or more than one; `what` needs it.
+            DescriptionError: there is not exactly one such input, which `what` needs.
         """
         others = tuple(f"{other}." for other in self.corners if other != part)
         held = [drive for drive in self.inputs if not drive.turns and not drive.value.startswith(others)]
-        fitting = {
-            "travel": [drive for drive in held if not drive.steers],
-            "rack": [drive for drive in held if drive.steers],
-            "roll": [drive for drive in self.inputs if drive.rolls],
-        }
-        found = list(dict.fromkeys(drive.value for drive in fitting[by]))
+        kind, fitting = {
+            "travel": ("is not the travel of a slide", [drive for drive in held if not drive.steers]),
+            "rack": ("is the travel of a slide", [drive for drive in held if drive.steers]),
+            "roll": ("rolls the chassis", [drive for drive in self.inputs if drive.rolls]),
+        }[by]
+        found = list(dict.fromkeys(drive.value for drive in fitting))
         if len(found) != 1:
             own = list(dict.fromkeys(drive.value for drive in held))
             raise DescriptionError(
-                f"{what} needs exactly one driven input that {KINDS[by]}, and there are {len(found)}: "
+                f"{what} needs exactly one driven input that {kind}, and there are {len(found)}: "
                 f"{found} of {own}; drive other inputs, or ask for other effects",
                 what,
                 found,

@@ -1,4 +1,4 @@
-"""Newton's method on the bodies' poses, to rounding, and the rates there; for many configurations at once."""
+"""Newton's method on the poses of the bodies, to rounding, and their rates, for many configurations."""
 
 import math
 from typing import NamedTuple
@@ -10,8 +10,8 @@ from absolute.mechanism import Choice, Mechanism
 from absolute.rows import ROUNDINGS, Placed
 from absolute.vectors import EPS, Array, Counts
 
-# Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two branches that
-# meet there can no longer be told apart, and half of the digits are lost.
+# Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): its two branches
+# cannot be told apart, and half of the digits are lost.
 SMALLEST_RCOND = float(np.sqrt(EPS))
 
 # Quadratic convergence from a correction of 0.1 needs about 6 corrections; 25 means a stall.
@@ -61,8 +61,8 @@ class Configurations(NamedTuple):
 def rounding_of(condition: Array) -> Array:
     """The largest correction that rounding can cause.
 
-    Each row has the rounding of a few products of order 1, and the inverse of the Jacobian magnifies this.
-    Columns have norms of order 1, so the condition number bounds the norm of the inverse.
+    The inverse of the Jacobian magnifies the rounding of a few products of order 1 in each row. Columns have
+    norms of order 1, so the condition number bounds the norm of the inverse.
     """
     return 64 * EPS * condition
 
@@ -109,14 +109,14 @@ def signs_of(choice: Choice, jacobian: Array) -> Array:
 def newton(
     mechanism: Mechanism, near: Configurations, q: Array, target: Array, largest: Array
 ) -> Configurations:
-    """Solve  rows(q) = target  near N configurations, up to the first with too large a first correction.
+    """Solve rows(q) = target near N configurations, up to the first with too large a first correction.
 
-    After a correction s about k s^2 is left: k = s / before^2 with the correction before, and for the first
-    one at most the condition number, as rows are quadratic with second derivatives of order 1. Newton's
+    After a correction s about k s^2 is left: k = s / before^2 with the correction before, and at most the
+    condition number for the first one, as rows are quadratic with second derivatives of order 1. Newton's
     method stops when this is no more than the rounding of a row, or when corrections no longer shrink. Then
     the next correction must be as small as rounding, and the rows closed to rounding. A small correction
-    alone proves nothing near a fold: there it falls as the root of the residual, and just beyond the fold,
-    where there is no pose, it is as small.
+    alone proves nothing near a fold: it falls as the root of the residual, also just beyond the fold, where
+    there is no pose.
 
     Args:
         near: a configuration nearby, for its condition number and its choice of rows.
@@ -139,7 +139,7 @@ def newton(
             more, rotation, step, size = more[:few], rotation[:few], step[:few], size[:few]
         q[more] = mechanism.moved(q[more], rotation, mechanism.spread(step))
         corrections[more] += 1
-        # NaN is not corrected any more.
+        # Comparisons with NaN are false: it is not corrected any more.
         left = np.minimum(condition, size / previous**2 if count else np.inf) * size**2
         again = (left > ROUNDINGS) & (size <= 0.5 * previous)
         more, previous = more[again], size[again]
@@ -173,7 +173,7 @@ def solved(matrices: Array, right_hand: Array) -> Array:
 def rates(mechanism: Mechanism, at: Configurations, *sides: Array) -> list[Array]:
     """Velocities [o', w], accelerations [o'', w'] and higher rates of the bodies, (N, bodies, 2, 3) each.
 
-    J v = first,  J a = second - drift(v),  and so on:  one matrix serves all.
+    J v = first,  J a = second - drift(v),  and so on, with one matrix.
 
     Args:
         at: N configurations, or one. sides: (N, rows) rates of the rows, the first, the second and so on.
@@ -185,17 +185,18 @@ def rates(mechanism: Mechanism, at: Configurations, *sides: Array) -> list[Array
 
 
 def velocities(at: Configurations, rates: Array) -> Array:
-    """v with  J v = rates,  (N, rows), corrected once by its residual: as accurate as by factors (Higham,
-    ch. 12)."""
+    """v with J v = rates, (N, rows), corrected once by its residual: as accurate as by factors (Higham, ch.
+    12).
+    """
     rates = rates[:, at.choice.kept]
     found: Array = np.matvec(at.inverse, rates)
     return np.asarray(found + np.matvec(at.inverse, rates - np.matvec(at.kept, found)))
 
 
 def more_than_rounding(inverse: Array) -> Array:
-    """(N,) factor by which a left-out row may exceed its own rounding where the other rows are closed.
+    """(N,) factor by which a left-out row may exceed its rounding if the other rows are closed.
 
-    Such a configuration has an error of the norm of the inverse times the rounding of its rows, and a row
+    The error of such a configuration is the norm of the inverse times the rounding of its rows, and a row
     changes by no more than a few times that.
     """
     return np.asarray(1.0 + np.sqrt(inverse.shape[-1]) * lengths(inverse))

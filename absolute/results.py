@@ -21,10 +21,9 @@ class Instants(NamedTuple):
     Attributes:
         rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), the standing body first.
         rates: (N, R, bodies, 2, 3) velocities [o', w], accelerations [o'', w'] and higher rates of the
-            bodies; zero for the standing body, and for all if rates are not requested.
+            bodies; zero for the standing body, and for all without rates.
         slopes: (N, K, bodies, 2, 3) velocities of the bodies for a unit rate of one input each.
-        residual: (N,) largest violation of a row. condition: (N,) condition numbers. corrections: (N,) Newton
-            corrections.
+        residual, condition, corrections: (N,) as in `Configurations`.
     """
 
     rotation: Array
@@ -40,12 +39,12 @@ class Instants(NamedTuple):
 class Motion:
     """Instants of a mechanism for effects and loads, in mm, before the car is displaced.
 
-    Lengths are measured from the middle of the drawing until the last sum, so that the distance of the car
-    from its origin costs no more than one rounding.
+    Places are measured from the middle of the drawing, so that the distance of the car from its origin costs
+    only the rounding of the last sum.
 
     Attributes:
         by: part, and "travel", "rack" or "roll", of the K inputs by which effects take derivatives; the
-            derivatives by time come after these.
+            derivatives by time follow these.
         part: the part whose wheel is used.
     """
 
@@ -80,11 +79,11 @@ class Motion:
         return np.concatenate((self.instants.slopes, self.instants.rates[:, :1]), 1)
 
     def components(self, vector: Dual) -> Dual:
-        """Components of a vector (3, N) along outboard, rearward and up, which do not turn."""
+        """Components of a vector (3, N) along outboard, rearward and up as drawn."""
         return vector.along(self.corner.axes)
 
     def line(self, start: str, end: str) -> Dual:
-        """(3, N) from one point to another; between points of one body, the rotated drawn vector."""
+        """(3, N) from one point to another; within one body it is the rotated drawn vector."""
         drawing, bodies = self.mechanism.drawing, self.mechanism.model.bodies
         body = next((body for body, points in bodies.items() if {start, end} <= set(points)), None)
         if body is None:
@@ -103,7 +102,7 @@ class Motion:
         return constant(self.mechanism.drawing.points[point][:, None])
 
     def riding(self, on: str, arm: Dual) -> Dual:
-        """A vector (3, N) with the derivatives that it has if it turns with a body."""
+        """A vector (3, N) with its derivatives if it turns with a body."""
         return Dual(arm.value, cross(self.spin(on).T, arm.value.T).T)
 
     def spin(self, on: str) -> Array:
@@ -119,7 +118,7 @@ class Motion:
         return Dual(origin * drawing.size, slopes * drawing.size) + arm
 
     def _turned(self, body: int, line: Array) -> Dual:
-        """(3, N) a vector of a body, rotated; given in the body, (3,), in units of size."""
+        """(3, N) a vector fixed in a body; given as drawn, (3,), in units of size."""
         turned = self.instants.rotation[:, body] @ (line * self.mechanism.drawing.size)
         return Dual(turned.T, cross(self._slopes[:, :, body, 1], turned[:, None]).transpose(2, 0, 1))
 
@@ -153,16 +152,16 @@ def solution_of(
         iterations=_locked(found.corrections),
         residual=_locked(found.residual * size),
         condition=_locked(found.condition),
-        # Points are rounded too, whatever the residual: half a unit in the last place of lengths up to the
-        # diameter. The body on which a car turns has 13 roundings in its rotation and origin (see `rows`), so
-        # an error of sqrt(13) eps / 2. The points of that body have this error directly, all others with it.
+        # Coordinates up to the diameter are rounded by half a unit in the last place. The body on which a car
+        # turns has 13 roundings in its rotation and origin (see `rows`), so an error of sqrt(13) eps / 2,
+        # which all points share.
         accuracy=_locked((found.residual + (1 + 2 * turns) * EPS) * size),
         **{kind: {n: _locked(a) for n, a in of.items()} for kind, of in asked.items()},
     )
 
 
 def _points(mechanism: Mechanism, found: Instants, displaced: Array, orders: int) -> Array:
-    """(orders, P, N, 3) all points and as many of their rates as requested, mm and s."""
+    """(orders, P, N, 3) all points and their rates, mm and s."""
     drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
     arm = np.matvec(found.rotation[:, body].swapaxes(0, 1), arms[:, None])
     state = np.empty((orders, *arm.shape))

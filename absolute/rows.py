@@ -28,9 +28,9 @@ from absolute.model import Row
 from absolute.vectors import EPS, Array, carried, cross, product_rule
 
 # A row is a sum of products of rotated vectors and origins. Its terms have about 27 roundings of eps / 2:
-# four from the quaternion, four from its products, three from the rotation, two from the origin, eleven from
-# the direction, three from the last product. Independent ones add up to sqrt(27 / 3) of eps / 2, or 1.5 eps;
-# more than 4 eps is not rounding alone.
+# four in the quaternion, four in its products, three in the rotation, two in the origin, eleven in the
+# direction, three in the last product. Independent ones add up to sqrt(27 / 3) of eps / 2, or 1.5 eps; more
+# than 4 eps is not rounding alone.
 ROUNDINGS = 4 * EPS
 
 WHOLE_TURN = 2.0 * np.pi
@@ -53,13 +53,13 @@ class Placed(NamedTuple):
 
 
 class RowStack:
-    """All rows of a mechanism, stacked.
+    """All rows of a mechanism.
 
     Attributes:
         owners: names of the rows' joints and inputs. first, second: their bodies.
-        drawn: values that joints keep. count, unknowns: numbers of rows and columns of the Jacobian.
-
-    Columns of the Jacobian are the unknown ones among [o', w] of all bodies.
+        drawn: values that joints keep.
+        count, unknowns: numbers of rows and columns of the Jacobian; its columns are the unknowns among
+            [o', w] of all bodies.
     """
 
     def __init__(self, rows: Sequence[Row], bodies: int, columns: NDArray[np.intp]) -> None:
@@ -131,19 +131,20 @@ class RowStack:
         return tuple(dict.fromkeys(self.owners[row] for row in rows))
 
     def of_one_point(self, row: int) -> list[int]:
-        """Numbers of the rows with the same point of the same first body and the same point of the second."""
+        """Numbers of the rows with the same points of the same two bodies."""
         arms = self._local[1:]
         same = (arms == arms[:, [row]]).all(axis=(0, 2)) & (self._offset > 0.0)
         same &= (self.first == self.first[row]) & (self.second == self.second[row])
         return [int(number) for number in np.flatnonzero(same)]
 
     def read_at_foot(self, placed: Placed, gap: Array) -> Placed:
-        """Rows that are not closed, with their joints' forces at the foot on the first body.
+        """Open rows with their joints' forces at the foot on the first body.
 
-        In a joint that is open by m, the sum of its rows' -gap a, each row's rate may be taken with its force
-        at the point of the second body, as in `place`, or at that point's foot on the axis of the first,
+        In a joint that is open by m, the sum of its rows' -gap a, the rate of a row may be taken with its
+        force at the point of the second body, as in `place`, or at the foot of that point on the axis of the
+        first,
             a . (o2' + w2 x (r2 - m) - o1' - w1 x (r1 + e - m)).
-        When the joint is closed, both are equal. Directions of right angles are treated likewise.
+        They are equal when the joint is closed. Directions of right angles are treated likewise.
         """
         owner, partner = np.array(self.owners), self._local[2]
         # Rows of one joint about the same point, or the same direction.
@@ -163,8 +164,7 @@ class RowStack:
         return matrix
 
     def rounding(self, placed: Placed) -> Array:
-        """(..., rows) largest rounding error of each row: ROUNDINGS times the lengths of the vectors that it
-        sums."""
+        """(..., rows) largest rounding error of each row: ROUNDINGS times the lengths of its vectors."""
         far = np.sqrt(np.vecdot(placed.origin, placed.origin))
         between = far.take(self.first, -1) + far.take(self.second, -1)
         return np.asarray(ROUNDINGS * (self._spans + self._offset * between))

@@ -19,18 +19,15 @@ class Solution:
         angular_velocity: moving body name -> (N, 3), rad/s, world axes; empty without rates.
         angular_acceleration: moving body name -> (N, 3), rad/s^2, world axes; empty without rates.
         iterations: (N,) Newton corrections at each instant, from its prediction.
-        residual: (N,) largest violation of any row, mm (rows of directions times the size of the
-            mechanism).
+        residual: (N,) largest violation of a row, mm (rows of directions: times the mechanism's size).
         condition: (N,) condition number of the scaled Jacobian (1-norm).
-        accuracy: (N,) mm: the rows hold exactly for points within this distance of the given ones. It is the
-            residual plus the rounding of coordinates as large as the mechanism. How far it moves a number
-            depends on the pose.
+        accuracy: (N,) mm: the rows hold exactly for points within this distance of the given ones: residual
+            plus rounding of coordinates as large as the mechanism. Its effect depends on the pose.
         effects: name -> (N,), the requested ones, in their units (see `EFFECTS`).
         rod_force: name of a rod, or `damper` with its part in front -> (N,) axial force, N, tension positive;
             empty if loads were not requested.
         joint_force: point of a ball joint, a hinge (only across its line) or a slide -> (N, 3), N, world
-            axes: on the knuckle, else on the first-named moving body, or on a point of no body; empty without
-            loads.
+            axes: the force on the body that `Model.reported_joints` names; empty without loads.
         hinge_thrust: first point of a hinge -> (N,), N: on the same body, the sum of both forces along the
             line to the second point.
     """

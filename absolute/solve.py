@@ -1,4 +1,4 @@
-"""Solves a motion: assembles the drawing, follows it through the instants, and computes the rates there."""
+"""Solves a motion: assembles the drawing, follows it through the instants, computes the rates there."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ LEFT_OUT = 3 * 4 * EPS
 
 @dataclass(frozen=True)
 class ClosedDrawing:
-    """A drawing solved at its own inputs.
+    """A drawing solved at the drawn inputs.
 
     Attributes:
-        inputs: input name -> its value in the drawing, rad or mm.
+        inputs: input name -> its drawn value, rad or mm.
         position: point name -> (3,) place in the closed drawing, mm.
         movement: point name -> distance from the drawn to the closed place, mm.
     """
@@ -39,7 +39,7 @@ class ClosedDrawing:
 
 
 def close_drawing(model: Model) -> ClosedDrawing:
-    """Solve a model at the inputs of its own drawing.
+    """Solve a model at the drawn inputs.
 
     Raises:
         DescriptionError, PoseError: as `solve`.
@@ -72,10 +72,10 @@ def solve(
     Returns:
         Solution with one row per instant.
     Raises:
-        DescriptionError: an axis of the model has no length, or its lines have opposite senses; surplus rows
-            that are not redundant; loads requested of a model without loads or with redundant rows; effects
-            or loads of a model without a role, car data, or an input to take derivatives by.
-        InputError: names, shapes or values of inputs; an unknown effect.
+        DescriptionError: an axis has no length, or lines have opposite senses; surplus rows are not
+            redundant; the model has no loads, or redundant rows, though loads are requested; it lacks a role,
+            car data, or an input to take derivatives by, for the effects or loads.
+        InputError: wrong names, shapes or values of inputs; an unknown effect.
         PoseError: the drawn bodies do not fit together, the mechanism locks before the inputs of an instant
             are reached, or these do not determine the pose.
         Every error at an instant carries the motion before it as `partial`.
@@ -147,7 +147,7 @@ class Assembled:
             return solution_of(mechanism, found, moved, rates, **numbers(found))
 
         with np.errstate(over="ignore", invalid="ignore"):
-            # What effects or loads lack is reported before solving: even for zero instants.
+            # A description that lacks data for effects or loads is refused before solving, even for N = 0.
             runs = [next(followed)]
             numbers(runs[0])
             try:
@@ -169,8 +169,8 @@ class Assembled:
             raise refused
 
     def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Instants]:
-        """The instants of values (N, orders, values): first an empty run, then one run after the other, with
-        the velocities for unit rates of some inputs."""
+        """The instants of values (N, orders, values), with the velocities for unit rates of some inputs: an
+        empty run first, then one run after the other."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
         # For a slide, per unit of its travel, whatever value drives it.
@@ -267,7 +267,7 @@ def _of_rates(
     speed = lengths(velocity)
     missed = np.divide(rate, speed, out=np.zeros_like(rate), where=speed > 0.0)
     allowed = LEFT_OUT * more_than_rounding(found.inverse) * speed
-    # NaN passes here: overflow has an error of its own.
+    # NaN passes here: overflow is reported elsewhere.
     return np.maximum(found.residual, missed), ~(rate > allowed)
 
 

@@ -24,13 +24,13 @@ def cross(a: Array, b: Array) -> Array:
 
 
 def carried(vector: Array, spins: Sequence[Array], orders: int) -> list[Array]:
-    """A vector fixed in a rotating body, and its time derivatives: from x' = w x x by the product rule
+    """A vector fixed in a rotating body, and its time derivatives, from x' = w x x:
 
         x^(n+1) = sum_i C(n, i) w^(i) x x^(n-i),    i = 0 .. n.
 
     Args:
-        vector: (..., 3). spins: w and its derivatives as far as they are not zero, (..., 3) each.
-        orders: number of results, the vector itself included.
+        vector: (..., 3). spins: w and its derivatives, (..., 3) each; missing ones are zero.
+        orders: number of results, with the vector.
     """
     found = [vector]
     for n in range(orders - 1):
@@ -39,7 +39,7 @@ def carried(vector: Array, spins: Sequence[Array], orders: int) -> list[Array]:
 
 
 def product_rule(order: int, terms: Iterable[Any]) -> Any:
-    """sum_i C(order, i) terms_i, over the given terms."""
+    """sum_i C(order, i) terms_i over the given terms."""
     total: Any = 0.0
     for i, term in enumerate(terms):
         share = term if i in (0, order) else comb(order, i) * term

@@ -1,6 +1,6 @@
-"""The shipped scenes as the model is given them, and where their points exactly are.
+"""The shipped scenes as input of the model, and the exact places of their points by the reference.
 
-The reference, which says so, is held to closed forms and printed tables in tests/mechanisms.
+tests/mechanisms compares the reference with closed forms and printed tables.
 """
 
 from functools import cache
@@ -22,7 +22,7 @@ EPS = float(np.finfo(float).eps)
 
 
 class Motion(NamedTuple):
-    """A mechanism as it is compiled, and the laws of its inputs (N, 3)."""
+    """A mechanism's description, and the laws of its inputs (N, 3)."""
 
     plain: dict[str, Any]
     inputs: dict[str, Array]
@@ -33,7 +33,7 @@ class Motion(NamedTuple):
 
 @cache
 def shipped(scene: str, count: int = 5) -> Motion:
-    """The motion of a shipped scene at some of its instants, the first and the last among them."""
+    """The motion of a shipped scene at some instants, from the first to the last."""
     asked = Scene.load(scene)
     places = np.linspace(0, len(asked.instants) - 1, count).round().astype(int)
     return Motion(plain_scene(scene), laws_of(asked, asked.instants[places]))
@@ -53,5 +53,5 @@ def error(found: Array, wanted: Any) -> float:
 
 
 def off(solution: absolute.Solution) -> Array:
-    """(N,) mm: points that miss their rows by the accuracy that is stated lie within so many times that."""
+    """(N,) mm: largest error of points whose rows are violated by the stated accuracy."""
     return np.asarray(solution.accuracy * solution.condition)

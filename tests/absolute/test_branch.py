@@ -1,4 +1,4 @@
-"""Of all assemblies of a drawing's bodies the one that is drawn, all along a motion, or a refusal."""
+"""A motion stays in the drawn assembly, or it is refused."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ MIRROR = np.array([1.0, -1.0, 1.0])
 
 
 def over(points: dict[str, Array], *planes: tuple[str, str, str, str]) -> dict[str, Array]:
-    """Points drawn on the other side of planes through three others: distances to these stay."""
+    """Points mirrored in planes through three others: their distances to these stay."""
     points = {name: np.array(place, float) for name, place in points.items()}
     for moved, *through in planes:
         a, b, c = (points[name] for name in through)
@@ -50,7 +50,7 @@ def test_each_of_the_eight_assemblies_of_a_double_wishbone_keeps_to_its_own(
 ) -> None:
     car = short_lower_arm()
     if below:
-        # The lower ball joint on the other side of its arm's axis, as high.
+        # The lower ball joint on the other side of its arm's axis, at the same height.
         car["lower_ball_joint"][1] = 2.0 * -560.0 - car["lower_ball_joint"][1]
     car = over(car, *planes)
     drawn = absolute.close_drawing(absolute.compile(WISHBONE | {"points": car})).inputs
@@ -71,7 +71,7 @@ def test_each_of_the_eight_assemblies_of_a_double_wishbone_keeps_to_its_own(
 def test_a_pose_that_left_the_branch_is_led_to_by_nearer_ones_or_refused(
     monkeypatch: pytest.MonkeyPatch, always: bool, check: str
 ) -> None:
-    """Planted: a determinant has another sign, or nothing closes; once or always."""
+    """Planted faults: a determinant has another sign, or nothing closes; once or always."""
     motion, seen = shipped("bounce-and-steer", 20), 0
     plain, assembled = motion.solve(), absolute.Assembled(absolute.compile(motion.plain))
 
@@ -110,7 +110,7 @@ def test_poses_are_predicted_to_the_second_order_in_all_inputs_together(
     drawn, ends = assembled.drawn_inputs, {"arm_angle": 0.1, "rack": rack}
     laws = {name: np.stack([drawn[name] + end * way, 0 * way, 0 * way], -1) for name, end in ends.items()}
     assembled.solve(laws, rates=False)
-    # Half of the way, an eighth of the third order.
+    # Half of the path has an eighth of the third-order error.
     assert len(missed) == 1
     assert missed[0][1:] / missed[0][:-1] == pytest.approx(8.0, rel=0.2)
 
@@ -132,7 +132,7 @@ def test_a_long_way_close_by_a_fold_does_not_cross_it() -> None:
 
 
 def test_a_strut_that_closing_moves_as_far_as_the_car_is_large_is_refused() -> None:
-    # The certified way of closing turns back at a fold after 0.056 of it; another assembly lies far away.
+    # The proven path of closing turns back at a fold after 0.056 of its length; another assembly is far away.
     points = STRUT["points"] | {"strut_lower": STRUT["points"]["lower_arm_front"]}
     with pytest.raises(absolute.AssemblyError, match=r"moves 'strut_lower' by 437 mm; .* may be meant"):
         absolute.close_drawing(absolute.compile(STRUT | {"points": points}))

@@ -1,6 +1,6 @@
-"""Numbers of the car: digits far out, batches, and what they need.
+"""Effects: digits far from the origin, batches, and what they need.
 
-What they are is in tests/mechanisms, for all mechanics.
+tests/mechanisms tests their values for all mechanics.
 """
 
 from typing import Any
@@ -16,14 +16,14 @@ from absolute.dual import arctan2, constant
 
 
 def solved(described: dict[str, Any], names: Any, **values: float) -> dict[str, float]:
-    """Effects at values of the inputs, which are 0 where they are not given."""
+    """Effects at values of the inputs; missing inputs are 0."""
     inputs = {name: np.array([[values.get(name, 0.0), 0.0, 0.0]]) for name in described["inputs"]}
     found = Motion(described, inputs).solve(rates=False, effects=names).effects
     return {name: float(number[0]) for name, number in found.items()}
 
 
 def test_a_short_spin_axis_keeps_its_digits() -> None:
-    """Its ends are places hundreds of mm away, whose difference would have lost that many digits."""
+    """The difference of the places of its ends, hundreds of mm away, would have fewer digits."""
     scene = plain_scene("double-wishbone", ["arm_angle", "rack"])
     drawn = {name: np.round(np.array(p) * 2.0**22) / 2.0**22 for name, p in scene["points"].items()}
     drawn["wheel_axis_inner"] = drawn["wheel_centre"] - np.array([2.0**-13, 2.0**-10, 2.0**-12])

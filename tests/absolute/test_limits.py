@@ -1,6 +1,6 @@
-"""The ends of a motion: refused beyond them with what locks, and exact before.
+"""The ends of a motion: exact up to them, and beyond them an error that names the locking joints.
 
-That they are where geometry has them, the hard cases of `validate` say.
+The hard cases of `validate` compare the ends with geometry.
 """
 
 from typing import Any
@@ -75,8 +75,8 @@ def test_bricards_six_hinges_are_not_led_beyond_their_fold(degrees: float) -> No
 
 
 def test_a_row_that_says_what_no_other_says_is_kept_though_it_followed_from_them_in_the_drawing() -> None:
-    # At 90 degrees no force in the first row of the first hinge is in equilibrium with those in the others:
-    # without it these say too little.
+    # At 90 degrees the first row of the first hinge is independent of the others, and they do not determine
+    # the pose without it.
     ways = np.radians([[30.0, 60.0, 90.0], [90.0, 150.0, 200.0]])
     for turns in ways:
         law = np.stack([turns, np.ones(3), np.zeros(3)], axis=-1)
@@ -127,7 +127,7 @@ def test_a_drawing_at_a_dead_point_is_refused_with_its_links(moved: Any, link: s
 
 
 def test_a_ball_joint_drawn_abreast_of_the_top_mount_is_refused() -> None:
-    # The foot of its normal is the top mount itself; powers of two make it exact.
+    # The foot of the normal from it is the top mount; powers of two make it exact.
     strut = {"strut_top": (512.0, -256.0, 256.0), "strut_lower": (512.0, -256.0, 128.0)}
     rest = {"strut_rod_end": (512.0, -256.0, 192.0), "lower_ball_joint": (512.0, -384.0, 256.0 + 1e-13)}
     with pytest.raises(absolute.SingularError, match=r"slide strut at strut_top.*move a point off it"):

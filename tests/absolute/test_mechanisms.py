@@ -1,4 +1,4 @@
-"""Rows that follow from each other, and derivatives of an arm on an arm."""
+"""Redundant rows, and derivatives of an arm on an arm."""
 
 from math import comb
 from typing import Any
@@ -69,7 +69,7 @@ def test_every_derivative_of_an_arm_that_turns_on_a_turning_arm_is_that_of_two_r
     found = absolute.solve(absolute.compile(four_bar() | described), laws).derivatives
 
     def spun(speed: float, axis: Array, t: float) -> Array:
-        """A rotation and its derivatives: each turns the one before by a right angle."""
+        """A rotation and its derivatives, each the one before turned by a right angle."""
         k = speed * np.cross(axis / np.linalg.norm(axis), np.eye(3)).T
         return np.stack([expm(k * t) @ np.linalg.matrix_power(k, n) for n in orders])
 

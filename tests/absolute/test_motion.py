@@ -1,6 +1,6 @@
-"""What every solved motion satisfies: of a scene of each kind, and of a car that rolls and pitches.
+"""Properties of every solved motion, for a scene of each kind and for a car that rolls and pitches.
 
-That its numbers are right is in tests/mechanisms, for all mechanics.
+tests/mechanisms tests the numbers for all mechanics.
 """
 
 import pickle
@@ -18,7 +18,7 @@ SCENES = ("pushrod-by-damper", "bricard", "axle-roll")
 
 
 def one_arm() -> Motion:
-    """Somewhere, at any rates up to the jerk."""
+    """The arm at random inputs with random rates up to the jerk."""
     random = np.random.default_rng(1)
     scales = {"turn": 0.5, "steer": 8.0, "roll": 0.3, "pitch": 0.3, "heave": 20.0, "sway": 20.0}
     inputs = {name: scale * random.uniform(-1.0, 1.0, (3, 4)) for name, scale in scales.items()}

@@ -1,4 +1,4 @@
-"""What cannot be described or solved is refused in one line with the name, the place and the value."""
+"""Wrong descriptions and inputs are refused in one line with the name, the place and the value."""
 
 import copy
 from pathlib import Path
@@ -64,7 +64,7 @@ def compiled(described: dict[str, Any], asked: str) -> None:
 
 
 def refused(described: dict[str, Any], *words: str, asked: str = "") -> Any:
-    """The one line that says why something cannot be compiled, or what it lacks for numbers or loads."""
+    """The error, in one line, for a description that is wrong, or that has not what effects or loads need."""
     with pytest.raises((DescriptionError, InputError)) as caught:
         compiled(described, asked)
     told = str(caught.value)
@@ -109,7 +109,7 @@ def test_lines_that_lead_nearly_along_each_other_are_taken() -> None:
 def test_a_car_too_small_or_too_far_out_for_doubles_is_refused() -> None:
     for factor in (5e-324, 1e-110, 0.0):
         refused(drawn(**{n: tuple(factor * x for x in p) for n, p in POINTS.items()}), "1e-100 mm")
-    # Half of the digits is the least: 500 mm at 3e10 mm and less have fewer.
+    # At least half of the digits are needed: 500 mm at 3e10 mm have fewer.
     refused(drawn(**{name: tuple(np.add(p, 1e11)) for name, p in POINTS.items()}), "apart")
 
 
@@ -131,7 +131,7 @@ TWO = np.zeros((2, 3))
     ("inputs", "name", "instant", "say"),
     [
         ({"arm_angle": TWO}, "rack", None, r"missing: \['rack'\]"),
-        # Of several that are wrong the first by name.
+        # The first by name of several wrong inputs.
         ({"y": 0, "x": 0, "arm_angle": TWO, "rack": TWO}, "x", None, r"unknown: \['x', 'y'\]"),
         ({"arm_angle": TWO, "rack": np.zeros((3, 3))}, "rack", None, "3 instants, the others have 2"),
         ({"arm_angle": TWO, "rack": np.zeros(2)}, "rack", None, "shape"),

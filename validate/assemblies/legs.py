@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.errors import NoAnswer
-from validate.spanning_tree.cut import car_directions
+from validate.spanning_tree.tree import car_directions
 
 Array = NDArray[np.float64]
 

@@ -1,6 +1,5 @@
-"""The base cars from which random cars are made: one for every mechanism and closure with a shipped scene.
-
-The base car is that of the first built-in scene of the mechanism. A user's scene file gives a base car too.
+"""The base cars from which random cars are made: those of the first built-in scene of every mechanism and
+closure, or of a user's scene file.
 """
 
 from __future__ import annotations
@@ -17,8 +16,8 @@ from pointcoord.mechanism import shipped
 from validate.cars.car import Car
 from validate.cars.input_ends import condition, drawn_inputs, end
 
-# Other input sets may have a condition number up to this factor times that of the base car's own inputs; sets
-# above it hardly constrain some degree of freedom.
+# Input sets may have a condition number up to this factor times that of the base car's inputs; above it, a
+# set hardly constrains some degree of freedom.
 ALIKE = 5.0
 Names = tuple[str, ...]
 
@@ -54,17 +53,17 @@ class Variant:
 
     @property
     def of_parts(self) -> bool:
-        """Whether the mechanism is composed of other mechanisms, as an axle is of two corners."""
+        """Whether the mechanism consists of others, as an axle of two corners."""
         return bool(self.base_scene.mechanism.file.mirrored)
 
     @property
     def holds_its_shape(self) -> bool:
-        """Whether equations are redundant as drawn, as for parallel hinges: no point may be moved alone."""
+        """Whether equations are redundant as drawn, as for parallel hinges: then no point may move alone."""
         return bool(self.base_scene.mechanism.topology.left_out)
 
     @cached_property
     def input_sets(self) -> tuple[Names, ...]:
-        """Sets of inputs that can drive the mechanism, the set of the base car's scene first."""
+        """Sets of inputs that can drive the mechanism; the set of the base car's scene comes first."""
         own = tuple(name for name in self.base_scene.inputs if name not in self.chassis_motions)
         limit = ALIKE * condition(self.base, drawn_inputs(self.base, own))
         return own, *(one for one in _moving_sets(self.base, len(own), limit) if set(one) != set(own))

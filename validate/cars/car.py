@@ -13,14 +13,13 @@ from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.scene.scene_file import MechanismPart
-from validate.spanning_tree.cut import car_directions
+from validate.spanning_tree.tree import car_directions
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
 Points = dict[str, Point]
-# The law of an input: a number is a constant, a sequence is a polynomial from t^0 up, a mapping is a law of a
-# scene.
 Law = float | Sequence[float] | Mapping[str, Any]
+"""The law of an input: a constant, a polynomial from t^0 up, or a law as in a scene."""
 
 UP, RIGHT = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
 
@@ -58,7 +57,7 @@ class Car:
         part = part.mechanism if isinstance(part, Scene) else part
         part = part if isinstance(part, MechanismPart) else MechanismPart.checked(part, "a car")
         given = {name: getattr(part, name) for name in ("title", *TABLES)}
-        # The scene of a shipped mechanism has no tables.
+        # A shipped mechanism has no tables in the scene.
         shipped = not (given["bodies"] or given["parts"])
         tables = None if shipped else {name: table for name, table in given.items() if table}
         own = part.points, part.side, part.up, part.right, part.closure
@@ -97,11 +96,7 @@ class Car:
         return float(np.ptp(np.array(list(self.points.values())), axis=0).max())
 
     def room(self, name: str, share: tuple[float, float]) -> float:
-        """A range of an input that suits the size of the car.
-
-        Args:
-            share: the range in rad, for an angle; the range as a share of the car's size, for a length.
-        """
+        """The range of an input, rad or mm; `share` gives it in rad, and as a share of the car's size."""
         return share[0] if self.structure.inputs[name].unit == "rad" else share[1] * self.size
 
     def direction(self, name: str) -> Array:
@@ -109,7 +104,7 @@ class Car:
         return car_directions({"up": self.up, "right": self.right})[name]
 
     def drawn_as(self, points: Mapping[str, Array]) -> Car:
-        """The car with other hardpoints."""
+        """This car with other hardpoints."""
         return replace(self, points={name: as_tuple(place) for name, place in points.items()})
 
     def _each(self, put: Callable[[Array], Array]) -> Car:
@@ -153,7 +148,7 @@ def content_of(
         start, stop: s; without a stop there is a single instant.
         samples: number of instants; if not given, three for a motion.
         tolerance: mm.
-        effects: if not given, all effects that the car has and every model computes.
+        effects: by default all that the car has and every model computes.
     Raises:
         SceneError: effects are not given, and the content is no valid scene.
     """
@@ -168,7 +163,7 @@ def content_of(
     }
     if effects is not None:
         return content
-    # Gradients follow from the other effects and take as long; spanning-tree models give no jerks.
+    # Gradients follow from the other effects and take as long; models in trees give no jerks.
     had = (EFFECTS[name] for name in Scene.from_mapping(content).mechanism.effects)
     plain = [one.name for one in had if not (one.way or one.base) and one.derivative <= 2]
     return content | {"effects": plain}

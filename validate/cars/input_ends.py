@@ -1,12 +1,12 @@
-r"""The drawn values of a car's inputs, and the end of each input's range.
+"""The drawn values of a car's inputs, and the ends of their ranges.
 
-pointcoord closes the drawing, reads its inputs, and follows each input to the last pose. Such an end is a
-fold: near it all rates grow as the inverse root of the distance,
+pointcoord closes the drawing, reads its inputs, and follows an input to the last pose. Such an end is a fold:
+near it all rates grow as the inverse root of the distance,
 
     |v| = k (end - value)^(-1/2)    =>    end - b = (b - a) / ((|v_b| / |v_a|)^2 - 1)
 
-for two values a and b before the end. This formula gives the end to the rounding of the input, whereas a path
-has to stop some 1e-12 of its length before it.
+for two values a and b before the end. This gives the end to the rounding of the input, whereas a path has to
+stop some 1e-12 of its length before it.
 """
 
 from __future__ import annotations
@@ -22,14 +22,13 @@ from validate.cars.car import Car, Law, content_of
 Inputs = dict[str, float]
 
 # Distances from the end at which rates are taken, as shares of the range. The relative error of the formula
-# is of the order of the root of the distance. So the error of the end is 1e-12 times a factor that depends on
-# the car after the first step, which must be far below the next distance, then 3e-14 times this factor, and
-# finally 1e-16.
+# is of the order of the root of the distance. So the error of the end is 1e-12 times a factor of the car
+# after the first step, far below the next distance, then 3e-14 times this factor, and finally 1e-16.
 NEAR = (1e-8, 1e-9, 2e-11)
 
 
 class End(NamedTuple):
-    """An end of an input, with the other inputs held.
+    """An end of an input, with the other inputs fixed.
 
     Attributes:
         value: the end, rad or mm; poses exist up to this value.
@@ -49,7 +48,7 @@ def drawn_inputs(car: Car, inputs: Collection[str] = ("arm_angle", "rack")) -> I
     """The values of the inputs in the closed drawing, rad and mm.
 
     Raises:
-        PointcoordError: the car is wrong, its drawing does not close, or the inputs do not match its degrees
+        PointcoordError: the car is wrong, its drawing does not close, or the inputs do not drive all degrees
             of freedom.
     """
     return drawing_stands.drawn_inputs(at(car, dict.fromkeys(inputs, 1.0)))
@@ -75,11 +74,11 @@ def redrawn(car: Car, inputs: Mapping[str, float]) -> Car:
 
 
 def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | None:
-    """The end of an input that is reached from a pose with the other inputs held; None if there is no fold.
+    """The end of an input, reached from a pose with the other inputs fixed; None if it is not a fold.
 
     Args:
         held: values of all inputs at the pose.
-        ahead: whether the upper end is wanted.
+        ahead: whether to find the upper end.
     Raises:
         PointcoordError: there is no such pose, or no straight path from the drawing to the end.
     """
@@ -98,8 +97,8 @@ def end(car: Car, held: Mapping[str, float], driven: str, ahead: bool) -> End | 
         farther = value - 4.0 * near * (reach if ahead else -reach)
         slow, fast = speed(farther), speed(nearer)
         grown = (fast / slow) ** 2
-        # At a quarter of the distance from a fold the squared rate grows by 4, except for the error of the
-        # end.
+        # At a quarter of the distance from a fold the squared rate is 4 times as large, up to the end's
+        # error.
         if not 2.0 < grown < 8.0:
             return None
         value = nearer + (nearer - farther) / (grown - 1.0)

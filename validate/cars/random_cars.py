@@ -1,16 +1,15 @@
-"""Random cars of every mechanism, with points moved, mirrored, turned, scaled, displaced; and poses near a
-lock.
+"""Random cars of every mechanism, with points moved, mirrored, turned, scaled, displaced; poses near a lock.
 
-A car is accepted if pointcoord solves it at its drawing, and if closing the drawing moves no point far, as in
-a drawing that an engineer would make. Otherwise its moves are halved towards the base car. If some equations
-of a mechanism are redundant as drawn, as in a planar mechanism, the car is only mirrored, turned, scaled and
-displaced: other changes might make these equations contradict each other.
+A car is accepted if pointcoord solves it as drawn, and if closing the drawing moves no point far, as in a
+drawing by an engineer. Otherwise its moves are halved. If equations of a mechanism are redundant as drawn, as
+in a planar mechanism, its points are not moved singly, since these equations might then contradict each
+other.
 
-Points on a slide are put back onto the line of the slide, from the mechanism's tables. A closure other than
-`drawn` places such points itself, so there they may be drawn anywhere.
+Points on a slide are put back onto its line, unless the closure is not `drawn`: then the closure places them,
+and they may be drawn anywhere.
 
-An input has a limited range (see `input_ends`). A near pose drives one input of a random car to such an end
-and steps back by a random share of its range.
+A near pose drives one input of a random car to the end of its range (see `input_ends`) and steps back by a
+random share of the range.
 """
 
 from __future__ import annotations
@@ -31,8 +30,8 @@ SLID, SLID_SHARE = 5.0, 0.15  # largest slide: mm along a direction, or a share 
 LEFT_OVER = 0.05  # largest distance of a drawn point from its line, mm: half of the limit of the warning
 HALVED = 8  # number of halvings of the moves; after that nothing is moved
 FIRST = 0.7  # share of the cars with the first closure, for a mechanism with several closures
-# Largest movement of a point as the drawing closes, as a share of the car's size. The paper's strut moves by
-# 0.022; a strut drawn much worse may be nearer to another assembly mode than to the intended one.
+# Largest movement of a point as the drawing closes, as a share of the car's size: 0.022 for the paper's
+# strut. A strut drawn much worse may be nearer to another assembly than to the intended one.
 CLOSED_BY = 0.05
 OWN = 0.5  # share of the cars with the inputs of their base car's scene
 NEAREST = 1e-12  # least distance from an end, as a share of the input's range: its rounding is 1e-4 of that
@@ -47,10 +46,9 @@ class Moves:
     Attributes:
         points: the move of each point, (3,), mm; not for points on slides.
         slid: the move of each point on a slide along its line, -1 to 1.
-        beside: the offset of each point on a slide from its line, (3,), mm.
+        beside: the offset of points on slides from their lines, (3,), mm.
         without: points that are left out, so that others take their place.
-        whole: whether moves are whole millimetres, and moves on slides whole millimetres or eighths of a
-            line.
+        whole: whether moves are whole millimetres, on slides whole millimetres or eighths of a line.
     """
 
     points: Mapping[str, Array] = field(default_factory=dict)
@@ -60,7 +58,7 @@ class Moves:
     whole: bool = False
 
     def part(self, share: float) -> Moves:
-        """The moves multiplied by a share."""
+        """These moves times a share."""
         points = {
             n: np.trunc(share * move) if self.whole else share * move for n, move in self.points.items()
         }
@@ -70,14 +68,13 @@ class Moves:
         """The base car with its points moved."""
         drawn = {name: place for name, place in base.array.items() if name not in self.without}
         places = {name: place + self.points.get(name, 0.0) for name, place in drawn.items()}
-        # Slides of one input, such as both ends of a rack, travel by the same amount, that of the first
-        # slide.
+        # Slides of one input, such as both ends of a rack, travel as far as the first one.
         together = (one.named("slide") for one in base.structure.inputs.values())
         first = {slide: slides[0] for slides in together if len(slides) > 1 for slide in slides}
         travels: dict[str, float] = {}
         for title, slide in base.structure.slides.items() if base.closure == "drawn" else ():
             if slide.through not in drawn:
-                continue  # the sliding point takes the place of this point, so it is on the line
+                continue  # the sliding point stands in for this point, so it is on the line
             by_point = slide.along in drawn
             before, now = (
                 p[slide.along] - p[slide.through] if by_point else base.direction(slide.along)
@@ -94,13 +91,13 @@ class Moves:
 
 
 def with_every_point(base: Car) -> Car:
-    """The base car with every optional point given, where the point that would take its place is."""
+    """The base car with every optional point, at the place of the point that would stand in for it."""
     left_out = {new: base.points[old] for new, old in base.structure.stand_ins.items() if old in base.points}
     return replace(base, points={**left_out, **base.points})
 
 
 def sliding(base: Car) -> tuple[str, ...]:
-    """The points that must be drawn on the line of a slide, without the points that define the line."""
+    """The points that must be drawn on the line of a slide, without those that define the line."""
     slides = base.structure.slides.values() if base.closure == "drawn" else ()
     return tuple(n for slide in slides for n in slide.points if n not in (slide.along, slide.through))
 
@@ -108,7 +105,7 @@ def sliding(base: Car) -> tuple[str, ...]:
 def is_accepted(car: Car, inputs: Collection[str]) -> bool:
     """Whether pointcoord solves the car at its drawn inputs, and closing the drawing moves no point far."""
     try:
-        # Coincident points give NaN; such a car is refused.
+        # Coincident points give NaN, which is refused.
         with np.errstate(all="ignore"):
             solved = simulate(at(car, drawn_inputs(car, inputs)))
             closes = solved.closing.largest <= CLOSED_BY * solved.closing.size
@@ -118,10 +115,10 @@ def is_accepted(car: Car, inputs: Collection[str]) -> bool:
 
 
 def drawn_back(base: Car, moves: Moves, put: Callable[[Car], Car], inputs: Collection[str]) -> Car:
-    """The base car with moves applied, which are halved until the placed car is accepted.
+    """The base car with moves, which are halved until the placed car is accepted.
 
     Raises:
-        AssertionError: the base car itself is not accepted.
+        AssertionError: the base car is not accepted.
     """
     for halved in range(HALVED + 1):
         car = put(moves.part(0.5**halved if halved < HALVED else 0.0).of(base))
@@ -172,9 +169,8 @@ def _moves(rng: np.random.Generator, base: Car) -> Moves:
 
 
 def _placing(rng: np.random.Generator, variant: Variant) -> tuple[float, Callable[[Car], Car]]:
-    """A random scale, 1e-3 to 1e3, and a function that mirrors, turns, scales and moves a car.
-
-    Each of these is done with probability one half.
+    """A random scale, 1e-3 to 1e3, and a function that mirrors, turns, scales and moves a car, each with
+    probability one half.
     """
     mirrored = bool(rng.random() < 0.5) and not variant.of_parts
     scale = 10.0 ** rng.uniform(-3.0, 3.0) if rng.random() < 0.5 else 1.0
@@ -188,10 +184,10 @@ def _placing(rng: np.random.Generator, variant: Variant) -> tuple[float, Callabl
 
 @dataclass(frozen=True)
 class NearPose:
-    """A car and inputs close to the end of one of them.
+    """A car with inputs, one of them close to an end.
 
     Attributes:
-        home: the drawn inputs; the path from there to `inputs` is free.
+        home: the drawn inputs; from there to `inputs` nothing blocks the path.
         inputs: values of all driven inputs and chassis motions, rad and mm.
         driven: the input that is near its end.
         reach: range of this input, rad or mm.
@@ -211,7 +207,7 @@ def near_pose(number: int, seed: int = 0, nearest: float = NEAREST, farthest: fl
     """A random pose near an end, reproducible from its number and seed.
 
     Args:
-        nearest, farthest: limits of the distance, which is log-uniform, as shares of the input's range.
+        nearest, farthest: limits of the log-uniform distance, as shares of the input's range.
     """
     rng = np.random.default_rng([seed, number])
     while True:

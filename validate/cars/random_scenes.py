@@ -1,9 +1,9 @@
-"""Random scenes by number: a number gives the same scene on every machine and in every run.
+"""Random scenes by number: a number gives the same scene on every machine.
 
 All mechanisms are equally likely; the first of several closures has probability 0.7. The whole car is
 mirrored, turned, moved and scaled. Inputs are any set that the mechanism allows, with laws of every kind,
-from slow and small to fast and large. A share of the scenes comes close to a singular pose: near the end of
-an input, or drawn there.
+from slow and small to fast and large. Some scenes come close to a singular pose: near the end of an input, or
+drawn there.
 
 The recipe has the seed 20261123: cars are perturbed base cars of every shipped mechanism. (Recipes up to
 20261122 had only struts and double wishbones, each with its own recipe.)
@@ -29,8 +29,8 @@ Times = tuple[float, float]
 """Start and stop, s."""
 KINDS: tuple[Kind, ...] = ("regular", "near an end", "singular drawing")
 SHARES = (0.88, 0.09, 0.03)  # probabilities of the kinds
-SEED = 20261123  # change the seed with the recipe: records of studies contain it
-NEAREST = -12.0  # exponent of the least distance from a singular pose, as a share of the way to it
+SEED = 20261123  # to be changed with the recipe: records of studies contain it
+NEAREST = -12.0  # exponent of the least distance from a singular pose, as a share of the path to it
 # Ranges of inputs, rad and shares of the car's size: offset from the drawing, motion by laws, chassis.
 OFFSET, LARGEST, HEAVED = (0.25, 0.04), (0.5, 0.12), (0.3, 0.4)
 
@@ -46,7 +46,7 @@ class RandomScene:
 
 
 def random_scene(number: int) -> RandomScene:
-    """The random scene of a number, from zero up. If no input has an end, its kind is `regular`."""
+    """The random scene of a number, 0 or more. If no input has an end, its kind is `regular`."""
     rng = np.random.default_rng([SEED, number])
     kind: Kind = KINDS[int(rng.choice(len(KINDS), p=SHARES))]
     drawn = random_car(rng)
@@ -104,7 +104,9 @@ def _drawn_near(
 def _about(
     rng: Random, drawn: RandomCar, name: str, value: float, largest: tuple[float, float], times: Times
 ) -> dict[str, Any]:
-    """A random law about a value or at an offset from it, with a motion up to `largest`, often much less."""
+    """A random law about a value, or about one offset from it, that moves by up to `largest`, often much
+    less.
+    """
     middle = value + float(rng.choice([0.0, rng.uniform(-1.0, 1.0)])) * drawn.car.room(name, OFFSET)
     reach = drawn.car.room(name, largest) * 10.0 ** rng.uniform(-5.0, 0.0)
     (start, stop), duration = times, times[1] - times[0]
@@ -124,7 +126,7 @@ def _about(
 
 
 def _approach(rng: Random, drawn: float, limit: float, times: Times) -> dict[str, Any]:
-    """A law from the drawn value to close to a limit; one time in ten it goes past the limit."""
+    """A law from the drawn value to near a limit; one in ten goes past the limit."""
     left = 10.0 ** rng.uniform(NEAREST, -1.0) * float(rng.choice([1.0, -1.0], p=[0.9, 0.1]))
     end = limit + left * (drawn - limit)
     kind = rng.choice(["held", "straight", "sine"])

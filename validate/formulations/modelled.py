@@ -16,8 +16,8 @@ from validate.formulations.asked_numbers import asked_numbers, is_force, per_sec
 from validate.formulations.input_rates import laws_of
 from validate.formulations.protocol import AccuracyError, Array, FormulationError, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_at, places_in
+from validate.peers.motion import OF_CAR
 from validate.reference import NoReferenceError
-from validate.spanning_tree.wheels import OF_CAR
 
 SLOW = 2.0**-200  # rad/s and mm/s: squares of slower rates would underflow
 LONGEST = 500  # exponent of the longest unit of time, 2^500 s, whose square is still finite

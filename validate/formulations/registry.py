@@ -14,8 +14,8 @@ from validate.formulations.protocol import Formulation
 from validate.paper.printed import PRINTED
 
 if TYPE_CHECKING:
-    from validate.peers.linkage import Linkage
     from validate.peers.program import Program
+    from validate.spanning_tree.tree import SpanningTree
 
 
 WORDS = {
@@ -59,7 +59,7 @@ PROGRAMS = {
     "mujoco": "validate.peers.in_mujoco.InMujoco",
     "exudyn": "validate.peers.in_exudyn.InExudyn",
 }
-"""Class of each program's model of a linkage."""
+"""Class of each program's model of a tree."""
 
 
 def formulation(name: str) -> Formulation:
@@ -80,13 +80,13 @@ def formulation(name: str) -> Formulation:
     return tree
 
 
-def program_of(name: str) -> Callable[[Linkage], Program]:
-    """The class of a program's model of a linkage, for `relative` or one of `OUTSIDE`.
+def program_of(name: str) -> Callable[[SpanningTree], Program]:
+    """The class of a program's model of a tree, for `relative` or one of `OUTSIDE`.
 
     Raises:
         MissingLibrary: the program is not installed, or does not load.
     """
-    found: Callable[[Linkage], Program] = _imported(name, PROGRAMS[name])
+    found: Callable[[SpanningTree], Program] = _imported(name, PROGRAMS[name])
     return found
 
 

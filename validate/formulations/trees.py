@@ -15,29 +15,32 @@ from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Solution
-from validate.peers.linkage import Linkage, linkage_of
 from validate.peers.motion import Poses
 from validate.peers.motion import numbers as numbers_of
 from validate.peers.program import Program
+from validate.spanning_tree.cut import cut
+from validate.spanning_tree.tree import SpanningTree
 
 # Of Newton corrections, in rad and car sizes. It is far above rounding, and its square far below: after a
 # correction of this size the next one would be less than rounding.
 TOLERANCE = 1e-10
 
 
-def closed_in(program: Callable[[Linkage], Program], scene: Scene, tolerance: float) -> tuple[Program, Poses]:
+def closed_in(
+    program: Callable[[SpanningTree], Program], scene: Scene, tolerance: float
+) -> tuple[Program, Poses]:
     """A program's model of a scene's car, and its closed drawing.
 
     Args:
-        program: makes the program's model of a linkage.
+        program: makes the program's model of a tree.
         tolerance: size of the last Newton correction, rad and car sizes.
     Raises:
-        NoAnswer: the points do not form a linkage, or the drawing does not close.
+        NoAnswer: the points do not form a mechanism, or the drawing does not close.
         SceneError: the drawing becomes a different car when it is closed.
     """
-    made = program(linkage_of(scene.mechanism.plain(tuple(scene.inputs))))
+    made = program(cut(scene.mechanism.plain(tuple(scene.inputs))))
     closed = made.closed(tolerance)
-    require_the_drawn_car(scene, made.linkage.moved(closed.places))
+    require_the_drawn_car(scene, made.tree.moved(closed.places))
     return made, closed
 
 
@@ -46,11 +49,11 @@ class InTree:
     """A program as a formulation.
 
     Attributes:
-        program: makes the program's model of a linkage.
+        program: makes the program's model of a tree.
     """
 
     name: str
-    program: Callable[[Linkage], Program]
+    program: Callable[[SpanningTree], Program]
 
     def solve(self, scene: Scene) -> Solution:
         """Solve a scene at its instants.
@@ -61,11 +64,10 @@ class InTree:
         problem = Problem.of(scene)
 
         def solution(poses: Poses) -> Solution:
-            known = inputs.first(len(poses.inputs))
             with np.errstate(over="ignore"):  # a number that overflows has no error bound either
-                rates = program.rates(poses, known.series)
-                found = numbers_of(linkage, known, poses, rates, asked_of_the_car(scene))
-            return problem.solution(self.name, found, linkage.accuracy(poses.last_step))
+                rates = program.rates(poses, series)
+                found = numbers_of(tree, laws, poses, rates, asked_of_the_car(scene))
+            return problem.solution(self.name, found, tree.accuracy(poses.last_step))
 
         def partial(before: Poses | None) -> Solution | None:
             try:
@@ -75,11 +77,11 @@ class InTree:
 
         try:
             program, closed = closed_in(self.program, scene, TOLERANCE)
-            linkage = program.linkage
-            inputs = linkage.inputs({name: law[:, :3] for name, law in problem.laws.items()})
+            tree, laws = program.tree, {name: law[:, :3] for name, law in problem.laws.items()}
+            series = tree.series(laws)
             # An input that is far too large has no pose; the program notices by overflow.
             with np.errstate(over="ignore", invalid="ignore"):
-                poses = program.poses(inputs.values, TOLERANCE, closed)
+                poses = program.poses(series[..., 0], TOLERANCE, closed)
             return solution(poses)
         except NoAnswer as error:
             before = error.partial

@@ -32,7 +32,7 @@ from pointcoord.mechanism.structure import PAIR_ROLES, ROLES
 from validate.extras import needed
 from validate.hardpoint_files.contents import DIRECTIONS, FARTHEST, Axes, Place, short
 from validate.hardpoint_files.written_scene import Drawing, ScenePoint
-from validate.spanning_tree.cut import across
+from validate.spanning_tree.tree import across
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
 

@@ -1,1 +1,1 @@
-"""The same mechanisms in other programs. They get plain data, and none of our mechanics but the inputs."""
+"""Mechanisms in other programs, which get plain data and use nothing of our mechanics except the inputs."""

@@ -1,11 +1,11 @@
-"""A mechanism in Exudyn: a kinematic tree, whose loops are closed by its spherical joints.
+"""A mechanism in Exudyn: a kinematic tree whose loops are closed by Exudyn's spherical joints.
 
-Exudyn's constraints are algebraic equations. Its static solver gives their residuals and their Jacobian, and
-its sensors give the motion of any point of the tree (`program` uses both). A ball joint of the tree is
-three revolute joints in series, about the car's axes right, forward and up as drawn. The middle angle, a
-body's camber, must not reach 90 deg. A rod's ball joint has only two revolute joints, across the rod, because
-a spin of the rod about its own axis has no effect. The axis of the first is as nearly as possible that of the
-mechanism's first hinge that is not along the rod, since bodies turn farthest about hinges.
+Exudyn's static solver gives the residuals of these constraints and their Jacobian, and its sensors give the
+motion of any point of the tree (`program` uses both). A ball joint of the tree is three revolute joints in
+series, about the car's axes right, forward and up as drawn; the middle angle, a body's camber, must not reach
+90 deg. A rod's ball joint is two revolute joints across the rod, because a spin about the rod has no effect.
+The first one's axis is as nearly as possible that of the mechanism's first hinge that is not along the rod,
+since bodies turn farthest about hinges.
 """
 
 from __future__ import annotations
@@ -18,9 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.extras import not_there
-from validate.peers.linkage import Linkage, axes_along
 from validate.peers.program import Program
-from validate.spanning_tree.cut import CHASSIS, Joint, Place, car_directions
+from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree, axes_along, car_directions
 
 Array = NDArray[np.float64]
 
@@ -36,31 +35,31 @@ MOVES = ("Velocity", "Acceleration", "AngularVelocity", "AngularAcceleration")
 
 
 class InExudyn(Program):
-    """A linkage as an Exudyn system; the pose that was computed last is the system's."""
+    """A mechanism as an Exudyn system; the pose that was computed last is the system's."""
 
-    def __init__(self, linkage: Linkage) -> None:
-        self.linkage = linkage
+    def __init__(self, tree: SpanningTree) -> None:
+        self.tree = tree
         self.container = exudyn.SystemContainer()
         self.system = system = self.container.AddSystem()
-        self.last: dict[str, int] = {}  # of each body the link that its points are on
+        self.last: dict[str, int] = {}  # the link that has the points of a body, by body
         self.frames: dict[str, tuple[Array, Array]] = {CHASSIS: (np.zeros(3), np.eye(3))}
-        tree = self._tree()
-        points = linkage.points.values()
-        self.places_of = [self._sensor(tree, place, "Position") for place in points]
-        bodies = [Place(body, self.frames[body][0]) for body in linkage.bodies.values()]
+        self.links = self._links()
+        points = tree.moving.values()
+        self.places_of = [self._sensor(place, "Position") for place in points]
+        bodies = [Place(body, self.frames[body][0]) for body in tree.knuckles]
         self.moves_of = [
             [
-                *(self._sensor(tree, place, of_point) for place in points),
-                *(self._sensor(tree, place, of_body) for place in bodies),
+                *(self._sensor(place, of_point) for place in points),
+                *(self._sensor(place, of_body) for place in bodies),
             ]
             for of_point, of_body in zip(MOVES[:2], MOVES[2:], strict=True)
         ]
         self.ends = []
-        for loop in linkage.tree.loops:
+        for loop in tree.loops:
             sides = (loop.first, loop.second)
-            markers = [self._marker(tree, side) for side in sides]
+            markers = [self._marker(side) for side in sides]
             system.AddObject(items.ObjectJointSpherical(markerNumbers=markers))
-            self.ends.append([self._sensor(tree, side, "Acceleration") for side in sides])
+            self.ends.append([self._sensor(side, "Acceleration") for side in sides])
         system.Assemble()
         self.solver, self.settings = exudyn.MainSolverStatic(), exudyn.SimulationSettings()
         self.settings.solution.file.write = False
@@ -69,7 +68,7 @@ class InExudyn(Program):
         self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
         self.nothing = np.zeros((self.size + rows, self.size + rows))
         self.as_drawn = np.zeros(self.size)
-        self.driven = np.array([self.last[driven.body] for driven in linkage.tree.driven])
+        self.driven = np.array([self.last[driven.body] for driven in tree.driven])
         self.driven_at = self.driven
         self.unknown = np.array([i for i in range(self.size) if i not in self.driven], dtype=np.intp)
 
@@ -94,25 +93,24 @@ class InExudyn(Program):
     def places(self) -> Array:
         return self._read(self.places_of)
 
-    def set_rates(self, rates: Array) -> None:
+    def apart(self, rates: Array, accelerations: Array) -> Array:
         self.system.systemData.SetODE2Coordinates_t(rates)
-
-    def apart(self, accelerations: Array) -> Array:
         self.system.systemData.SetODE2Coordinates_tt(accelerations)
         parts = [self._read([two])[0] - self._read([one])[0] for one, two in self.ends]
         # There is no loop where each joint is driven.
         return np.concatenate([np.zeros(0), *parts])
 
-    def moving(self, accelerations: Array) -> tuple[Array, Array]:
+    def moving(self, rates: Array, accelerations: Array) -> tuple[Array, Array]:
+        self.system.systemData.SetODE2Coordinates_t(rates)
         self.system.systemData.SetODE2Coordinates_tt(accelerations)
         first, second = (self._read(sensors) for sensors in self.moves_of)
         return first, second
 
-    def _tree(self) -> int:
-        """Links of mass 1 (no result depends on it), each with one coordinate."""
+    def _links(self) -> int:
+        """Exudyn's number of the tree; each link has one coordinate and mass 1 (no result depends on it)."""
         kinds, parents, turns, offsets = list[object](), list[int](), list[Array](), list[Array]()
-        for joint in self.linkage.tree.joints:
-            axes, own = _axes_and_turns(self.linkage, joint)
+        for joint in self.tree.joints:
+            axes, own = _axes_and_turns(self.tree, joint)
             origin, parent = self.frames[joint.parent]
             first, others = len(kinds), len(own) - 1
             turns += [parent.T @ axes, *[np.eye(3)] * others]
@@ -127,7 +125,7 @@ class InExudyn(Program):
             initialCoordinates_t=[0.0] * count,
             numberOfODE2Coordinates=count,
         )
-        tree = items.ObjectKinematicTree(
+        links = items.ObjectKinematicTree(
             nodeNumber=self.system.AddNode(node),
             jointTypes=kinds,
             linkParents=parents,
@@ -137,58 +135,50 @@ class InExudyn(Program):
             linkCOMs=exudyn.Vector3DList([np.zeros(3)] * count),
             linkMasses=[1.0] * count,
         )
-        return int(self.system.AddObject(tree))
+        return int(self.system.AddObject(links))
 
-    def _local(self, place: Place) -> Array:
-        """A drawn place of a body in the body's frame."""
+    def _place(self, place: Place) -> dict[str, Any]:
+        """A place in its link's frame, in Exudyn's words."""
         origin, axes = self.frames[place.body]
-        return np.asarray(axes.T @ (place.at - origin))
+        return {"linkNumber": self.last[place.body], "localPosition": axes.T @ (place.at - origin)}
 
     def _read(self, sensors: Sequence[int | None]) -> Array:
         """Values of sensors, (sensors, 3); zero for the chassis, which has no sensor and is at rest."""
         system, still = self.system, np.zeros(3)
         return np.array([still if s is None else system.GetSensorValues(s) for s in sensors])
 
-    def _sensor(self, tree: int, place: Place, what: str) -> int | None:
+    def _sensor(self, place: Place, what: str) -> int | None:
         """A sensor at a place of a body; None for the chassis."""
         if place.body == CHASSIS:
             return None
+        kind = getattr(exudyn.OutputVariableType, what)
         sensor = items.SensorKinematicTree(
-            objectNumber=tree,
-            linkNumber=self.last[place.body],
-            localPosition=self._local(place),
-            outputVariableType=getattr(exudyn.OutputVariableType, what),
-            writeToFile=False,
+            objectNumber=self.links, outputVariableType=kind, writeToFile=False, **self._place(place)
         )
         return int(self.system.AddSensor(sensor))
 
-    def _marker(self, tree: int, place: Place) -> int:
+    def _marker(self, place: Place) -> int:
         if place.body == CHASSIS:
             ground = self.system.AddObject(items.ObjectGround())
-            return int(
-                self.system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=place.at))
-            )
-        marker = items.MarkerKinematicTreeRigid(
-            objectNumber=tree,
-            linkNumber=self.last[place.body],
-            localPosition=self._local(place),
-        )
+            marker = items.MarkerBodyRigid(bodyNumber=ground, localPosition=place.at)
+        else:
+            marker = items.MarkerKinematicTreeRigid(objectNumber=self.links, **self._place(place))
         return int(self.system.AddMarker(marker))
 
 
-def _axes_and_turns(linkage: Linkage, joint: Joint) -> tuple[Array, Sequence[object]]:
+def _axes_and_turns(tree: SpanningTree, joint: Joint) -> tuple[Array, Sequence[object]]:
     """Axes of a joint's body as columns, and the series of one-coordinate joints that replaces the joint."""
-    if joint.body in linkage.tree.rods:
-        return _rod_axes(linkage, linkage.tree.rods[joint.body]), TURNS[:2]
+    if joint.body in tree.rods:
+        return _rod_axes(tree, tree.rods[joint.body]), TURNS[:2]
     if joint.kind == "ball":
-        car = car_directions(linkage.plain)
+        car = car_directions(tree.plain)
         return np.stack([car["right"], car["forward"], car["up"]], axis=-1), TURNS
     return axes_along(joint.axis), (TURNS[2] if joint.kind == "hinge" else exudyn.JointType.PrismaticZ,)
 
 
-def _rod_axes(linkage: Linkage, rod: Array) -> Array:
-    """Axes of a rod's turns as columns, the rod the third."""
-    for joint in linkage.tree.joints:
+def _rod_axes(tree: SpanningTree, rod: Array) -> Array:
+    """Axes of a rod's turns as columns; the third is the rod."""
+    for joint in tree.joints:
         beside = joint.axis - float(joint.axis @ rod) * rod
         if joint.kind == "hinge" and np.linalg.norm(beside) > 0.5:
             first = beside / np.linalg.norm(beside)

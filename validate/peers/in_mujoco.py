@@ -8,13 +8,14 @@ because an XML file has fewer digits.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
 from validate.extras import not_there
-from validate.peers.linkage import Linkage
 from validate.peers.program import Program
-from validate.spanning_tree.cut import CHASSIS, Place
+from validate.spanning_tree.tree import CHASSIS, Place, SpanningTree
 
 try:
     import mujoco
@@ -31,23 +32,21 @@ KINDS = {
 
 
 class InMujoco(Program):
-    """A linkage as a MuJoCo model, and MuJoCo's data of the pose that was computed last."""
+    """A mechanism as a MuJoCo model, and MuJoCo's data of the pose that was computed last."""
 
-    def __init__(self, linkage: Linkage) -> None:
-        self.linkage = linkage
-        self.model = model = spec_of(linkage).compile()
+    def __init__(self, tree: SpanningTree) -> None:
+        self.tree = tree
+        self.model = model = spec_of(tree, tree.moving, tree.knuckles).compile()
         self.data = mujoco.MjData(model)
         self.as_drawn = self.coordinates
-        self.sites = [model.site(name).id for name in linkage.points]
-        self.turns = [model.site(f"body {body}").id for body in linkage.bodies.values()]
-        self.ends = [
-            tuple(model.site(f"loop {k} {end}").id for end in "ab") for k in range(len(linkage.tree.loops))
-        ]
-        driven = [model.joint(driven.body) for driven in linkage.tree.driven]
+        self.sites = [model.site(name).id for name in tree.moving]
+        self.turns = [model.site(f"body {body}").id for body in tree.knuckles]
+        self.ends = [tuple(model.site(f"loop {k} {end}").id for end in "ab") for k in range(len(tree.loops))]
+        driven = [model.joint(driven.body) for driven in tree.driven]
         self.driven_at = np.array([joint.qposadr[0] for joint in driven])
         self.driven = np.array([joint.dofadr[0] for joint in driven])
         # A rod may spin about its own axis, its body's z axis, without effect: that rate is fixed at 0.
-        idle = [model.joint(rod).dofadr[0] + 2 for rod in linkage.tree.rods]
+        idle = [model.joint(rod).dofadr[0] + 2 for rod in tree.rods]
         self.unknown = np.array([i for i in range(model.nv) if i not in (*self.driven, *idle)], dtype=np.intp)
 
     @property
@@ -71,26 +70,23 @@ class InMujoco(Program):
         mujoco.mj_kinematics(self.model, self.data)
         return np.asarray(self.data.site_xpos[self.sites])
 
-    def set_rates(self, rates: Array) -> None:
-        self.data.qvel[:] = rates
-        mujoco.mj_comVel(self.model, self.data)
-
-    def apart(self, accelerations: Array) -> Array:
-        self._accelerate(accelerations)
+    def apart(self, rates: Array, accelerations: Array) -> Array:
+        self._move(rates, accelerations)
         parts = [self._acceleration(one)[3:] - self._acceleration(two)[3:] for one, two in self.ends]
         # There is no loop where each joint is driven.
         return np.concatenate([np.zeros(0), *parts])
 
-    def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        self._accelerate(accelerations)
+    def moving(self, rates: Array, accelerations: Array) -> tuple[Array, Array]:
+        self._move(rates, accelerations)
         first, second = (
             [*(of(site)[3:] for site in self.sites), *(of(site)[:3] for site in self.turns)]
             for of in (self._velocity, self._acceleration)
         )
         return np.array(first), np.array(second)
 
-    def _accelerate(self, accelerations: Array) -> None:
-        self.data.qacc[:] = accelerations
+    def _move(self, rates: Array, accelerations: Array) -> None:
+        self.data.qvel[:], self.data.qacc[:] = rates, accelerations
+        mujoco.mj_comVel(self.model, self.data)
         mujoco.mj_rnePostConstraint(self.model, self.data)
 
     def _velocity(self, site: int) -> Array:
@@ -100,25 +96,27 @@ class InMujoco(Program):
         return result
 
     def _acceleration(self, site: int) -> Array:
-        """Angular and linear acceleration at a site, likewise."""
+        """Angular and linear acceleration at a site, in the car's axes, (6,)."""
         result = np.empty(6)
         mujoco.mj_objectAcceleration(self.model, self.data, mujoco.mjtObj.mjOBJ_SITE, site, result, 0)
         return result
 
 
-def spec_of(linkage: Linkage) -> mujoco.MjSpec:
-    """Bodies of mass 1 (no rate depends on it); sites for points and for the ends of loops."""
+def spec_of(tree: SpanningTree, points: Mapping[str, Place], reported: Iterable[str]) -> mujoco.MjSpec:
+    """The model: bodies of mass 1 (no rate depends on it), with sites for points, the frames of the reported
+    bodies, and the ends of loops.
+    """
     spec = mujoco.MjSpec()
     spec.option.gravity = np.zeros(3)
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     bodies = {CHASSIS: spec.worldbody.add_body(name=CHASSIS)}
-    for joint in linkage.tree.joints:
-        turn, own = linkage.frames[joint.parent][1], linkage.frames[joint.body][1]
+    for joint in tree.joints:
+        turn, own = tree.frames[joint.parent][1], tree.frames[joint.body][1]
         quaternion = np.empty(4)
         mujoco.mju_mat2Quat(quaternion, (turn.T @ own).ravel())
         bodies[joint.body] = body = bodies[joint.parent].add_body(
             name=joint.body,
-            pos=linkage.local(Place(joint.parent, joint.at)),
+            pos=tree.local(Place(joint.parent, joint.at)),
             quat=quaternion,
             mass=1.0,
             inertia=[1.0, 1.0, 1.0],
@@ -128,13 +126,13 @@ def spec_of(linkage: Linkage) -> mujoco.MjSpec:
         body.add_joint(name=joint.body, type=KINDS[joint.kind], axis=own.T @ joint.axis)
 
     def site(name: str, at: Place) -> None:
-        bodies[at.body].add_site(name=name, pos=linkage.local(at))
+        bodies[at.body].add_site(name=name, pos=tree.local(at))
 
-    for name, at in linkage.points.items():
+    for name, at in points.items():
         site(name, at)
-    for body in dict.fromkeys(linkage.bodies.values()):
-        site(f"body {body}", Place(body, linkage.frames[body][0]))
-    for number, loop in enumerate(linkage.tree.loops):
+    for body in reported:
+        site(f"body {body}", Place(body, tree.frames[body][0]))
+    for number, loop in enumerate(tree.loops):
         names = [f"loop {number} {end}" for end in "ab"]
         for name, at in zip(names, (loop.first, loop.second), strict=True):
             site(name, at)

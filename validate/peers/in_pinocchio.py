@@ -1,7 +1,7 @@
-"""A mechanism in Pinocchio, by its joints' coordinates: the relative-coordinate model.
+"""A mechanism in Pinocchio, by the coordinates of its joints: the relative-coordinate model.
 
-Points are frames of its model: Pinocchio gives their positions, Jacobians, rates and accelerations along the
-tree. The loops' residuals are differences of these.
+Points are frames of the model: Pinocchio gives their positions, Jacobians, rates and accelerations. The
+residuals of the loops are differences of positions.
 """
 
 from __future__ import annotations
@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.extras import not_there
-from validate.peers.linkage import Linkage
 from validate.peers.program import Program
-from validate.spanning_tree.cut import CHASSIS, Joint, Place
+from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree
 
 try:
     import pinocchio
@@ -28,30 +27,30 @@ CAR = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED  # rates of the place itself,
 
 
 class InPinocchio(Program):
-    """A linkage as Pinocchio's model, and its data of the pose that was computed last."""
+    """A mechanism as Pinocchio's model, and its data of the pose that was computed last."""
 
-    def __init__(self, linkage: Linkage) -> None:
-        self.linkage = linkage
+    def __init__(self, tree: SpanningTree) -> None:
+        self.tree = tree
         self.model = model = pinocchio.Model()
         self.number = {CHASSIS: 0}
-        for joint in linkage.tree.joints:
-            turn, own = linkage.frames[joint.parent][1], linkage.frames[joint.body][1]
-            placed = pinocchio.SE3(turn.T @ own, linkage.local(Place(joint.parent, joint.at)))
+        for joint in tree.joints:
+            turn, own = tree.frames[joint.parent][1], tree.frames[joint.body][1]
+            placed = pinocchio.SE3(turn.T @ own, tree.local(Place(joint.parent, joint.at)))
             parent = self.number[joint.parent]
             self.number[joint.body] = model.addJoint(parent, _kind(joint, own), placed, joint.body)
         self.as_drawn = np.array(pinocchio.neutral(model))
-        self.q, self.v = self.as_drawn, np.zeros(model.nv)
-        joints = [model.joints[self.number[driven.body]] for driven in linkage.tree.driven]
+        self.q = self.as_drawn
+        joints = [model.joints[self.number[driven.body]] for driven in tree.driven]
         self.driven_at = np.array([joint.idx_q for joint in joints])
         self.driven = np.array([joint.idx_v for joint in joints])
         # A rod may spin about its own axis, its body's z axis, without effect: that rate is fixed at 0.
-        idle = [model.joints[self.number[rod]].idx_v + 2 for rod in linkage.tree.rods]
+        idle = [model.joints[self.number[rod]].idx_v + 2 for rod in tree.rods]
         self.unknown = np.array([i for i in range(model.nv) if i not in (*self.driven, *idle)], dtype=np.intp)
-        self.points = self._frames(linkage.points.values())
-        self.bodies = self._frames(Place(body, linkage.frames[body][0]) for body in linkage.bodies.values())
+        self.points = self._frames(tree.moving.values())
+        self.bodies = self._frames(Place(body, tree.frames[body][0]) for body in tree.knuckles)
         self.sides = [
-            self._frames(loop.first for loop in linkage.tree.loops),
-            self._frames(loop.second for loop in linkage.tree.loops),
+            self._frames(loop.first for loop in tree.loops),
+            self._frames(loop.second for loop in tree.loops),
         ]
         self.data = model.createData()
 
@@ -78,16 +77,13 @@ class InPinocchio(Program):
         pinocchio.framesForwardKinematics(self.model, self.data, self.q)
         return self._placed(self.points)
 
-    def set_rates(self, rates: Array) -> None:
-        self.v = np.array(rates)
-
-    def apart(self, accelerations: Array) -> Array:
-        pinocchio.forwardKinematics(self.model, self.data, self.q, self.v, accelerations)
+    def apart(self, rates: Array, accelerations: Array) -> Array:
+        pinocchio.forwardKinematics(self.model, self.data, self.q, rates, accelerations)
         first, second = (np.reshape([self._rates(f)[1].linear for f in side], (-1, 3)) for side in self.sides)
         return np.asarray((first - second).reshape(-1))
 
-    def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        pinocchio.forwardKinematics(self.model, self.data, self.q, self.v, accelerations)
+    def moving(self, rates: Array, accelerations: Array) -> tuple[Array, Array]:
+        pinocchio.forwardKinematics(self.model, self.data, self.q, rates, accelerations)
         moved, turned = ([self._rates(frame) for frame in of] for of in (self.points, self.bodies))
         first, second = (
             np.array([*(one[order].linear for one in moved), *(one[order].angular for one in turned)])
@@ -99,7 +95,7 @@ class InPinocchio(Program):
         """Places of bodies as frames of the model, by their numbers."""
         found = []
         for place in places:
-            at = pinocchio.SE3(np.eye(3), self.linkage.local(place))
+            at = pinocchio.SE3(np.eye(3), self.tree.local(place))
             name, kind = f"place {self.model.nframes}", pinocchio.FrameType.OP_FRAME
             found.append(self.model.addFrame(pinocchio.Frame(name, self.number[place.body], at, kind)))
         return found
@@ -118,7 +114,7 @@ class InPinocchio(Program):
 
 
 def _kind(joint: Joint, own: Array) -> object:
-    """Pinocchio's joint, its axis in the axes of its own body."""
+    """Pinocchio's joint; its axis is given in the axes of the body that it carries."""
     if joint.kind == "ball":
         return pinocchio.JointModelSpherical()
     axis = own.T @ joint.axis

@@ -8,25 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
 from validate.peers.in_mujoco import spec_of
-from validate.peers.linkage import Linkage, linkage_of
 from validate.plain_text import shown
-from validate.spanning_tree.cut import CHASSIS, Joint, Place
+from validate.spanning_tree.cut import cut
+from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree
 
-Array = NDArray[np.float64]
+PlaceOrJoint = TypeVar("PlaceOrJoint", Place, Joint)
 
 MM = 1e-3  # m
 # Shares of the car's size: the radius of a point's ball and of a link.
 BALL, LINK = 0.008, 0.003
 LINK_COLOUR, POINT_COLOUR = [0.45, 0.5, 0.55, 1.0], [0.85, 0.3, 0.15, 1.0]
-# N/m and N s/m, or of angles, on bodies of 1 kg and 1 kg m^2: slow beside MuJoCo's time step of 2 ms.
+# N/m and N s/m, or N m/rad and N m s/rad, on bodies of 1 kg and 1 kg m^2: slow against MuJoCo's step of 2 ms.
 STIFFNESS, DAMPING = 1000.0, 60.0
 NOTE = """
  {title}
@@ -44,12 +43,12 @@ def mjcf_of(plain: Mapping[str, Any], title: str) -> str:
     Raises:
         NoAnswer: it is not a mechanism.
     """
-    linkage = _in_metres(_with_joints_driven(_z_up(plain)))
-    spec = spec_of(linkage)
+    tree = _in_metres(_with_joints_driven(_z_up(plain)))
+    spec = spec_of(tree, tree.points, ())
     spec.modelname = title
-    _drawn(spec, linkage)
+    _drawn(spec, tree)
     actuators: dict[str, str] = {}
-    for driven in linkage.tree.driven:
+    for driven in tree.driven:
         name = driven.input if driven.input not in actuators else f"{driven.input} of {driven.body}"
         actuators[name] = driven.body
         # A spring and a damper that follow the viewer's slider.
@@ -78,51 +77,40 @@ def _z_up(plain: Mapping[str, Any]) -> dict[str, Any]:
     return {**plain, "points": points, "up": [0.0, 0.0, 1.0], "right": [0.0, 1.0, 0.0]}
 
 
-def _with_joints_driven(plain: Mapping[str, Any]) -> Linkage:
-    """The same with only those inputs that drive a joint of the mechanism itself."""
-    bare = linkage_of({**plain, "inputs": {}})
-    own = {joint.body for joint in bare.tree.joints}
-    kept = {driven.input for driven in linkage_of(plain).tree.driven if driven.body in own}
-    linkage = linkage_of({**plain, "inputs": {name: plain["inputs"][name] for name in kept}})
-    # Points of the chassis too; no body's turn is reported.
-    return replace(linkage, points=linkage.tree.points, bodies={})
+def _with_joints_driven(plain: Mapping[str, Any]) -> SpanningTree:
+    """The tree of the mechanism with only those inputs that drive a joint of the mechanism itself."""
+    own = {joint.body for joint in cut({**plain, "inputs": {}}).joints}
+    kept = {driven.input for driven in cut(plain).driven if driven.body in own}
+    return cut({**plain, "inputs": {name: plain["inputs"][name] for name in kept}})
 
 
-def _in_metres(linkage: Linkage) -> Linkage:
-    """Relative to the car's own origin, in m."""
-    tree = linkage.tree
+def _in_metres(tree: SpanningTree) -> SpanningTree:
+    """The tree in m, from the origin of the car's coordinates."""
 
-    def metres(at: Array) -> Array:
-        return np.asarray(MM * (tree.origin + tree.unit * at))
+    def moved(one: PlaceOrJoint) -> PlaceOrJoint:
+        return replace(one, at=np.asarray(MM * (tree.origin + tree.unit * one.at)))
 
-    def place(one: Place) -> Place:
-        return replace(one, at=metres(one.at))
-
-    def joint(one: Joint) -> Joint:
-        return replace(one, at=metres(one.at))
-
-    loops = tuple(replace(one, first=place(one.first), second=place(one.second)) for one in tree.loops)
-    joints = tuple(joint(one) for one in tree.joints)
-    points = {name: place(one) for name, one in linkage.points.items()}
-    return replace(linkage, tree=replace(tree, joints=joints, loops=loops), points=points)
+    loops = tuple(replace(one, first=moved(one.first), second=moved(one.second)) for one in tree.loops)
+    points = {name: moved(one) for name, one in tree.points.items()}
+    return replace(tree, joints=tuple(map(moved, tree.joints)), loops=loops, points=points)
 
 
-def _drawn(spec: mujoco.MjSpec, linkage: Linkage) -> None:
+def _drawn(spec: mujoco.MjSpec, tree: SpanningTree) -> None:
     """Balls at points, and links from each body's origin to its points and loops; none of them collides."""
-    size = float(np.ptp([place.at for place in linkage.points.values()], axis=0).max())
+    size = float(np.ptp([place.at for place in tree.points.values()], axis=0).max())
     looks = {"contype": 0, "conaffinity": 0, "mass": 0.0}
-    ends = [end for loop in linkage.tree.loops for end in (loop.first, loop.second)]
-    every = {(one.body, *np.round(one.at, 9)): one for one in (*linkage.points.values(), *ends)}
-    for place in linkage.points.values():
+    ends = [end for loop in tree.loops for end in (loop.first, loop.second)]
+    every = {(one.body, *np.round(one.at, 9)): one for one in (*tree.points.values(), *ends)}
+    for place in tree.points.values():
         spec.body(place.body).add_geom(
             type=mujoco.mjtGeom.mjGEOM_SPHERE,
             size=[BALL * size, 0.0, 0.0],
-            pos=linkage.local(place),
+            pos=tree.local(place),
             rgba=POINT_COLOUR,
             **looks,
         )
     for place in every.values():
-        end = linkage.local(place)
+        end = tree.local(place)
         if place.body != CHASSIS and np.linalg.norm(end) > LINK * size:
             spec.body(place.body).add_geom(
                 type=mujoco.mjtGeom.mjGEOM_CAPSULE,

@@ -1,4 +1,4 @@
-"""Results of a program: poses of a linkage at given inputs, their rates, and the numbers reported."""
+"""Results of a program: poses of a tree at given inputs, their rates, and the numbers reported."""
 
 from __future__ import annotations
 
@@ -9,28 +9,32 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.peers.linkage import Inputs, Linkage
+from validate.reference.car_data import PAIR, corners
 from validate.reference.chassis import ChassisMotion
-from validate.reference.effects.registry import ANGLES
+from validate.reference.effects.at_pose import car_at, pair_of
+from validate.reference.effects.car import DrawnCar
+from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Vector
-from validate.spanning_tree.wheels import OF_CAR, components
+from validate.spanning_tree.tree import SpanningTree
 
 Array = NDArray[np.float64]
 Rates = dict[str, dict[str, Array]]
-"""Velocity and acceleration of every moving point, in the linkage's unit, and angular velocity and
-acceleration of the reported bodies, by quantity and name, (N, 3).
+"""Velocity and acceleration of every moving point, in the tree's unit, and angular velocity and acceleration
+of the knuckles, by quantity and name, (N, 3).
 """
+OF_CAR = "car"
+"""The quantity under which the numbers of the wheels are found."""
 
 
 @dataclass(frozen=True)
 class Poses:
-    """Poses of a linkage, in its unit and from its origin.
+    """Poses of a tree, in its unit and from its origin.
 
     Attributes:
         inputs: of the drives, (N, drives), rad and the unit.
-        coordinates: the program's own, (N, ...).
+        coordinates: of the program's joints, (N, ...).
         places: of every moving point, (N, 3).
         last_step: the last correction of Newton's method, rad and car sizes, (N,).
         counts: effort of the solver.
@@ -43,7 +47,7 @@ class Poses:
     counts: Mapping[str, int]
 
     def first(self, count: int) -> Poses:
-        """The first ones."""
+        """The first poses."""
         return replace(
             self,
             inputs=self.inputs[:count],
@@ -54,27 +58,27 @@ class Poses:
 
 
 def numbers(
-    linkage: Linkage,
-    inputs: Inputs | None,
+    tree: SpanningTree,
+    laws: Mapping[str, Array],
     poses: Poses,
     rates: Rates | None = None,
     effects: Iterable[str] = ANGLES,
 ) -> dict[str, dict[str, Array]]:
     """All quantities of a motion, by quantity and name, in the car's axes, mm, s and rad.
 
-    The motion of the chassis and the numbers of the wheels are computed by the reference's code. The program
-    only confirms the positions and rates of the mechanism's points relative to the chassis.
+    The reference's code computes the motion of the chassis and the numbers of the wheels. So a program
+    confirms only the positions and rates of the points relative to the chassis.
 
     Args:
-        inputs: the inputs that move the chassis; without any, the chassis is at rest.
-        effects: names of the numbers of the wheels that are wanted, see `spanning_tree.wheels`.
+        laws: every input with two time derivatives, (N or more, 3), rad or mm per s^d.
+        effects: names of the numbers of the wheels; those that need more than positions are left out.
     """
-    tree, unit, still = linkage.tree, linkage.tree.unit, np.zeros((len(poses.inputs), 3))
+    count, unit = len(poses.inputs), tree.unit
+    still = np.zeros((count, 3))
     near = {name: poses.places.get(name, still + place.at) for name, place in tree.points.items()}
-    laws = {} if inputs is None else inputs.laws
-    driven = {name: Jet(*laws.get(name, still).T) for name in linkage.plain["inputs"]}
-    drawn = {name: components(place) for name, place in tree.drawn.items()}
-    chassis = ChassisMotion.of(linkage.plain, drawn, Fraction(unit), driven, float)
+    driven = {name: Jet(*laws[name][:count].T if name in laws else still.T) for name in tree.plain["inputs"]}
+    drawn = {name: _components(place) for name, place in tree.drawn.items()}
+    chassis = ChassisMotion.of(tree.plain, drawn, Fraction(unit), driven, float)
     quantities = ("position",) if rates is None else ("position", "velocity", "acceleration")
     found: dict[str, dict[str, Array]] = {quantity: {} for quantity in quantities}
     for name, place in near.items():
@@ -91,8 +95,44 @@ def numbers(
             moved = _states(chassis.turned(_jets([rates[quantity][name] for quantity in turning])), 2, still)
             for quantity, state, more in zip(turning, moved, own, strict=True):
                 found[quantity][name] = state + more
-    found[OF_CAR] = linkage.wheels.numbers(near, chassis.still(), effects)
+    found[OF_CAR] = _of_wheels(tree, drawn, near, chassis.still(), effects)
     return found
+
+
+def _of_wheels(
+    tree: SpanningTree,
+    drawn: Mapping[str, Vector],
+    near: Mapping[str, Array],
+    chassis: ChassisMotion,
+    names: Iterable[str],
+) -> dict[str, Array]:
+    """Numbers of the wheels that need positions only, (N,), rad or mm.
+
+    Args:
+        drawn, near: the points as drawn, and at the poses relative to the chassis, in the tree's unit.
+    """
+    plain, sides, cars = tree.plain, corners(tree.plain), {}
+    for part in sides:
+        car = DrawnCar.of(plain, part, drawn, _components(tree.origin), tree.unit, float)
+        if car.ends:
+            cars[part] = car_at(car, chassis, {name: _components(near[name]) for name in car.points})
+    pair = pair_of(sides) if len(cars) == 2 else ()
+    found = {}
+    for name in dict.fromkeys(name.rpartition(".")[2] for name in names):
+        effect = EFFECTS.get(name)
+        if effect is None or effect.along is not None:
+            continue
+        of_both = PAIR in effect.needs
+        for parts in [pair] if of_both and pair else [] if of_both else [(part,) for part in cars]:
+            each = [cars[part] for part in parts]
+            if all(effect.of({PAIR, *car.drawn.ends, *car.drawn.data}) for car in each):
+                found[name if of_both else parts[0] + name] = effect.evaluate(*each) * tree.unit**effect.power
+    return found
+
+
+def _components(array: Array) -> Vector:
+    """The components of a vector, (3,) or (N, 3)."""
+    return array[..., 0], array[..., 1], array[..., 2]
 
 
 def _jets(states: Sequence[Array]) -> Vector:
@@ -102,5 +142,5 @@ def _jets(states: Sequence[Array]) -> Vector:
 
 
 def _states(vector: Vector, count: int, still: Array) -> list[Array]:
-    """The inverse of that; a missing rate is zero."""
+    """The value and rates, (N, 3) each, of a vector of jets; a missing rate is zero."""
     return [np.stack([jet.part(order) + still[:, 0] for jet in vector], axis=-1) for order in range(count)]

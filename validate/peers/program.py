@@ -1,5 +1,4 @@
-r"""A linkage in another program: the program gives its loops' residuals, and Newton's method closes the
-loops.
+r"""A mechanism in another program: the program gives the residuals of the loops, Newton's method closes them.
 
 A program places its bodies from its joints' coordinates q. It gives the gap between the two sides of each
 loop, r, and the Jacobian J of r by the joints' rates. With u the unknown and d the driven joints,
@@ -12,11 +11,11 @@ drawing are left out, and their residual is checked in every pose. Two assemblie
 of a diagonal block of J_u is zero, so the signs of these determinants must stay those of the drawing.
 
 From one pose to the next the inputs change along a straight line. A step is accepted if the second Newton
-correction is at most a quarter of the first, so that there is a pose at every place of the step (Deuflhard,
-Newton Methods for Nonlinear Problems, 2011, ch. 5). Where branches cross, a path that changes to another
-branch keeps the sign of the determinant, but has a corner there (Allgower and Georg, Numerical Continuation
-Methods, 1990, ch. 8). Therefore the direction of the path, (v_u, v_d), may change only little in a step, and
-a path that came so near to a singular pose that rounding mixes the branches is not followed any further.
+correction is at most a quarter of the first, so that there are poses all along the step (Deuflhard, Newton
+Methods for Nonlinear Problems, 2011, ch. 5). Where branches cross, a path that changes to another branch
+keeps the sign of the determinant, but has a corner (Allgower and Georg, Numerical Continuation Methods, 1990,
+ch. 8). So the direction of the path, (v_u, v_d), may change only little in a step, and a path that came so
+near to a singular pose that rounding mixes the branches is not followed further.
 """
 
 from __future__ import annotations
@@ -27,16 +26,20 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import qr
 from scipy.linalg.lapack import dgecon, dgesv
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
 from validate.errors import NoAnswer
-from validate.peers.linkage import UNIT_ROUNDOFF, Linkage
 from validate.peers.motion import Poses, Rates
-from validate.spanning_tree.determined import blocks, independent_rows
+from validate.spanning_tree.tree import UNIT_ROUNDOFF, SpanningTree
 
 Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
 
-# Newton's method doubles its correct digits: six steps lead from half a digit to all; this is twice that.
+# Newton's method doubles its correct digits: six steps lead from half a digit to all; twice that is the
+# limit.
 LIMIT = 12
 # rad and car sizes: a longer step may lead to another assembly, so the step of the inputs is halved.
 LONGEST_STEP = 0.25
@@ -44,45 +47,48 @@ LONGEST_STEP = 0.25
 CONTRACTED = 0.25
 # Greatest difference between the directions at the two ends of a step, relative to the larger one.
 CORNER = 0.5
-# Crossing branches are 1 / C apart where the condition number is C, and rounding U moves a pose by U C:
-# above an eighth of the inverse root of U a corner between them is not seen.
+# At the condition number C crossing branches are 1 / C apart, and rounding U moves a pose by U C: above an
+# eighth of the inverse root of U a corner between them is not seen.
 BLURRED = 2.0**23
 HALVINGS = 44
 # Car sizes. The residual of a dependent row is the square of the last step plus the rounding multiplied by
 # the condition number, some 1e-13 of the car.
 HELD = 1e-11
-# Below the root of the rounding unit a step that does not halve is rounding.
+# A step below the root of the rounding unit that does not halve is rounding.
 ROUNDING_STEP = 1e-8
-# At a fold a rounding U moves the pose by sqrt(U): above this condition number its two sides cannot be told
-# apart.
+# At a fold a rounding U moves the pose by sqrt(U): above this condition number its two sides look the same.
 FOLDED = 2.0**26
 # Share of a row's length: the rounding of an entry for a joint that does not move the loop.
 TURNED = 1e-14
+# Rows that are dependent apart from the rounding of points, some 1e-15 of the car, have a remainder of that
+# size. A mechanism that a rounding moves by 1e-9 of the car is singular for every use.
+DEPENDENT = 1e-9
 FREE = "as many inputs as degrees of freedom, and a drawing that is not singular"
 
 
 class Program(ABC):
-    """A linkage in a program. It keeps the pose that was computed last, so it is not safe for several
-    threads.
+    """A mechanism in a program. It keeps the last pose, so it is not safe for several threads.
 
     Attributes:
         as_drawn: coordinates of the joints in the drawing.
-        driven_at: places among them of those that are driven.
-        driven, unknown: places among the joints' rates, of those that are driven, and of all that are free.
+        driven_at: indices of the driven joints among the coordinates.
+        driven, unknown: indices of the driven and of the free joints among the joints' rates.
         rows: the rows that are solved.
-        blocks: rows and columns of the diagonal blocks of J_u. drawn: signs of their determinants as drawn.
+        blocks: rows and columns of the diagonal blocks of J_u.
+        drawn: signs of the determinants of these blocks as drawn.
         jacobian: J of the last Newton step.
-        way: direction of the way at the last pose. begun: the condition number where it begins; nearest: the
-            largest one on it, if that is larger.
+        way: direction of the path at the last pose.
+        begun: condition number at the start of the path.
+        nearest: the largest condition number on the path, if it is larger than `begun`.
     """
 
-    linkage: Linkage
+    tree: SpanningTree
     as_drawn: Array
     driven_at: NDArray[np.intp]
     driven: NDArray[np.intp]
     unknown: NDArray[np.intp]
-    rows: slice | NDArray[np.int64] = slice(None)
-    blocks: Sequence[tuple[NDArray[np.int64], NDArray[np.int64]]] = ()
+    rows: slice | Numbers = slice(None)
+    blocks: Sequence[tuple[Numbers, Numbers]] = ()
     drawn: Array
     jacobian: Array
     way: Array
@@ -92,7 +98,7 @@ class Program(ABC):
     @property
     @abstractmethod
     def coordinates(self) -> Array:
-        """Of the joints, a copy."""
+        """A copy of the joints' coordinates."""
 
     @abstractmethod
     def put(self, coordinates: Array) -> None:
@@ -104,24 +110,22 @@ class Program(ABC):
 
     @abstractmethod
     def misses(self) -> tuple[Array, Array]:
-        """Place all bodies; the loops' residual, (rows,), and its Jacobian by the joints' rates."""
+        """Place all bodies. The residual of the loops, (rows,), and its Jacobian by the joints' rates."""
 
     @abstractmethod
     def places(self) -> Array:
-        """Place all bodies; the positions of the linkage's points, (points, 3)."""
+        """Place all bodies. The positions of the moving points, (points, 3)."""
 
     @abstractmethod
-    def set_rates(self, rates: Array) -> None:
-        """Set the joints' rates, at the pose of the last call of `misses`."""
+    def apart(self, rates: Array, accelerations: Array) -> Array:
+        """Relative acceleration of the two sides of the loops, (rows,), for these rates and accelerations of
+        the joints at the pose of the last call of `misses`.
+        """
 
     @abstractmethod
-    def apart(self, accelerations: Array) -> Array:
-        """Relative acceleration of the two sides of the loops for these joint accelerations, (rows,)."""
-
-    @abstractmethod
-    def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        """Velocities and accelerations for these joint rates and accelerations: of all points, then the
-        angular ones of the reported bodies, (points + bodies, 3) each.
+    def moving(self, rates: Array, accelerations: Array) -> tuple[Array, Array]:
+        """Velocities and accelerations of all moving points, then angular ones of the knuckles, (points +
+        knuckles, 3) each; for the same arguments.
         """
 
     def closed(self, tolerance: float) -> Poses:
@@ -132,7 +136,7 @@ class Program(ABC):
         Raises:
             NoAnswer: its inputs do not drive the mechanism, or it does not close in the drawn assembly.
         """
-        counted, drawn = Counter[str](), self.linkage.drawn_inputs
+        counted, drawn = Counter[str](), self.tree.drawn_inputs
         self.put(self.as_drawn)
         self._at(drawn)
         jacobian = self.misses()[1]
@@ -143,12 +147,12 @@ class Program(ABC):
             raise NoAnswer("the mechanism", words, FREE)
         both = np.concatenate([self.unknown, self.driven])
         if len(independent_rows(jacobian[:, both])) > count:
-            raise NoAnswer("an input", "does not move the mechanism beside the others", FREE)
+            raise NoAnswer("an input", "does not move the mechanism in addition to the others", FREE)
         self.rows = slice(None) if len(rows) == len(jacobian) else rows
         if count:  # an arm on one hinge, which is driven, has no loop
             # All three rows of a loop: that one of them is zero as drawn may be chance.
             moved = (np.abs(unknown) > TURNED).reshape(-1, 3, count).any(axis=1)
-            self.blocks = blocks(np.repeat(moved, 3, axis=0)[self.rows])
+            self.blocks = diagonal_blocks(np.repeat(moved, 3, axis=0)[self.rows])
         self.drawn = self.signs(unknown[self.rows])
         step = self._newton(drawn, tolerance, counted, shorten=True)
         if step is None:
@@ -162,7 +166,7 @@ class Program(ABC):
         """Solve at inputs, each pose from the one before.
 
         Args:
-            inputs: of the drives, (N, drives), rad and the linkage's unit.
+            inputs: of the drives, (N, drives), rad and the tree's unit.
             tolerance: see `closed`.
             start: the motion from whose last pose the first pose is solved.
         Raises:
@@ -170,7 +174,7 @@ class Program(ABC):
         """
         counted, count = Counter[str](), len(inputs)
         coordinates = np.empty((count, start.coordinates.shape[1]))
-        places, steps = np.empty((count, len(self.linkage.points), 3)), np.empty(count)
+        places, steps = np.empty((count, len(self.tree.moving), 3)), np.empty(count)
         here = start.inputs[-1]
         self.put(start.coordinates[-1])
         self.jacobian, self.way = self.misses()[1], np.zeros(len(self.unknown) + len(self.driven))
@@ -196,14 +200,13 @@ class Program(ABC):
         """Velocities and accelerations of poses.
 
         Args:
-            series: of each drive its input with two time derivatives, (N, drives, 3).
+            series: the input of each drive with two time derivatives, (N or more, drives, 3).
         Raises:
             NoAnswer: the rates are not determined at a pose; `partial` has those before.
         """
-        count, names = len(poses.inputs), list(self.linkage.points)
-        bodies = list(self.linkage.bodies)
+        count, names, bodies = len(poses.inputs), list(self.tree.moving), self.tree.knuckles
         first, second = (np.empty((count, len(names) + len(bodies), 3)) for _ in range(2))
-        driven = self.linkage.coordinates(series)
+        driven = self.tree.coordinates(series[:count])
         for i in range(count):
             self.put(poses.coordinates[i])
             jacobian = self.misses()[1][self.rows]
@@ -216,9 +219,8 @@ class Program(ABC):
                 error.partial = poses.first(i) if i else None
                 raise error from None
             velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ driven[i, :, 1])
-            self.set_rates(velocity)
-            acceleration[self.unknown] = -inverse @ self.apart(acceleration)[self.rows]
-            first[i], second[i] = self.moving(acceleration)
+            acceleration[self.unknown] = -inverse @ self.apart(velocity, acceleration)[self.rows]
+            first[i], second[i] = self.moving(velocity, acceleration)
         found: Rates = {}
         for quantity, array in (("velocity", first), ("acceleration", second)):
             found[quantity] = {name: array[:, k] for k, name in enumerate(names)}
@@ -235,18 +237,18 @@ class Program(ABC):
         """Set the driven joints to inputs, (drives,)."""
         series = np.stack([inputs, *np.zeros((2, len(inputs)))], axis=-1)
         coordinates = self.coordinates
-        coordinates[self.driven_at] = self.linkage.coordinates(series)[:, 0]
+        coordinates[self.driven_at] = self.tree.coordinates(series)[:, 0]
         self.put(coordinates)
 
     def _go(self, start: Array, goal: Array, tolerance: float, counted: Counter[str]) -> tuple[float, float]:
         """Follow the inputs to a goal, by halves where Newton's method would step too far.
 
         Returns:
-            The share of the way that was followed, and the last step.
+            The share of the path that was followed, and the last step.
         """
         done, share, last = 0.0, 1.0, 0.0
         way, condition = self._way(start, goal - start)
-        if not way @ self.way > 0.0:  # it begins, or turns back the way that it came
+        if not way @ self.way > 0.0:  # the path begins, or turns back
             self.begun, self.nearest = condition, 1.0
         self.way = way
         while done < 1.0:
@@ -274,12 +276,12 @@ class Program(ABC):
         return corner or (self.nearest > BLURRED and condition < 0.5 * self.nearest)
 
     def _way(self, inputs: Array, rates: Array) -> tuple[Array, float]:
-        """Rates of the joints at the last Newton step, (unknown + driven,), for these of the inputs.
+        """Rates of the joints at the last Newton step, (unknown + driven,), for these rates of the inputs.
 
         Returns:
             The rates, NaN at a singular pose, and the condition number of J_u.
         """
-        driven = self.linkage.coordinates(np.stack([inputs, rates, np.zeros(len(rates))], axis=-1))[:, 1]
+        driven = self.tree.coordinates(np.stack([inputs, rates, np.zeros(len(rates))], axis=-1))[:, 1]
         jacobian, count = self.jacobian[self.rows], len(self.unknown)
         if not count:
             return driven, 1.0
@@ -332,16 +334,16 @@ class Program(ABC):
     def _folded(self) -> tuple[float, tuple[str, ...]]:
         """Condition number of J_u at this pose, and the parts that lock each other if it is nearly singular.
 
-        From the multipliers u of the rows that nearly cancel, u J_u = 0, and their loads on the drives, u
-        J_d: names of those above half of the largest, the strongest first.
+        The multipliers u of the rows, with u J_u = 0 nearly, load the drives by u J_d. The parts with more
+        than half of the largest share are named, the strongest first.
         """
         jacobian = self.misses()[1][self.rows]
         if not len(self.unknown):
             return 1.0, ()
         left, sizes, _ = np.linalg.svd(jacobian[:, self.unknown])
         share = np.abs(np.concatenate([left[:, -1], left[:, -1] @ jacobian[:, self.driven]]))
-        of_rows = np.repeat([loop.name for loop in self.linkage.tree.loops], 3)[self.rows]
-        names = [*of_rows.tolist(), *(driven.input for driven in self.linkage.tree.driven)]
+        of_rows = np.repeat([loop.name for loop in self.tree.loops], 3)[self.rows]
+        names = [*of_rows.tolist(), *(driven.input for driven in self.tree.driven)]
         order = np.argsort(-share, kind="stable")
         strong = [names[k] for k in order if share[k] > 0.5 * share[order[0]]]
         with np.errstate(divide="ignore"):
@@ -350,14 +352,13 @@ class Program(ABC):
     def _refusal(self, problem: str, instant: int | None, wanted: Array, reached: Array) -> NoAnswer:
         """Why a pose is not reached, judged at the pose that was solved last."""
         condition, links = self._folded()
-        told = self.linkage.tree.told
-        asked, last = told(wanted), told(reached)
+        asked, last = self.tree.named(wanted), self.tree.named(reached)
         each = (", ".join(f"{name} = {value:.10g}" for name, value in one.items()) for one in (asked, last))
         return NoAnswer(
             "the drawing" if instant is None else f"instant number {instant}",
-            f"{problem}, for {' and '.join(', '.join(links).rsplit(', ', 1))} hold each other: wanted "
+            f"{problem}, because {' and '.join(', '.join(links).rsplit(', ', 1))} lock each other: wanted "
             f"{'; reached '.join(each)}, where the condition number is {condition:.3g}",
-            "inputs on this side of it, or other hardpoints",
+            "inputs before that pose, or other hardpoints",
             name="",
             instant=instant,
             wanted=asked,
@@ -374,5 +375,30 @@ class Program(ABC):
         steps: Sequence[float] | Array,
         counted: Counter[str],
     ) -> Poses:
-        named = {name: places[:, k] for k, name in enumerate(self.linkage.points)}
+        named = {name: places[:, k] for k, name in enumerate(self.tree.moving)}
         return Poses(inputs, coordinates, named, np.asarray(steps), dict(counted))
+
+
+def independent_rows(jacobian: Array) -> Numbers:
+    """A largest set of independent rows of a Jacobian (rows, columns), in increasing order.
+
+    Rows are chosen by pivoting (Golub and Van Loan, Matrix Computations, 5.4.2), so the rows left out are
+    those that depend most on the others.
+    """
+    if not jacobian.size:
+        return np.zeros(0, dtype=np.int64)
+    _, triangle, order = qr(jacobian.T, mode="economic", pivoting=True)
+    count = int((np.abs(np.diag(triangle)) > DEPENDENT).sum())
+    return np.sort(order[:count]).astype(np.int64)
+
+
+def diagonal_blocks(pattern: NDArray[np.bool_]) -> list[tuple[Numbers, Numbers]]:
+    """Rows and columns of the diagonal blocks of a square pattern in block triangular form.
+
+    The determinant of the matrix is the product of those of the blocks (Duff and Reid, ACM Transactions on
+    Mathematical Software 4, 1978).
+    """
+    row_of = maximum_bipartite_matching(csr_matrix(pattern), perm_type="row")
+    count, label = connected_components(csr_matrix(pattern[row_of]), directed=True, connection="strong")
+    members = [np.flatnonzero(label == k) for k in range(count)]
+    return [(np.asarray(row_of[columns], dtype=np.int64), columns) for columns in members]

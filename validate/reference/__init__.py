@@ -1,7 +1,6 @@
 """The reference: the equations of any mechanism in many digits, with a proof of every number.
 
-The reference is a third, independent solution: it shares no code with the formulations that it judges. In
-this project "error" means the difference from these numbers.
+It shares no code with the formulations that it judges. "Error" means the difference from its numbers.
 """
 
 from validate.extras import not_there

@@ -1,4 +1,4 @@
-"""Car data that no point of the suspension gives: directions, sides, data, and names."""
+"""Data of the car other than its points: directions, sides, numbers; and the names of all these."""
 
 from __future__ import annotations
 
@@ -23,24 +23,25 @@ AXLES = {"front": Fraction(-1), "rear": Fraction(1)}
 
 
 def car_data(plain: Mapping[str, Any]) -> dict[str, Fraction]:
-    """What a description gives under "car", and its wheel radius: mm, N/mm, shares; an axle as in `AXLES`."""
+    """The numbers under "car" in a description, and its wheel radius: mm, N/mm, shares; an axle as in
+    `AXLES`.
+    """
     radius = {} if plain.get(RADIUS) is None else {RADIUS: plain[RADIUS]}
     given = {**plain.get("car", {}), **radius}
     return {key: AXLES[value] if key == AXLE else as_fraction(value, key) for key, value in given.items()}
 
 
 def corners(plain: Mapping[str, Any]) -> dict[str, int]:
-    """The prefix of each part's names, and its side: 1 if outboard is `right` there, -1 if it is the
-    opposite.
+    """The side of each part by the prefix of its names: 1 on the right, -1 on the left.
 
-    A car without parts counts as one part, with an empty prefix.
+    A car without parts is one part with an empty prefix.
     """
     sides = {f"{part}.": side for part, side in plain.get("sides", {}).items()}
     return {prefix: 1 if side == "right" else -1 for prefix, side in (sides or {"": plain["side"]}).items()}
 
 
 def directions(plain: Mapping[str, Any]) -> dict[str, Vector]:
-    """Those of the car by their words, of exact axes."""
+    """The directions of the car by name, exact if its axes are."""
     ways = {"up": plain["up"], "right": plain["right"], "forward": cross(plain["up"], plain["right"])}
     opposite = {"up": "down", "right": "left", "forward": "rearward"}
     return ways | {opposite[word]: times(way, -1) for word, way in ways.items()}

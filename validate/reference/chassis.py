@@ -44,12 +44,7 @@ class ChassisMotion:
         driven: Mapping[str, Jet],
         exact: Exact,
     ) -> ChassisMotion:
-        """From jets of any kind of number, rad and mm.
-
-        Args:
-            plain, table, unit: of a design.
-            exact: converts a fraction to that kind of number.
-        """
+        """From a design's data and jets of any kind of number, rad and mm; `exact` converts a fraction."""
         turns, rise = [], None
         for name, spec in plain["inputs"].items():
             if "moves" in spec:
@@ -63,36 +58,32 @@ class ChassisMotion:
         return cls(tuple(turns), rise)
 
     def still(self) -> ChassisMotion:
-        """With the values of the jets."""
+        """Without derivatives."""
         return self._of_each(value_of)
 
     def with_slopes(self) -> ChassisMotion:
-        """With the values of the jets and their rates as slopes."""
+        """With first derivatives only."""
         return self._of_each(lambda jet: Jet(jet.value, jet.slope))
 
     def _of_each(self, change: Callable[[Jet], Scalar]) -> ChassisMotion:
         turns = (replace(turn, sine=change(turn.sine), cosine=change(turn.cosine)) for turn in self.turns)
         return ChassisMotion(tuple(turns), None if self.rise is None else each(change, self.rise))
 
-    def without_displacement(self) -> ChassisMotion:
-        """The turns alone."""
-        return replace(self, rise=None)
-
     def taken_back(self, point: Vector) -> Vector:
-        """The point of the drawn car that is at this place in the moved car."""
+        """The point of the drawn car that moves to this place."""
         point = point if self.rise is None else minus(point, self.rise)
         for turn in reversed(self.turns):
             point = plus(replace(turn, sine=-turn.sine).turned(minus(point, turn.about)), turn.about)
         return point
 
     def turned(self, vector: Vector) -> Vector:
-        """A vector fixed in the car."""
+        """A vector fixed in the car, after the motion."""
         for turn in self.turns:
             vector = turn.turned(vector)
         return vector
 
     def moved(self, point: Vector) -> Vector:
-        """A point fixed in the car."""
+        """A point fixed in the car, after the motion."""
         for turn in self.turns:
             point = plus(turn.turned(minus(point, turn.about)), turn.about)
         return point if self.rise is None else plus(point, self.rise)

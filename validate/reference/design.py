@@ -1,4 +1,4 @@
-"""The drawn points as exact fractions, scaled to their size, and the equations of the mechanism."""
+"""The drawn points as exact fractions, scaled to the mechanism's size, and the mechanism's equations."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from validate.reference.vectors import Exact, Scalar, Vector, each, minus, times
 
 SAME_ROW = 1e-9  # relative to the largest pivot: a row with a smaller pivot depends on others, in doubles
 
-# Every input by name: value, rate, acceleration and perhaps higher derivatives, in fractions; rad or mm.
 Driven = Mapping[str, Jet]
+"""Value, rate, acceleration and perhaps higher derivatives of every input, in fractions; rad or mm."""
 
 
 @dataclass(frozen=True)
@@ -31,11 +31,10 @@ class Known:
     """The known data of the equations at one instant; scalars may be balls, floats, arrays or jets.
 
     Attributes:
-        mechanism: the mechanism of the equations.
         equations: the equations in this kind of number.
         numbers: the numbers w.
         chassis: motion of the car as a whole.
-        inputs: the inputs, on which w and the motion of the chassis depend, as jets by name, rad and mm.
+        inputs: the inputs as jets by name, rad and mm; w and the motion of the chassis depend on them.
     """
 
     mechanism: Mechanism
@@ -53,8 +52,7 @@ class Known:
         exact: Exact,
     ) -> Known:
         """From the inputs as jets of any kind of number; `exact` converts a fraction to this kind."""
-        plain, table, unit = mechanism.plain, mechanism.table, mechanism.unit
-        chassis = ChassisMotion.of(plain, table, unit, inputs, exact)
+        chassis = ChassisMotion.of(mechanism.plain, mechanism.table, mechanism.unit, inputs, exact)
         return cls(mechanism, equations, mechanism.numbers(inputs, exact), chassis, inputs)
 
     @property
@@ -63,14 +61,9 @@ class Known:
         return max((len(jet.parts) for jet in self.inputs.values()), default=3) - 1
 
     def driven_at(self, name: str, rate: arb) -> Known:
-        """The same instant with one input at a rate, rad/s or mm/s, and the others at rest; in balls."""
+        """This instant with one input at a rate, rad/s or mm/s, and the others at rest; in balls."""
         inputs = {one: Jet(jet.value, rate if one == name else arb(0)) for one, jet in self.inputs.items()}
         return Known.of(self.mechanism, self.equations, inputs, as_ball)
-
-    def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
-        """Two vectors fixed in each moving body, by body, after the motion of the chassis."""
-        frames = {name: self.equations.frame_of(unknown, name) for name in self.equations.frames}
-        return {n: (self.chassis.turned(u), self.chassis.turned(v)) for n, (u, v) in frames.items()}
 
     def points_of(self, unknown: Sequence[Scalar]) -> dict[str, Vector]:
         """Position of every point, after the motion of the chassis."""
@@ -83,20 +76,20 @@ class Known:
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """The mechanism of a checked scene. Local coordinates are (p - origin) / unit, exact.
+    """The mechanism of a checked scene, in exact local coordinates (p - origin) / unit.
 
-    The shift and the unit keep balls narrow even if the points lie 1e9 mm from the frame's origin or the
-    mechanism is 1e-3 or 1e6 mm in size.
+    These keep balls narrow even if the points lie 1e9 mm from the frame's origin, or the mechanism is 1e-3 or
+    1e6 mm in size.
 
     Attributes:
-        plain: the description, see `pointcoord/mechanisms/README.md`; points are read from `table` instead.
+        plain: the description, see `pointcoord/mechanisms/README.md`; its points are in `table`.
         mechanism: the equations.
         table: the points by name, local.
         origin: the first point, mm.
         unit: a power of two near the mechanism's size, mm.
         corners, car: see `car_data`.
-        loads: force, N, and moment, N mm, of the ground on the knuckle at its contact point, by prefix of the
-            corner; only for corners with a load.
+        loads: force, N, and moment, N mm, of the ground on the knuckle at the contact point, by prefix of the
+            corner, for corners with a load.
         chosen: the rows that are solved, as many as unknowns; the other rows depend on these as drawn.
     """
 
@@ -132,7 +125,7 @@ class Design:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the points of this car."""
+        """The names of the points."""
         return tuple(self.table)
 
     @property
@@ -145,7 +138,7 @@ class Design:
         return self.plain["roles"].get(name)
 
     def equations(self, number: Exact = as_ball) -> Equations:
-        """The equations in one kind of number; in balls at the present precision if not given."""
+        """The equations in one kind of number; by default in balls at the present precision."""
         return equations_in(self.mechanism, self.chosen, number)
 
     def driven(self, inputs: Mapping[str, Sequence[object]]) -> Driven:
@@ -163,20 +156,15 @@ class Design:
 
 
 def values_only(known: Known) -> Known:
-    """The known data with the values of the jets only, for the position equations."""
+    """The known data for the position equations: the jets' values, without derivatives."""
     return replace(known, numbers=[jet.value for jet in known.numbers], chassis=known.chassis.still())
 
 
 def exact_vector(numbers: Sequence[object], what: str) -> Vector:
-    """Three numbers as fractions; `NoReferenceError` if there are not three."""
+    """Three numbers as fractions; NoReferenceError if there are not three."""
     if len(numbers) != 3:
         raise NoReferenceError(what, f"is {numbers!r}", "three numbers")
     return each(lambda number: as_fraction(number, what), (numbers[0], numbers[1], numbers[2]))
-
-
-def ball_vector(vector: Vector) -> Vector:
-    """Three fractions as balls."""
-    return each(as_ball, vector)
 
 
 def balls(jet: Jet) -> Jet:
@@ -203,8 +191,7 @@ def _loads(plain: Mapping[str, Any]) -> dict[str, tuple[Vector, Vector]]:
 def _chosen(mechanism: Mechanism) -> tuple[int, ...]:
     """As many rows as unknowns; of redundant rows those that are most clearly independent as drawn.
 
-    Rows are taken one by one, each time the row with the largest part independent of those taken (QR with
-    pivoting).
+    QR with pivoting takes, one by one, the row with the largest part independent of those taken.
     """
     rows, size = len(mechanism.rows), mechanism.size
     if rows < size:

@@ -1,4 +1,4 @@
-r"""Kinds of input: their rows, the numbers w in these rows, and the values of w in the drawing.
+"""Kinds of input: their rows, the numbers w in these rows, and the values of w in the drawing.
 
     angle from a direction    (P - Q) . direction = w,          w = d cos(theta), d as drawn
     angle from the drawing    g1 w1 - g2 w2 = 0,                w1 = sin(theta), w2 = cos(theta) / |n|,
@@ -7,12 +7,12 @@ r"""Kinds of input: their rows, the numbers w in these rows, and the values of w
     turn of a steering wheel  s = w                             travel = rack_per_turn angle / (2 pi)
     height of a point         P . direction = w
     contact height            centre . g + w4 - s = w5,  s^2 + (r m / l)^2 = r^2,  m = (centre - inner) . g,
-                              l the distance of centre and inner, r the wheel's radius.
-                              Over the chassis: g = up, w4 = 0. Over the ground: g = (w1, w2, w3), and w4
-                              such that the height of a place p of the moved chassis is p . g + w4
+                              l the distance of centre and inner, r the wheel's radius. Over the chassis
+                              g = up, w4 = 0; over the ground the point p of the moved chassis has the
+                              height p . g + w4, g = (w1, w2, w3)
     distance of two points    |P - Q|^2 = w,                    w = distance^2
 
-All lengths and the drawing are in local coordinates (see `design`).
+All lengths are in local coordinates (see `design`).
 """
 
 from __future__ import annotations
@@ -46,15 +46,14 @@ def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     mechanism.row(name, dot(minus(mechanism.place(end), mechanism.place(pivot)), along) - mechanism.number())
 
     def angle(numbers: Sequence[arb]) -> arb:
-        # From cosine and sine, because an arc cosine loses digits if the arm is along the direction. The
-        # direction is a unit vector only up to rounding, so the difference may be just below zero.
+        # An arc cosine would lose digits if the arm is along the direction. The direction is a unit vector up
+        # to rounding, so the difference may be just below zero.
         beside = (as_ball(d2) - numbers[0] * numbers[0]).nonnegative_part()
         return arb.atan2(beside.sqrt(), numbers[0])
 
-    def numbers(value: Jet, exact: Exact) -> list[Jet]:
-        return [value.sin_cos()[1] * root(exact(d2))]
-
-    return _own(name, numbers, lambda: [as_ball(height)], angle)
+    return Drive(
+        lambda value, _, exact: [value.sin_cos()[1] * root(exact(d2))], lambda: [as_ball(height)], angle
+    )
 
 
 def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -66,7 +65,7 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
     e, nn = across(n)[0], dot(n, n)
     turning, held = mechanism.bodies[body].turned(e), mechanism.bodies[on]
     products = [dot(turning, held.turned(v)) for v in (e, cross(n, e))]
-    if on != CHASSIS:  # each product is quadratic, so it becomes an unknown to keep the row quadratic
+    if on != CHASSIS:  # each product is quadratic: it becomes an unknown, so that the row stays quadratic
         for i, product in enumerate(tuple(products)):
             (products[i],) = mechanism.unknowns(1, partial(_of_unknowns, product))
             mechanism.row(name, products[i] - product)
@@ -75,12 +74,11 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
     # At the right angle theta, g1 cos(theta) + g2 sin(theta) / |n| is positive; half a turn off, negative.
     mechanism.positive.append(products[0] * cosine * nn + products[1] * sine)
 
-    def numbers(value: Jet, exact: Exact) -> list[Jet]:
+    def numbers(value: Jet, _: object, exact: Exact) -> list[Jet]:
         sin, cos = value.sin_cos()
         return [sin, cos * (1 / root(exact(nn)))]
 
-    return _own(
-        name,
+    return Drive(
         numbers,
         lambda: [arb(0), 1 / as_ball(nn).sqrt()],
         lambda w: arb.atan2(w[0], w[1] * as_ball(nn).sqrt()),
@@ -121,12 +119,11 @@ def _slid(
         drawn.append(dot(off, along) / dot(along, along))
         lengths.append(squared)
 
-    def numbers(value: Jet, exact: Exact) -> list[Jet]:
+    def numbers(value: Jet, _: object, exact: Exact) -> list[Jet]:
         local = value * (per_input(exact) * exact(1 / unit))
         return [local * (1 / root(exact(squared))) for squared in lengths]
 
-    return _own(
-        name,
+    return Drive(
         numbers,
         lambda: [as_ball(one) for one in drawn],
         lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(as_ball),
@@ -138,18 +135,16 @@ def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     along, unit = directions(mechanism.plain)[spec.get("along", "up")], mechanism.unit
     drawn = dot(mechanism.table[spec["height"]], along)
     mechanism.row(name, dot(mechanism.place(spec["height"]), along) - mechanism.number())
-    return _own(
-        name,
-        lambda value, exact: [value * exact(1 / unit) + exact(drawn)],
+    return Drive(
+        lambda value, _, exact: [value * exact(1 / unit) + exact(drawn)],
         lambda: [as_ball(drawn)],
         lambda w: (w[0] - as_ball(drawn)) * as_ball(unit),
     )
 
 
 def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    """The height of the contact point. Over the ground the height is along the true vertical.
-
-    The inputs of the chassis turn the vertical relative to the chassis.
+    """The height of the contact point; over the ground along the true vertical, which turns against the
+    chassis.
     """
     inner, centre = spec["contact"]
     plain, table, unit, first = mechanism.plain, mechanism.table, mechanism.unit, mechanism.count
@@ -175,12 +170,12 @@ def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     def drawn(exact: Exact) -> Scalar:
         return exact(high) - root(exact(r * r - m * m * share2))
 
-    def numbers(inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
+    def numbers(value: Jet, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
         chassis = ChassisMotion.of(plain if grounded else {"inputs": {}}, table, unit, inputs, exact)
-        zero, upward = inputs[name] * 0, each(exact, up)
+        zero, upward = value * 0, each(exact, up)
         ways = ([zero + int(i == k) for i in range(3)] for k in range(3))
         ground = [zero + dot(chassis.turned((a, b, c)), upward) for a, b, c in ways]
-        risen = inputs[name] * exact(1 / unit) + drawn(exact)
+        risen = value * exact(1 / unit) + drawn(exact)
         return [*ground, zero + dot(chassis.moved((zero, zero, zero)), upward), risen]
 
     return Drive(
@@ -190,25 +185,13 @@ def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     )
 
 
-def _own(
-    name: str,
-    numbers: Callable[[Jet, Exact], Sequence[Jet]],
-    drawn: Callable[[], Sequence[arb]],
-    input_of: Callable[[Sequence[arb]], arb],
-    turns: bool = False,
-) -> Drive:
-    """An input whose numbers depend on its own value alone."""
-    return Drive(lambda inputs, exact: numbers(inputs[name], exact), drawn, input_of, turns)
-
-
 def _distance(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     one, two = spec["distance"]
     unit, drawn = mechanism.unit, minus(mechanism.table[one], mechanism.table[two])
     apart, d2 = minus(mechanism.place(one), mechanism.place(two)), dot(drawn, drawn)
     mechanism.row(name, dot(apart, apart) - mechanism.number())
-    return _own(
-        name,
-        lambda value, exact: [value * value * exact(1 / unit**2)],
+    return Drive(
+        lambda value, _, exact: [value * value * exact(1 / unit**2)],
         lambda: [as_ball(d2)],
         lambda w: w[0].sqrt() * as_ball(unit),
     )
@@ -228,7 +211,7 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
     """The equations of a description with its inputs, see `Mechanism`.
 
     Raises:
-        NoReferenceError: the description contains something impossible.
+        NoReferenceError: points that must differ coincide, or a slide or an input is impossible.
     """
     mechanism = Mechanism(plain, table, unit, hangs)
     for name, spec in plain["inputs"].items():

@@ -1,4 +1,4 @@
-r"""The equations of a mechanism in one kind of number: values, Jacobian, and places of points and bodies."""
+"""The equations of a mechanism in one kind of number: values, Jacobian, and places of points and bodies."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from validate.reference.vectors import Exact, Scalar, Vector
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """C(y, w) with its coefficients in one kind of number; y and w may be jets or power series of it.
+    """C(y, w) with coefficients in one kind of number; y and w may be jets or power series of this kind.
 
     Attributes:
-        size: unknowns, and equations.
-        rows: in the unknowns and the numbers w.
-        entries: (row, column, entry) of the Jacobian by the unknowns, zeros left out.
-        places: of each point, relative to the chassis.
-        frames: of each moving body two vectors fixed in it.
+        size: number of unknowns, and of equations.
+        rows: C, in the unknowns and the numbers w.
+        entries: nonzero entries (row, column, entry) of the Jacobian by the unknowns.
+        places: position of each point, relative to the chassis.
+        frames: two vectors fixed in each moving body.
     """
 
     size: int
@@ -38,7 +38,7 @@ class Equations:
         return [row.at(values) for row in self.rows]
 
     def jacobian(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[tuple[int, int, Scalar]]:
-        """dC/dy as (row, column, entry), zeros left out."""
+        """Nonzero entries of dC/dy as (row, column, entry)."""
         values = ordered(unknown, numbers)
         return [(row, column, entry.at(values)) for row, column, entry in self.entries]
 
@@ -60,17 +60,17 @@ class Equations:
         return [entry for entry in bending if entry[2].terms]
 
     def points_of(self, unknown: Sequence[Scalar], names: Iterable[str] | None = None) -> dict[str, Vector]:
-        """Positions of all points, or of some, relative to the chassis."""
+        """Positions of all or some points, relative to the chassis."""
         return {n: at(self.places[n], unknown) for n in (self.places if names is None else names)}
 
     def frame_of(self, unknown: Sequence[Scalar], body: str) -> tuple[Vector, Vector]:
-        """Two vectors fixed in a body and not parallel."""
+        """Two vectors fixed in a body, not parallel."""
         one, two = self.frames[body]
         return at(one, unknown), at(two, unknown)
 
 
 def equations_in(mechanism: Mechanism, rows: Sequence[int], number: Exact) -> Equations:
-    """The equations with their coefficients in one kind of number, kept for the present precision.
+    """The equations in one kind of number, cached for the present precision.
 
     Args:
         rows: the rows that are solved, as many as unknowns.

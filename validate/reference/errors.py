@@ -1,7 +1,4 @@
-"""Errors of the reference.
-
-No function of this package returns a number that it could not prove: it raises one of these errors.
-"""
+"""Errors of the reference, which returns only numbers that it has proven."""
 
 from __future__ import annotations
 
@@ -12,14 +9,14 @@ from flint import arb
 
 
 class NoReferenceError(Exception):
-    """There is no proven number: an input cannot be used, or does not determine the assembly, or a path takes
-    too many steps. The other reasons have their own classes, because the program handles them differently.
+    """No proven number: an input is unusable, the assembly is not determined, or a path takes too many steps.
+    Other reasons are subclasses.
 
     Args:
-        what: the entry, the undetermined choice, the path or the claim.
+        what: the entry, assembly, path or statement at fault.
         problem: what is wrong with it, with the value.
         allowed: what is allowed, or what to try.
-        value: the value given or reached, if it is a number.
+        value: the value found, if it is a number.
     """
 
     def __init__(self, what: str, problem: str, allowed: str, value: object = None) -> None:
@@ -28,15 +25,15 @@ class NoReferenceError(Exception):
 
     @property
     def reason(self) -> str:
-        """In words without numbers."""
+        """The reason in words without numbers."""
         return self.what if type(self) is NoReferenceError else type(self).__name__
 
 
 class InfeasibleError(NoReferenceError):
     """The assembly of the drawing cannot reach these inputs: it is proven that the path to them meets a fold.
 
-    A branch has no pose beyond its fold. From the drawing the straight path is tried, and the paths that
-    change one input after the other; from one instant of a motion to the next only the straight path.
+    A branch has no pose beyond its fold. From the drawing, the straight path is tried and then paths that
+    change one input after the other; between instants of a motion, only the straight path is.
 
     Attributes:
         way: name of the path.
@@ -49,19 +46,19 @@ class InfeasibleError(NoReferenceError):
         there = ", ".join(f"{name} = {float(value):.9g}" for name, value in inputs.items())
         super().__init__(
             way,
-            f"turns back at a fold after {share:.9g} of it (needed 1), at {there}: beyond there is no pose "
-            "of this assembly",
-            "inputs nearer those of the drawing",
+            f"turns back at a fold after {share:.9g} of its length (needed 1), at {there}: this assembly "
+            "has no pose beyond it",
+            "inputs nearer to those of the drawing",
         )
 
 
 class NotDecidedError(NoReferenceError):
-    """A certificate does not hold at the present number of digits; more digits may help.
+    """A proof fails with the present number of digits; more digits may help.
 
     Args:
-        what: the claim that could not be proven.
-        value: the size that was reached.
-        limit: the required size.
+        what: the quantity that is too large or too small.
+        value: its value.
+        limit: the required value.
     """
 
     def __init__(self, what: str, value: object, limit: object) -> None:
@@ -71,7 +68,7 @@ class NotDecidedError(NoReferenceError):
 
 
 class SingularPoseError(NoReferenceError):
-    """No certificate at the greatest number of digits: the pose is singular or nearly singular.
+    """The proofs fail with the greatest number of digits: the pose is singular or nearly so.
 
     Attributes:
         digits: the greatest number of digits tried.
@@ -82,7 +79,7 @@ class SingularPoseError(NoReferenceError):
         self.digits, self.doubt = digits, doubt
         super().__init__(
             "the pose",
-            f"has no certificate with {digits} digits ({doubt}): it, or one on the way to it, is at a dead "
+            f"cannot be proven with {digits} digits ({doubt}): it, or a pose on the path to it, is at a dead "
             "point or a toggle",
-            "inputs off that place",
+            "inputs away from there",
         )

@@ -1,4 +1,4 @@
-"""Exact numbers: a given float is a fraction, a proven number is a ball with an exact centre."""
+"""Exact numbers: given floats become fractions; proven numbers are balls with exact centres."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from validate.reference.errors import NoReferenceError, NotDecidedError, Singula
 
 MOST_DIGITS = 400  # of the arithmetic: enough for an arm 1e-100 rad from its dead point
 
-Answer = TypeVar("Answer")
+Result = TypeVar("Result")
 
 
 def as_fraction(value: Any, what: str) -> Fraction:
-    """The given number as an exact fraction; binary numbers (float, mpmath's mpf) are not rounded.
+    """A number as an exact fraction; floats and mpmath's mpf are not rounded.
 
     Raises:
         NoReferenceError: not a real number, or not finite.
@@ -44,20 +44,20 @@ def centre_of(ball: arb) -> Fraction:
 
 
 def bits(digits: int) -> int:
-    """Binary digits for so many decimal digits, with 25 decimal digits to spare for the arithmetic."""
+    """Bits for this many decimal digits and 25 more for the errors of the arithmetic."""
     return math.ceil((digits + 25) * math.log2(10))
 
 
-def with_more_digits(attempt: Callable[[int], Answer], ladder: Sequence[int]) -> Answer:
-    """The result of an attempt with the first of these numbers of digits with which its proofs succeed.
+def with_more_digits(attempt: Callable[[], Result], ladder: Sequence[int]) -> Result:
+    """The result of an attempt at the first of these numbers of digits at which its proofs succeed.
 
     Raises:
-        SingularPoseError: the proofs succeed with none of them.
+        SingularPoseError: the proofs fail at all of them.
     """
     for digits in ladder:
         try:
             with ctx.workprec(bits(digits)):
-                return attempt(digits)
+                return attempt()
         except NotDecidedError as error:
             doubt = error
     raise SingularPoseError(digits, doubt)

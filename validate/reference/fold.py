@@ -1,12 +1,11 @@
-r"""The fold at the end of a path: proven, with the branch from a pose before it.
+"""The fold at the end of a path, proven together with the branch that leads to it.
 
 Where a path turns back, its Jacobian is singular. There t cannot be the parameter of the branch, but s = y_j
-can: with the added row y_j = s the equations in (y, t) define a curve that is regular at the fold, where
-dt/ds = 0. Newton's method finds this s. If a tube about this curve (see `way`) contains both the pose and the
-fold, the fold is on the pose's branch. If d2t/ds2 < 0 on the whole tube (by its enclosure), t has no other
-extremum there: each t between them belongs to one regular pose before the fold, and no t beyond the fold to
-any. With d2t/ds2 <= -m and dt/ds = e at some s, the distance of the fold from this s is at most |e| / m, and
-its t is higher by at most e^2 / 2m.
+can: with the row y_j = s the equations in (y, t) define a curve that is regular at the fold, where dt/ds = 0.
+Newton's method finds this s. If a tube about this curve (see `path`) contains the pose and the fold, the fold
+is on the pose's branch. If d2t/ds2 < 0 on the whole tube, t has no other extremum there: each t between them
+belongs to one regular pose before the fold, and there is no pose beyond the fold. With d2t/ds2 <= -m and
+dt/ds = e at some s, the fold is at most |e| / m from this s, and its t is higher by at most e^2 / 2m.
 """
 
 from __future__ import annotations
@@ -18,8 +17,8 @@ from flint import arb, ctx
 
 from validate.reference.errors import NotDecidedError
 from validate.reference.krawczyk import Curve, Matrix, column, middle_inverse
+from validate.reference.path import Pose, StraightPath, Tube, proven_tube, series_of, start_pose
 from validate.reference.vectors import Scalar
-from validate.reference.way import Pose, Tube, Way, proven_tube, series_of, start_pose
 
 STEPS = 16  # of Newton's method: from a guess with two correct digits, eight steps give 400
 FOLD_ORDER = 3  # of the series about the fold: the second order gives the sense in which t turns
@@ -28,24 +27,24 @@ BEYOND = 0.02  # share of the distance to the fold added at both ends of the tub
 
 @dataclass(frozen=True)
 class Bordered(Curve):
-    """The rows C(y, t) and y_j - s in x = (y, t); s is the parameter."""
+    """The rows C(y, t) and y_j - s in x = (y, t), with the parameter s."""
 
-    way: Way
+    path: StraightPath
     index: int
 
     def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
-        """Both kinds of row."""
-        return [*self.way.rows(x[:-1], x[-1]), x[self.index] - t]
+        """C(y, t) and y_j - s."""
+        return [*self.path.rows(x[:-1], x[-1]), x[self.index] - t]
 
     def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
-        """Entries of their Jacobian; dC/dt is a central difference, which is exact because C is quadratic."""
+        """Entries of the Jacobian; dC/dt is a central difference, exact because C is quadratic."""
         last = len(x) - 1
-        ahead, behind = (self.way.rows(x[:-1], x[-1] + step) for step in (1, -1))
+        ahead, behind = (self.path.rows(x[:-1], x[-1] + step) for step in (1, -1))
         by_time = [(i, last, (a - b) * arb(0.5)) for i, (a, b) in enumerate(zip(ahead, behind, strict=True))]
-        return [*self.way.entries(x[:-1], x[-1]), *by_time, (last, self.index, x[-1] * 0 + 1)]
+        return [*self.path.entries(x[:-1], x[-1]), *by_time, (last, self.index, x[-1] * 0 + 1)]
 
     def bend(self, change: Sequence[arb]) -> Matrix:
-        """The change of a matrix that is linear in x."""
+        """The change of the Jacobian, which is linear in x."""
         return self.matrix(change, arb(0)) - self.matrix([arb(0)] * len(change), arb(0))
 
     def rates(self, box: Sequence[arb]) -> tuple[arb, arb]:
@@ -66,8 +65,8 @@ class Fold:
     """A fold ahead of a pose, on its branch.
 
     Attributes:
-        t: place on the path, a ball. s: y_j there, a ball.
-        index: j, the unknown that is the parameter.
+        t, s: place on the path and y_j there, balls.
+        index: j.
         tube: tube of (y, t) along s.
         before: s at the pose minus s at the fold.
     """
@@ -79,11 +78,11 @@ class Fold:
     before: arb
 
 
-def fold_ahead(way: Way, pose: Pose) -> Fold | None:
-    """The fold at which the branch of a pose ends, or None if none is proven."""
+def fold_ahead(path: StraightPath, pose: Pose) -> Fold | None:
+    """The fold at which the branch of a pose ends; None if none is proven."""
     try:
-        near, index = _guess(way, pose)
-        bordered = Bordered(way, index)
+        near, index = _guess(path, pose)
+        bordered = Bordered(path, index)
         top = _turning(bordered, near)
         before = (pose.unknown[index] - top.t).mid()
         begin, stop = top.t - before * BEYOND, pose.unknown[index] + before * BEYOND
@@ -100,8 +99,8 @@ def fold_ahead(way: Way, pose: Pose) -> Fold | None:
         return None
 
 
-def pose_before(way: Way, fold: Fold, t: arb) -> Pose:
-    """The pose at t on the branch before the fold, which lies beyond t.
+def pose_before(path: StraightPath, fold: Fold, t: arb) -> Pose:
+    """The pose at t on the branch before the fold; the fold lies beyond t.
 
     Raises:
         NotDecidedError: the pose cannot be proven with the present digits.
@@ -111,7 +110,7 @@ def pose_before(way: Way, fold: Fold, t: arb) -> Pose:
         raise NotDecidedError("the distance to the fold", squared, "> 0")
     sign = 1 if fold.before > 0 else -1
     near = fold.tube.at((fold.tube.start + sign * squared.sqrt()).mid())
-    pose = start_pose(way, [x.mid() for x in near[:-1]], t)
+    pose = start_pose(path, [x.mid() for x in near[:-1]], t)
     s = pose.box[fold.index]
     left = sign * (s - fold.s)
     if not (left > 0 and left < abs(fold.before) and fold.tube.holds(s, [*pose.box, t])):
@@ -119,9 +118,9 @@ def pose_before(way: Way, fold: Fold, t: arb) -> Pose:
     return pose
 
 
-def _guess(way: Way, pose: Pose) -> tuple[list[arb], int]:
-    """From the series: near a fold y = y* - A sqrt(t* - t), so t* - t = c1 / (4 c2)."""
-    series = series_of(way, pose, 2)
+def _guess(path: StraightPath, pose: Pose) -> tuple[list[arb], int]:
+    """A guess of (y, t) at the fold, and j: near a fold y = y* - A sqrt(t* - t), so t* - t = c1 / (4 c2)."""
+    series = series_of(path, pose, 2)
     first = [one[1] for one in series]
     index = max(range(len(first)), key=lambda i: abs(float(first[i])))
     left = (first[index] / (4 * series[index][2])).mid()

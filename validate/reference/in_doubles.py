@@ -1,9 +1,7 @@
-r"""The equations at many instants at once, in doubles: known poses, their rates, and small changes.
+"""The equations at many instants at once, in doubles: known poses, their rates, and small changes.
 
-The same code of the equations is used for every kind of number (`equations`): here for arrays over the
-instants, (N,), and for duals of arrays with slopes (directions, N). From C(y, t) = 0 follow y' and y'', and
-the effect on them of a residual of the equations; each is the solution of an equation with the same matrix
-C'.
+Numbers are arrays over the instants, (N,), or duals of such arrays with slopes (directions, N). y', y'' and
+the effect on them of a residual of the equations all follow from linear equations with the matrix C'.
 """
 
 from __future__ import annotations
@@ -23,10 +21,10 @@ Array = NDArray[np.float64]
 
 
 def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> Known:
-    """The known quantities of the equations, as jets of arrays (N,).
+    """The known data of the equations, as jets of arrays (N,).
 
     Args:
-        laws: value and time derivatives of each input that is not constantly zero, (N, orders); rad or mm.
+        laws: value and time derivatives of each input, (N, orders), rad or mm; missing inputs are zero.
         count: N.
     """
     still = np.zeros((count, max((law.shape[-1] for law in laws.values()), default=3)))
@@ -45,12 +43,12 @@ def local_places(design: Design, places: Mapping[str, Array], known: Known) -> d
 
 
 def jacobian_of(values: Sequence[Scalar], known: Known) -> Array:
-    """The Jacobian at poses, (N, size, size), by the values of what is known."""
+    """The Jacobian at poses, (N, size, size); `known` is without derivatives."""
     return _matrix(known.equations.jacobian(values, known.numbers), known.equations.size)
 
 
 def _matrix(entries: Sequence[tuple[int, int, Scalar]], size: int) -> Array:
-    """Of its entries that are not zero, each a number or (N,): (N, size, size), or of numbers one."""
+    """A matrix from its nonzero entries, (N, size, size) for entries (N,), (size, size) for numbers."""
     matrix = np.zeros((*np.broadcast_shapes(*(np.shape(entry) for *_, entry in entries)), size, size))
     for i, j, entry in entries:
         matrix[..., i, j] = entry
@@ -58,7 +56,7 @@ def _matrix(entries: Sequence[tuple[int, int, Scalar]], size: int) -> Array:
 
 
 def inverse_of(matrix: Array) -> Array:
-    """Inverses of matrices (N, size, size); the pseudoinverse if one of them is singular."""
+    """Inverses of matrices (N, size, size); pseudoinverses if one of them is singular."""
     try:
         return np.asarray(np.linalg.inv(matrix), dtype=float)
     except np.linalg.LinAlgError:
@@ -78,7 +76,7 @@ def by_doubles(inverse: Array) -> Solved:
 def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
     """Effect of constant residuals of the equations on the unknowns, by order, unknown, residual and instant.
 
-    From C(y, t) = delta follows C' dy = delta at every instant, and so by differentiating
+    C(y, t) = delta gives C' dy = delta, and differentiated
 
         C' dy'  = -(C')' dy,        C' dy'' = -2 (C')' dy' - (C')'' dy,        and so on.
 
@@ -101,7 +99,7 @@ def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: K
 
 
 def with_slopes(jets: Sequence[Jet], slopes: Array) -> list[Jet]:
-    """Jets of duals, the slopes by order and unknown."""
+    """Jets of duals; the slopes go by order and unknown."""
     return [
         Jet(*(Dual(part, slopes[d, i]) for d, part in enumerate(jet.parts))) for i, jet in enumerate(jets)
     ]

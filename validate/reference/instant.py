@@ -10,7 +10,7 @@ from typing import Any
 
 from flint import arb
 
-from validate.reference.design import Design, Known, ball_vector, values_only
+from validate.reference.design import Design, Driven, values_only
 from validate.reference.effects.at_pose import effects_at, numbers_of
 from validate.reference.effects.registry import ANGLES
 from validate.reference.errors import NoReferenceError, NotDecidedError
@@ -18,9 +18,9 @@ from validate.reference.exact import as_ball, centre_of
 from validate.reference.jet import part_of
 from validate.reference.kinematics import body_turns, by_balls, with_rates
 from validate.reference.loads import forces_at
+from validate.reference.path import Pose, StraightPath, start_pose
 from validate.reference.polynomial import ordered
 from validate.reference.vectors import Vector, each, plus, times
-from validate.reference.way import Pose, Way, start_pose
 
 Triple = tuple[Fraction, Fraction, Fraction]
 
@@ -30,7 +30,7 @@ TURNS = ("angular_velocity", "angular_acceleration")
 
 @dataclass(frozen=True)
 class Instant:
-    """The reference at one instant. Mappings go by point or body name; mm, s, rad.
+    """The reference at one instant, in mm, s, rad; mappings go by names of points or bodies.
 
     Attributes:
         position: every point, mm.
@@ -40,12 +40,13 @@ class Instant:
         angular_velocity: of every moving body, rad/s.
         angular_acceleration: of every moving body, rad/s^2.
         effects: the requested effects by name, with the part's prefix if there are parts, see
-            `effects.registry`; rad, mm, these per mm, and %. An effect is missing if the car lacks what it
+            `effects.registry`; in rad, mm, rad/mm and so on, %. An effect is missing if the car has not what
+            it
             needs, or if it is undefined in this pose: 0/0, an angle at 180 deg, a wheel that does not travel,
             a centre at infinity, wheels that are steered in opposite directions.
-        rod_force, joint_force, hinge_thrust: if loads are given, forces of rods, dampers, joints, N; see
+        rod_force, joint_force, hinge_thrust: forces of rods, dampers and joints under given loads, N; see
             `loads`.
-        error_bound: proven bound on the error of each quantity above, in its unit; the key of jerks is
+        error_bound: proven bound on the error of each quantity above, in its unit; jerks have the key
             "derivative 3", and so on.
     """
 
@@ -73,12 +74,11 @@ class Instant:
 
 
 def prove_instant(
-    design: Design, known: Known, followed: Pose, digits: int, effects: Sequence[str] = ANGLES
+    design: Design, driven: Driven, followed: Pose, digits: int, effects: Sequence[str] = ANGLES
 ) -> Instant:
     """Refine, prove and differentiate at the present precision.
 
     Args:
-        known: with rates, local.
         followed: the pose at the end of a path, from fewer digits; the result must be this pose.
         digits: correct digits of every returned number, relative to the greatest of its kind.
         effects: names of the requested effects.
@@ -86,12 +86,13 @@ def prove_instant(
         NotDecidedError: a proof fails with the present digits.
         NoReferenceError: there is no such effect.
     """
-    still, unit, least = values_only(known), as_ball(design.unit), as_ball(Fraction(1, 10**digits))
-    pose = start_pose(Way(still.equations, still.numbers, still.numbers), followed.unknown, arb(0))
+    known, unit, least = design.known(driven), as_ball(design.unit), as_ball(Fraction(1, 10**digits))
+    still = values_only(known)
+    pose = start_pose(StraightPath(still.equations, still.numbers, still.numbers), followed.unknown, arb(0))
     enclosure = pose.box
     if not followed.holds(enclosure):
-        raise NotDecidedError("the assembly found", "not proven to be the one followed", "the same")
-    _require_others(design, enclosure, still, least)
+        raise NotDecidedError("the assembly found", "not proven to be the one followed", "the one followed")
+    _require_others(design, enclosure, still.numbers, least)
     solver = by_balls(enclosure, still)
     solved = with_rates(enclosure, known, solver)
     found = _motion(design, known.points_of(solved), body_turns(solved, known), known.derivatives)
@@ -120,15 +121,13 @@ def derivative_called(order: int) -> str:
     return DERIVATIVES[order] if order < len(DERIVATIVES) else f"derivative {order}"
 
 
-def _require_others(design: Design, enclosure: Sequence[arb], known: Known, least: arb) -> None:
-    """Check the rows that are not solved because they depend on the others in the drawing.
-
-    Balls cannot prove that these rows hold exactly, only that they hold to the requested digits.
+def _require_others(design: Design, enclosure: Sequence[arb], numbers: Sequence[arb], least: arb) -> None:
+    """Check, to the requested digits, the rows that are not solved because they depend on others as drawn.
 
     Raises:
         NoReferenceError: one of these rows is violated.
     """
-    values = ordered(enclosure, known.numbers)
+    values = ordered(enclosure, numbers)
     for i in set(range(len(design.mechanism.rows))) - set(design.chosen):
         name, row = design.mechanism.rows[i]
         missed = row.of_kind(as_ball).at(values)
@@ -147,7 +146,7 @@ def _motion(
     design: Design, points: Mapping[str, Vector], turns: Mapping[str, Sequence[Vector]], derivatives: int
 ) -> dict[str, Mapping[str, Any]]:
     """Positions, rates and angular rates in mm, s, rad."""
-    unit, origin = as_ball(design.unit), ball_vector(design.origin)
+    unit, origin = as_ball(design.unit), each(as_ball, design.origin)
     found: dict[str, Mapping[str, Any]] = {
         derivative_called(order): {name: times(part_of(points[name], order), unit) for name in design.names}
         for order in range(derivatives + 1)
@@ -161,7 +160,7 @@ def _motion(
 
 
 def _scales(found: Mapping[str, Mapping[str, Vector]], unit: arb) -> dict[str, arb]:
-    """The greatest number of each kind; centripetal terms count with their size, because they may cancel."""
+    """The greatest number of each kind. Centripetal terms count with their size, because they may cancel."""
     largest = {
         quantity: max(x.abs_upper() for vector in of.values() for x in vector)
         for quantity, of in found.items()

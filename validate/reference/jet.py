@@ -1,4 +1,4 @@
-"""A number with its derivatives: differentiating an equation is evaluating it with jets."""
+"""Numbers with their derivatives: an equation is differentiated by evaluating it with jets."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from validate.reference.vectors import Scalar, Vector, each, root
 class Jet:
     """(x, x', x'', ...), by time or by one parameter; the parts may be jets by another parameter.
 
-    Products, quotients and roots follow Leibniz. (x y)'' = x'' y + 2 x' y' + x y'': the factor 2 that
-    eq. (23) of the paper drops cannot be forgotten here, because no equation is differentiated by hand.
+    Products, quotients and roots follow Leibniz: (x y)'' = x'' y + 2 x' y' + x y''. Eq. (23) of the paper
+    drops this factor 2; here no equation is differentiated by hand.
 
     Attributes:
         parts: the number and its derivatives; missing derivatives are zero.
     """
 
-    __array_ufunc__: ClassVar[None] = None  # numpy's arrays leave sums and products with a jet to the jet
+    __array_ufunc__: ClassVar[None] = None  # numpy leaves sums and products of an array and a jet to the jet
 
     parts: tuple[Scalar, ...]
 
@@ -61,7 +61,7 @@ class Jet:
         return Jet(*(_leibniz(one, two, order) for order in range(max(len(one), len(two)))))
 
     def __truediv__(self, other: Scalar) -> Jet:
-        """q of q y = x: each derivative of q follows from that of x and the lower derivatives of q."""
+        """q with q y = x: each derivative of q follows from that of x and from lower derivatives of q."""
         divisor = _jet(other)
         found = [self.value / divisor.value]
         for order in range(1, max(len(self.parts), len(divisor.parts))):
@@ -78,7 +78,7 @@ class Jet:
         return Jet(other).__truediv__(self)
 
     def sqrt(self) -> Jet:
-        """The root r of a positive number, from r r = x in the same way."""
+        """The root r of a positive number: from r r = x, as for a quotient."""
         found = [root(self.value)]
         for order in range(1, len(self.parts)):
             found.append((self.part(order) - _leibniz(found, found, order)) / (2 * found[0]))
@@ -88,7 +88,6 @@ class Jet:
         """The sine and the cosine: sin' = cos x', cos' = -sin x', and their derivatives by Leibniz."""
         sine, cosine = ([number] for number in _sin_cos(self.value))
         for order in range(len(self.parts) - 1):
-            # Both of the derivatives that are known so far.
             further = _leibniz(cosine, self.parts[1:], order), -_leibniz(sine, self.parts[1:], order)
             sine.append(further[0])
             cosine.append(further[1])
@@ -98,26 +97,26 @@ class Jet:
     __rmul__ = __mul__
 
 
-Dual = Jet  # where there is just one derivative
+Dual = Jet  # a jet with one derivative
 
 
 def value_of(number: Scalar) -> Scalar:
-    """x of a jet; any other number is itself."""
+    """The value of a jet; another number is returned as it is."""
     return number.value if isinstance(number, Jet) else number
 
 
 def slope_of(number: Scalar) -> Scalar:
-    """x' of a jet; any other number does not depend on the parameter."""
+    """The first derivative of a jet; zero for another number."""
     return number.slope if isinstance(number, Jet) else 0
 
 
 def part_of(vector: Vector, order: int) -> Vector:
-    """A derivative of a vector of jets, or with 0 the vector itself."""
+    """A derivative of a vector of jets; order 0 is the vector itself."""
     return each(lambda jet: jet.part(order), vector)
 
 
 def angle(y: Scalar, x: Scalar) -> Scalar:
-    """atan2(y, x), rad, of balls, of arrays, or with one derivative; NaN if both balls contain 0."""
+    """atan2(y, x), rad, of balls, arrays, or jets with one derivative; NaN if both balls contain 0."""
     if isinstance(y, arb) and isinstance(x, arb):
         return arb("nan") if y.contains(0) and x.contains(0) else arb.atan2(y, x)
     if not (isinstance(y, Jet) or isinstance(x, Jet)):

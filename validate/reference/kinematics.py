@@ -21,18 +21,17 @@ def with_rates(
 ) -> list[Jet]:
     """The unknowns with time derivatives, as jets of any kind of number, local.
 
-    C(y(t), t) = 0 differentiated once and twice gives  C' y' = -C_t  and  C' y'' = -rest, the paper's
-    eqs. (19) and (22), and so on, as far as derivatives of the inputs are known. The right-hand sides are C
-    evaluated with jets whose unknown derivative is zero.
+    C(y(t), t) = 0 differentiated once and twice gives C' y' = -C_t and C' y'' = -rest, the paper's eqs. (19)
+    and (22), and so on. The right-hand sides are C evaluated with jets whose unknown derivative is zero.
 
     Args:
         solved: gives -C'^-1 times a column.
-        derivatives: number of derivatives; by default as many as are known for the inputs.
+        derivatives: number of derivatives; by default as many as the inputs have.
     """
     zero, moving = values[0] * 0, [Jet(value) for value in values]
     for order in range(1, 1 + (known.derivatives if derivatives is None else derivatives)):
         rows = known.residual([Jet(*jet.parts, zero) for jet in moving])
-        # A row that does not move is a plain number, without derivatives.
+        # A row that does not depend on time is a plain number.
         rest = [row.part(order) if isinstance(row, Jet) else zero for row in rows]
         moving = [Jet(*jet.parts, rate) for jet, rate in zip(moving, solved(rest), strict=True)]
     return moving
@@ -42,7 +41,7 @@ def by_balls(enclosure: Sequence[arb], known: Known) -> Solved:
     """Solves with the inverse of the Jacobian over the enclosure.
 
     Args:
-        known: with the values of the jets only.
+        known: without derivatives.
     Raises:
         NotDecidedError: the Jacobian over the enclosure may be singular.
     """
@@ -55,18 +54,21 @@ def by_balls(enclosure: Sequence[arb], known: Known) -> Solved:
 
 def body_turns(solved: Sequence[Jet], known: Known) -> dict[str, list[Vector]]:
     """Angular velocity, angular acceleration and so on of every moving body, rad/s, rad/s^2."""
-    return {name: body_rates(*frame, known.derivatives) for name, frame in known.frames_of(solved).items()}
+    found = {}
+    for name in known.equations.frames:
+        a, b = known.equations.frame_of(solved, name)
+        found[name] = body_rates(known.chassis.turned(a), known.chassis.turned(b), known.derivatives)
+    return found
 
 
 def body_rates(a: Vector, b: Vector, derivatives: int = 2) -> list[Vector]:
     r"""Angular velocity, acceleration and so on of a body, from two vectors fixed in it (jets), not parallel.
 
     With the frame e = (a, b, n), n = a x b, and its reciprocal g (g_i . e_j = 1 if i = j else 0),
-    e_i' = omega x e_i gives  sum_i g_i x e_i' = 2 omega,  and
-    e_i'' - omega x e_i' = alpha x e_i gives alpha in the same way, and so on. For the order n
+    e_i' = omega x e_i gives sum_i g_i x e_i' = 2 omega. The derivatives of omega follow likewise from
     e_i^(n+1) - sum_{k<n} C(n, k) omega^(k) x e_i^(n-k) = omega^(n) x e_i.
-    The only divisor is |n|^2. The paper's printed quotient v65 x v75 / (v65 . r75) is 0/0 whenever omega
-    lies in the plane of the points.
+    The only divisor is |n|^2. The paper's quotient v65 x v75 / (v65 . r75) is 0/0 whenever omega lies in the
+    plane of the points.
 
     Returns:
         omega, rad/s, alpha, rad/s^2, and so on, `derivatives` vectors of balls.

@@ -1,15 +1,14 @@
-r"""Newton's method for a candidate, and Krawczyk's proof that a box holds one solution and no other.
+"""Newton's method for a candidate, and Krawczyk's proof that a box contains exactly one solution.
 
 The equations F(x, t) = 0 are quadratic in x, as many as unknowns: F'(x + d) = F'(x) + F'' d. For a centre x,
 half widths r and any matrix A (here nearly the inverse Jacobian), let
 
     eta >= |A F(x)|  and  M r >= |(I - A F'(x)) e - A (F'' d) e|  for all d, e in +- r.
 
-If eta + M r < r, then F has exactly one zero in x +- r, the zero lies within eta + M r of x, and F' is
-regular on the whole box (R. Krawczyk 1969; R. E. Moore 1977; Neumaier, Interval Methods, 5.1). For complex
-numbers the box is a product of discs. If x, A and F are polynomials in a parameter u, so are A F and
-I - A F'. They are bounded for |u| <= h term by term, and the proof holds for each u separately. Everything is
-evaluated in ball arithmetic, so the proof includes all rounding.
+If eta + M r < r, then F has exactly one zero in x +- r, it lies within eta + M r of x, and F' is regular on
+the whole box (R. Krawczyk 1969; R. E. Moore 1977; Neumaier, Interval Methods, 5.1). For complex numbers the
+box is a product of discs. If x, A and F are polynomials in a parameter u, A F and I - A F' are bounded for
+|u| <= h term by term, and the proof holds for each u separately. Ball arithmetic includes all rounding.
 """
 
 from __future__ import annotations
@@ -26,9 +25,9 @@ from validate.reference.errors import NotDecidedError
 from validate.reference.vectors import Scalar
 
 MOST_STEPS = 60  # quadratic convergence from double accuracy needs 5 steps; the rest is for a distant start
-HOPELESS = 4  # growth factor of a Newton step or of a box width, above which the iteration is given up
+HOPELESS = 4  # growth of a Newton step or of a box width at which the iteration is given up
 TRIES = 6  # number of widths tried for a box
-SETTLED = 0.125  # the series of A ends before a term that changes A F' by less: M then stays small enough
+SETTLED = 0.125  # terms of A's series that change A F' by less are left out: M stays small enough
 
 Entries = Sequence[tuple[int, int, arb_poly]]
 Matrix = Any
@@ -36,7 +35,7 @@ Matrix = Any
 
 
 class Curve(ABC):
-    """Quadratic equations F(x, t) = 0, as many as unknowns x; t is a ball or a polynomial with balls."""
+    """Quadratic equations F(x, t) = 0, as many as unknowns x; t is a ball or a polynomial of balls."""
 
     @abstractmethod
     def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
@@ -44,7 +43,7 @@ class Curve(ABC):
 
     @abstractmethod
     def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
-        """F' as (row, column, entry), without zeros."""
+        """Nonzero entries of F' as (row, column, entry)."""
 
     @abstractmethod
     def bend(self, change: Sequence[Scalar]) -> Matrix:
@@ -62,7 +61,7 @@ class Contraction:
     Attributes:
         missed: eta, upper bounds on |A F|.
         defect, inverse: enclosures of I - A F' and of A.
-        bend: the function F'' d of d.
+        bend: function of d that gives F'' d.
     """
 
     missed: Sequence[arb]
@@ -108,7 +107,7 @@ class Contraction:
         return [(eta + x).upper() for eta, x in zip(self.missed, spread, strict=True)]
 
     def settled(self) -> list[arb] | None:
-        """Half widths of a proven box, not much wider than necessary; None if no box is found."""
+        """Half widths of a proven box, little wider than necessary; None if none is found."""
         width = [2 * x + arb(2) ** (-ctx.prec // 2) for x in self.missed]
         for _ in range(TRIES):
             image = self.image(width)
@@ -124,7 +123,7 @@ def newton(curve: Curve, start: Sequence[Scalar], t: Scalar) -> tuple[list[Scala
     """Newton's method to the present precision, without a proof.
 
     Returns:
-        The solution in exact numbers, and nearly the inverse of the Jacobian there.
+        The solution in exact numbers, and the approximate inverse of the Jacobian there.
     Raises:
         NotDecidedError: it does not converge, or the Jacobian is singular to the present precision.
     """
@@ -144,7 +143,7 @@ def newton(curve: Curve, start: Sequence[Scalar], t: Scalar) -> tuple[list[Scala
 
 
 def _moving_inverse(entries: Entries, size: int, reach: arb) -> list[list[arb_poly]]:
-    """Nearly the inverse of a matrix of polynomials in u, with as many terms as |u| <= reach needs.
+    """Approximate inverse of a matrix of polynomials in u, with the terms that |u| <= reach needs.
 
     A J = I gives A_0 = J_0^-1 and A_k = -(A_0 J_k + ... + A_k-1 J_1) A_0.
 
@@ -167,7 +166,7 @@ def _moving_inverse(entries: Entries, size: int, reach: arb) -> list[list[arb_po
 
 
 def middle_inverse(matrix: Matrix) -> Matrix:
-    """Nearly the inverse of a Jacobian, in exact numbers.
+    """Approximate inverse of a Jacobian, in exact numbers.
 
     Raises:
         NotDecidedError: the Jacobian is singular to the present precision.
@@ -199,15 +198,15 @@ def bounds(matrix: Matrix) -> list[arb]:
 
 def largest(numbers: Sequence[Scalar]) -> arb:
     """Largest of the upper bounds on the absolute values; not finite if one bound is not."""
-    sizes: list[arb] = [number.abs_upper() for number in numbers]
-    return reduce(arb.max, sizes)
+    found: arb = reduce(arb.max, [number.abs_upper() for number in numbers])
+    return found
 
 
 def less(image: Sequence[arb], width: Sequence[arb]) -> bool:
-    """Whether each entry is proven to be less than its width."""
+    """Whether each number is proven to be less than its width."""
     return all(x < r for x, r in zip(image, width, strict=True))
 
 
 def within(solution: Sequence[Scalar], centre: Sequence[Scalar], width: Sequence[arb]) -> bool:
-    """Whether an enclosed solution lies inside the box about a centre."""
+    """Whether an enclosed solution is proven to lie inside the box about a centre."""
     return less([(x - y).abs_upper() for x, y in zip(solution, centre, strict=True)], width)

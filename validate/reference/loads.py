@@ -1,8 +1,8 @@
-r"""The forces in rods and joints under loads on the wheels, by virtual work.
+"""The forces in rods and joints under loads on the wheels, by virtual work.
 
-The chassis and every driven input fix the mechanism. Exception: if a corner has a damper, the damper's length
-is fixed and the input that moves the wheel is free. A force f and a moment m act on the knuckle at the
-contact point c. With q_j = f . dc/dy_j + m . dtheta/dy_j and the Jacobian C' of the fixed mechanism,
+The chassis and the inputs fix the mechanism, except that in a corner with a damper the damper's length is
+fixed instead of the input that moves the wheel. A force f and a moment m act on the knuckle at the contact
+point c. With q_j = f . dc/dy_j + m . dtheta/dy_j and the Jacobian C' of the fixed mechanism,
 
     C'^T l = q
 
@@ -32,7 +32,7 @@ from typing import Any
 from flint import arb
 
 from validate.reference.car_data import DAMPER, KNUCKLE, RADIUS, TRAVEL, WHEEL
-from validate.reference.design import Design, Known, ball_vector
+from validate.reference.design import Design, Known
 from validate.reference.drives import compiled
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
 from validate.reference.equations import equations_in
@@ -50,28 +50,24 @@ Forces = dict[str, dict[str, Any]]
 def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: int) -> Forces:
     """The forces at a pose, N, in balls, to `digits` digits of the loads.
 
-    There are no forces if no load is given, if the car lacks data for them, or if the wheel is not supported
-    at this pose, or hardly.
+    There are none if no load is given, if the car has no data for them, or if the pose is nearly singular.
 
     Args:
         known: known data of the equations; rates are not used.
         enclosure: enclosure of the unknowns.
     Returns:
-        The forces by quantity and name. The quantities are `FORCES`:
+        The forces by quantity and name:
 
         rod_force: tension of every rod, by its name, and of every fixed damper, such as `left.damper`.
         joint_force: force vectors in the scene's axes, by point:
-            - a point that is the ball joint of exactly two bodies, and is on no slide. The force acts on the
-              body with the role knuckle if it is one of the two; otherwise on the first body in the
-              mechanism's file that is not the chassis.
-            - both points of a hinge that no input turns: the force across the line of the hinge, on the same
-              body.
-            - a point of exactly one body on exactly one slide: the force on one of the two bodies, chosen in
-              the same way.
-            - a point of no body on one slide, if a rod pulls it that does not lie in the slide alone: the
-              force on the point.
-        hinge_thrust: sum of the forces of a hinge along its line, by its first point. It is positive from
-            the first point to the second, in the order of the body's list.
+            - the ball joint of exactly two bodies, on no slide. The force acts on the knuckle if it is one of
+              the two; otherwise on the first body in the mechanism's file that is not the chassis.
+            - both points of a hinge that no input turns: the force across the hinge's line, on that body.
+            - a point of exactly one body on exactly one slide: the force on that one of the two bodies.
+            - a point of no body on one slide, pulled by a rod that does not lie in the slide: the force on
+              the point.
+        hinge_thrust: sum of the forces of a hinge along its line, by its first point; positive from the first
+            point to the second, in the order of the body's list.
     """
     forces: Forces = {quantity: {} for quantity in FORCES}
     if not (design.loads and _can_be_had(design)):
@@ -83,7 +79,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
     unknown = mechanism.unknown_of(places, numbers, as_ball)
     work, scale = [arb(0)] * mechanism.size, arb(0)
     for prefix, (force, moment) in design.loads.items():
-        f, m = ball_vector(force), times(ball_vector(moment), as_ball(1 / design.unit))
+        f, m = each(as_ball, force), times(each(as_ball, moment), as_ball(1 / design.unit))
         car = car_at(drawn_car(design, as_ball, prefix), chassis, places)
         spoke = minus(car.contact, car.wheel.end)
         centre, body = design.role(prefix + WHEEL)[1], design.role(prefix + KNUCKLE)
@@ -132,7 +128,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
 
 
 def _can_be_had(design: Design) -> bool:
-    """Whether no row is redundant, and each corner with a load or a damper has the data for its forces."""
+    """Whether no row is redundant, and each corner with a load or a damper has the data for forces."""
     if len(design.chosen) < len(design.mechanism.rows):
         return False
     for prefix in design.corners:
@@ -145,7 +141,7 @@ def _can_be_had(design: Design) -> bool:
 
 @lru_cache(maxsize=64)
 def _held(design: Design) -> Mechanism:
-    """The mechanism with rows for all joints; fixed dampers replace the inputs that move their wheels."""
+    """The mechanism with rows for all joints; dampers are fixed instead of the inputs of their wheels."""
     held = compiled(design.plain, design.table, design.unit, hangs=False)
     for name, (row, ends) in _dampers(design, held).items():
         apart = minus(*(held.places[end] for end in ends))
@@ -154,7 +150,7 @@ def _held(design: Design) -> Mechanism:
 
 
 def _dampers(design: Design, mechanism: Mechanism) -> dict[str, tuple[int, Sequence[str]]]:
-    """The row and the ends of each damper, by prefix of the corner; it replaces the row of an input."""
+    """The ends of each damper, and the row of the input that it replaces, by prefix of the corner."""
     return {
         prefix: (mechanism.driving[drivers(design, prefix)[TRAVEL]], design.role(prefix + DAMPER))
         for prefix in design.corners
@@ -163,7 +159,7 @@ def _dampers(design: Design, mechanism: Mechanism) -> dict[str, tuple[int, Seque
 
 
 def _joints(design: Design) -> dict[tuple[str, ...], str]:
-    """The ball joints and hinges with a force: the body that it acts on, by the points of the joint."""
+    """For the points of each ball joint and hinge with a known force, the body on which it acts."""
     bodies: Mapping[str, Sequence[str]] = design.plain["bodies"]
     on_slides = {point for slide in design.plain["slides"].values() for point in slide["points"]}
     turned = {spec.get("angle") for spec in design.plain["inputs"].values()}
@@ -179,7 +175,7 @@ def _joints(design: Design) -> dict[tuple[str, ...], str]:
 
 
 def _sliding(design: Design) -> dict[str, bool]:
-    """The points on turning slides with a known force; True if the force acts on the body of the line."""
+    """The points on turning slides with a known force: whether it acts on the body of the line."""
     plain, found = design.plain, dict[str, bool]()
     for name, slide in plain["slides"].items():
         elsewhere = {p for other, own in plain["slides"].items() if other != name for p in own["points"]}
@@ -194,7 +190,7 @@ def _sliding(design: Design) -> dict[str, bool]:
 
 
 def _felt_by(design: Design, bodies: Sequence[str]) -> str:
-    """The body of two on which the force is given."""
+    """The body of two on which the force is stated."""
     knuckles = {design.role(prefix + KNUCKLE) for prefix in design.corners}
     moving = [body for body in bodies if body != CHASSIS]
     return next((body for body in moving if body in knuckles), moving[0])

@@ -1,11 +1,11 @@
-r"""A mechanism's description, compiled: its equations C(y, w) = 0, every one at most quadratic.
+"""A mechanism's description, compiled: its equations C(y, w) = 0, each at most quadratic.
 
 The unknowns y are, in local coordinates (see `design`) and relative to the chassis:
 
     a body hinged on the chassis        c, s      rotation about n, the line of its two points there:
                                                   v -> n (n.v)/n^2 + c (v - n (n.v)/n^2) + s (n x v)
-    any other body                      c1 c2 c3  the columns of its matrix R,
-    and if none of its points is placed p         the position of its first point
+    any other body                      c1 c2 c3  the columns of its matrix R
+      whose first point is not placed   p         and the position of this point
     a point on a slide                  s         its place on the line, p = through + s line
     a free point                        p         its position, unless it is on a slide of the chassis
     a contact height, or an angle between two moving bodies: one or two further numbers, see `drives`
@@ -20,9 +20,8 @@ and the rows are
                                                          R u . R' v - R v . R' u = 0, u, v across the line
     and the rows of the inputs: see `drives`
 
-A body that shares a point with an earlier body is placed by that point, so its position is not an unknown,
-unless each joint is to have its own rows (see `loads`). The numbers w are functions of the inputs. All data
-of the drawing are exact.
+A point shared with an earlier body places a body, so its position is not an unknown, unless every joint is
+to have rows (see `loads`). The numbers w are functions of the inputs. All data of the drawing are exact.
 """
 
 from __future__ import annotations
@@ -67,15 +66,15 @@ class Drive:
     """An input of a mechanism.
 
     Attributes:
-        numbers: gives the numbers w. Its arguments are the values of all inputs, rad or mm, as jets of any
-            kind of number, and a function that converts a fraction to this kind.
+        numbers: gives the numbers w from the input and from all inputs, rad or mm, as jets of any kind of
+            number, and a function that converts a fraction to this kind.
         drawn: gives the numbers w as drawn.
-        input_of: gives the input, rad or mm, from its numbers w; for an angle from the drawing the angle of
-            least magnitude.
-        turns: whether the input is an angle without limit, of any number of turns.
+        input_of: gives the input, rad or mm, from its numbers w; an angle from the drawing has the least
+            magnitude.
+        turns: whether the input is an angle without limit.
     """
 
-    numbers: Callable[[Mapping[str, Jet], Exact], Sequence[Jet]]
+    numbers: Callable[[Jet, Mapping[str, Jet], Exact], Sequence[Jet]]
     drawn: Callable[[], Sequence[arb]]
     input_of: Callable[[Sequence[arb]], arb]
     turns: bool = False
@@ -108,26 +107,26 @@ class Mechanism:
 
     Attributes:
         size: number of unknowns y; symbols of the numbers w are -1, -2 and so on, see `polynomial`.
-        count: number of numbers w.
+        count: number of the numbers w.
         rows: C(y, w), each row with a name.
-        frames: two vectors fixed in each moving body, not parallel, by body.
+        frames: two vectors fixed in each moving body, not parallel.
         positive: products that are positive in an assembly; otherwise a hinge is mounted the wrong way round,
             or an angle is off by half a turn. Along a path no product passes zero at a regular pose. No
             matrix R becomes a mirror image, because its rows hold from the drawing on.
         readers: functions that read the unknowns from assembled points, one after the other.
-        drives: the numbers w of each input, without the motions of the chassis.
-        driving: the row with the numbers of each of these inputs, the last row if there are several.
-        rods: the row of each rod's length.
-        joints: the three rows of each point that is shared by two bodies and has such rows: the body whose
-            place less the place of the other body is in the rows, and the number of the first row.
-        sliding: the number of the first of the three rows of each point on a slide.
-        closing: the two further rows of each hinge with such rows, by its second point: the number of the
-            first row, and the two vectors whose products with place - place are in the rows.
-        lines: each slide: the places of its points on the line, its direction as drawn, and the square of its
-            length.
-        free: positions of the points that are not points of a body.
+        drives: the inputs, without those that move the chassis.
+        driving: for each of these, the last row with its numbers w.
+        rods: row of each rod's length.
+        joints: for each shared point with three rows, the body whose place is the minuend in the rows, and
+            the first row.
+        sliding: first of the three rows of each point on a slide.
+        closing: for the second point of each hinge with two rows, the first row, and the two vectors whose
+            products with place - place are in the rows.
+        lines: for each slide, the places of its points on the line, its direction as drawn, and the square of
+            its length.
+        free: positions of the points of no body.
         bodies: the bodies in the equations.
-        holder: the body of each point, the first if there are several.
+        holder: the first body of each point.
     """
 
     def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool = True) -> None:
@@ -136,8 +135,8 @@ class Mechanism:
         Args:
             table: the points, local.
             unit: unit of the local coordinates, mm.
-            hangs: whether an earlier body places a body by a shared point or hinge, and a line of the chassis
-                places a free point, without rows. Otherwise each joint and slide has its own rows.
+            hangs: whether shared points and hinges place a body on an earlier one, and lines of the chassis
+                place free points, without rows. Otherwise every joint and slide has rows.
         """
         self.plain, self.table, self.unit, self.hangs = plain, table, unit, hangs
         self.size, self.count = 0, 0
@@ -173,8 +172,8 @@ class Mechanism:
         return {name: self.place(name) for name in self.table}
 
     def numbers(self, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
-        """The numbers w from all inputs as jets of any kind of number; `exact` converts a fraction to it."""
-        return [w for drive in self.drives.values() for w in drive.numbers(inputs, exact)]
+        """The numbers w from all inputs as jets of any kind of number; `exact` converts a fraction."""
+        return [w for name, one in self.drives.items() for w in one.numbers(inputs[name], inputs, exact)]
 
     @property
     def drawn_numbers(self) -> list[arb]:
@@ -182,11 +181,8 @@ class Mechanism:
         return [w for drive in self.drives.values() for w in drive.drawn()]
 
     def unknown_of(self, points: Table, numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:
-        """The unknowns from assembled points, relative to the chassis, in the kind of number of the points.
-
-        Args:
-            numbers: the numbers w.
-            exact: converts a fraction to this kind of number.
+        """The unknowns from assembled points, relative to the chassis, and the numbers w, in one kind of
+        number; `exact` converts a fraction.
         """
         unknown: list[Scalar] = []
         for read in self.readers:
@@ -195,17 +191,17 @@ class Mechanism:
 
     @property
     def drawn_unknown(self) -> list[arb]:
-        """The unknowns from the points as drawn, in exact numbers; the drawing need not satisfy the rows."""
+        """The unknowns from the points as drawn, exact; the drawing need not satisfy the rows."""
         places = {name: each(as_ball, place) for name, place in self.table.items()}
         return [arb(number).mid() for number in self.unknown_of(places, self.drawn_numbers, as_ball)]
 
     def handed(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> bool:
-        """Whether a solution reached from a drawing is proven an assembly: no hinge the wrong way round."""
+        """Whether no hinge is the wrong way round in a solution, proven; see `positive`."""
         values = ordered(unknown, numbers)
         return all(polynomial(one).of_kind(as_ball).at(values) > 0 for one in self.positive)
 
     def unknowns(self, count: int, read: Reader) -> list[Polynomial]:
-        """Add unknowns; `read` gives their values from points, the unknowns before them and the numbers w."""
+        """Add unknowns; `read` gives their values from points, earlier unknowns and the numbers w."""
         first = self.size
         self.size += count
         self.readers.append(read)
@@ -217,11 +213,11 @@ class Mechanism:
         return Polynomial.symbol(-self.count)
 
     def row(self, name: str, row: Scalar) -> None:
-        """Add a row: the expression is 0."""
+        """Add the row `row` = 0."""
         self.rows.append((name, polynomial(row)))
 
     def _vanish(self, name: str, apart: Vector) -> int:
-        """Add the three rows that make two places coincide; return the first row's number."""
+        """Add the three rows `apart` = 0; return the first one's number."""
         for part in apart:
             self.row(name, part)
         return len(self.rows) - 3
@@ -239,7 +235,7 @@ class Mechanism:
         return x, y, z
 
     def _in_order(self) -> Iterator[str]:
-        """The moving bodies, each after the bodies that place it."""
+        """The moving bodies, each after those that place it."""
         left = {name: set(points) for name, points in self.plain["bodies"].items() if name != CHASSIS}
         chassis = set(self.plain["bodies"][CHASSIS])
         placed = set(chassis)
@@ -251,7 +247,7 @@ class Mechanism:
     def _add_body(self, name: str) -> None:
         points: list[str] = self.plain["bodies"][name]
         shared = {other: [p for p in points if p in self.plain["bodies"][other]] for other in self.bodies}
-        # A hinge is two shared points: bodies that share two points come first, the chassis before others.
+        # Bodies that share two points, a hinge, come first, the chassis before others.
         ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
         if len(shared[CHASSIS]) == 2 and self.hangs:
             columns, tied = self._hinged(name, *shared[CHASSIS]), {*shared[CHASSIS]}
@@ -291,7 +287,7 @@ class Mechanism:
         self.positive.append(dot(self.bodies[other].turned(axis), self.bodies[name].turned(axis)))
 
     def _hinged(self, name: str, a: str, b: str) -> Columns:
-        """The columns of a body on a hinge of the chassis."""
+        """The columns of R of a body on a hinge of the chassis."""
         n, start = near_one(minus(self.table[b], self.table[a])), self.table[a]
         if n is None:
             raise NoReferenceError(f"the hinge of {name}", f"has {a} and {b} in one place", "a line")
@@ -318,12 +314,12 @@ class Mechanism:
         return turned(X), turned(Y), turned(Z)
 
     def _loose(self, name: str, points: Sequence[str]) -> Columns:
-        """The columns of a body that is not on a hinge of the chassis."""
+        """The columns of R of a body that is not on a hinge of the chassis."""
         ends = {(p, q): minus(self.table[p], self.table[q]) for p, q in combinations(points, 2)}
         squared = {pair: dot(end, end) for pair, end in ends.items()}
 
         def spread(edges: tuple[tuple[str, str], tuple[str, str]]) -> float:
-            """|k x m|^2 / (|k|^2 + |m|^2): the greater, the less do errors of two edges rotate a body."""
+            """|k x m|^2 / (|k|^2 + |m|^2): the greater, the less do errors of the edges rotate a body."""
             k, m = edges
             both, part = squared[k] + squared[m], dot(ends[k], ends[m])
             return float(squared[k] * squared[m] - part * part) / (float(both) or 1.0)
@@ -352,7 +348,7 @@ class Mechanism:
         """Add the points on a line of a body."""
         body, through = slide["body"], slide["through"]
         along = directions(self.plain).get(slide["along"])
-        # A direction of the car is a unit vector up to rounding; a line towards a point has its drawn length.
+        # A direction of the car has length 1, up to rounding; a line towards a point has its drawn length.
         squared = Fraction(1)
         if along is None:
             along = near_one(minus(self.table[slide["along"]], self.table[through]))
@@ -389,8 +385,8 @@ class Mechanism:
             raise NoReferenceError(f"slides.{name}: turns", "is False", "points of one other body")
         other = self.bodies[holders[0]]
         (u, v), (u2, v2) = ([body.turned(side) for side in across(along)] for body in (one, other))
-        # The axis of the rotation between the two bodies has no component along the line. So a body that is
-        # drawn off the line is rotated onto it by the smallest rotation.
+        # The axis of the rotation between the bodies has no component along the line: a body drawn off the
+        # line is rotated onto it by the smallest rotation.
         self.row(f"turn of {name}", dot(u, v2) - dot(v, u2))
         self.positive.append(dot(u, u2))
 

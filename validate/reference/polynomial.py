@@ -1,4 +1,4 @@
-"""Exact polynomials of at most second degree: the equations are written once in them, as vector algebra.
+"""Exact polynomials of at most second degree, in which the equations are written as vector algebra.
 
 The unknowns are the symbols 0, 1 and so on; the numbers w of the inputs are the symbols -1, -2 and so on.
 """
@@ -18,9 +18,9 @@ Monomial = tuple[int, ...]  # at most two symbols, in ascending order
 
 @dataclass(frozen=True)
 class Polynomial:
-    """A sum of products of at most two symbols; coefficients are exact, or in another kind of number.
+    """A sum of products of at most two symbols, with coefficients in one kind of number.
 
-    Exact coefficients are flint's fractions: Python's take some twenty times as long to add and multiply.
+    Exact coefficients are flint's fractions, which are twenty times as fast as Python's.
     """
 
     terms: Mapping[Monomial, Scalar]
@@ -60,12 +60,12 @@ class Polynomial:
         return Polynomial(terms)
 
     def of_kind(self, number: Exact) -> Polynomial:
-        """The polynomial with coefficients in another kind of number; a constant term comes last."""
+        """The polynomial with coefficients in another kind of number; the constant term comes last."""
         ordered = sorted(self.terms.items(), key=lambda term: -len(term[0]))
         return Polynomial({monomial: number(coefficient) for monomial, coefficient in ordered})
 
     def at(self, values: Sequence[Scalar]) -> Scalar:
-        """The value, in the kind of number of `values` even without any symbols; see `of_kind`."""
+        """The value, in the kind of number of `values` even if no symbol occurs; see `of_kind`."""
         total: Scalar = None
         for monomial, coefficient in self.terms.items():
             if len(monomial) == 2:
@@ -79,14 +79,14 @@ class Polynomial:
 
 
 def polynomial(number: Scalar) -> Polynomial:
-    """An exact number as a polynomial; a polynomial is returned as it is."""
+    """A fraction as a polynomial; a polynomial is returned as it is."""
     if isinstance(number, Polynomial):
         return number
     return Polynomial({(): fmpq(number.numerator, number.denominator)} if number else {})
 
 
 def ordered(unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
-    """Values that can be indexed by symbol: the negative symbols of w count from the end."""
+    """Values indexed by symbol: the negative symbols of w count from the end."""
     return [*unknown, *reversed(numbers)]
 
 

@@ -1,5 +1,4 @@
-r"""From the drawing to given inputs: first the drawing is closed, then its inputs change along a straight
-path.
+"""From the drawing to given inputs: the drawing is closed, then its inputs change along a straight path.
 
 An angle measured from the drawing changes in steps of less than a quarter turn, each linear in its sine and
 cosine, because only their ratio matters in its row. The other inputs change linearly in the numbers w of the
@@ -15,7 +14,7 @@ from functools import lru_cache
 from itertools import chain, islice, pairwise, permutations
 from math import ceil
 
-from flint import arb
+from flint import arb, ctx
 
 from validate.reference.design import Design, Driven, balls
 from validate.reference.errors import (
@@ -23,25 +22,25 @@ from validate.reference.errors import (
     NoReferenceError,
     NotDecidedError,
 )
-from validate.reference.exact import MOST_DIGITS, as_ball, centre_of, with_more_digits
+from validate.reference.exact import MOST_DIGITS, as_ball, bits, centre_of, with_more_digits
 from validate.reference.fold import fold_ahead, pose_before
 from validate.reference.jet import Jet
-from validate.reference.way import Pose, Way, bending, next_pose, start_pose
+from validate.reference.path import Pose, StraightPath, bending, next_pose, start_pose
 
-DIGITS = (7, 39, 103, MOST_DIGITS)  # of the arithmetic on the way: twice a double's bits, and twice that
-FOLDS_FROM = 0.05  # of the way: shorter steps lead into a fold, which is then looked for
+DIGITS = (7, 39, 103, MOST_DIGITS)  # of the arithmetic on a path: twice a double's bits, and twice that
+FOLDS_FROM = 0.05  # share of a path: shorter steps lead into a fold, which is then searched for
 TURN = Fraction(3, 2)  # rad, less than a quarter turn
-# A path takes a few steps at most, however thin a body is, and up to a hundred if it ends within 1e-12 of a
-# fold, or meets a singular pose that is not a fold. No path has yet taken this many.
+# A path takes a few steps, and up to a hundred if it ends within 1e-12 of a fold, or meets a singular pose
+# that is not a fold. No path has yet taken this many.
 MOST_STEPS = 400
-MOST_ORDERS = 6  # in which the inputs go there in turn
+MOST_ORDERS = 6  # number of orders tried in which the inputs change one after the other
 CLEAR = 1e-9  # drawings are rounded to floats and need not close: a smaller distance of assemblies is noise
-REMEDY = "the points are drawn at a singular pose: draw the car where it is wanted, off that pose"
+REMEDY = "the points are drawn at a singular pose: draw the car at another pose"
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """The end of a route: a proven pose, with these inputs as driven and the others as drawn."""
+    """A proven pose at the end of a path; inputs that are not in `driven` are as drawn."""
 
     driven: Driven
     pose: Pose
@@ -55,39 +54,37 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
         clearness: least distance of a second assembly from the drawing, as a share of the mechanism's size.
     Raises:
         NoReferenceError: the drawing is at a singular pose, or nearly.
-        InfeasibleError, SingularPoseError: it does not close without passing one.
+        InfeasibleError, SingularPoseError: it does not close without passing a fold or a singular pose.
     """
 
-    def attempt(digits: int) -> Assembly:
+    def attempt() -> Assembly:
         equations, mechanism, clear = design.equations(), design.mechanism, 0.0
         drawn, numbers = mechanism.drawn_unknown, mechanism.drawn_numbers
-        way = Way(equations, numbers, numbers, equations.residual(drawn, numbers))
+        path = StraightPath(equations, numbers, numbers, equations.residual(drawn, numbers))
         try:
-            pose = start_pose(way, drawn, arb(0))
-            clear = 1.0 / bending(way, pose)
+            pose = start_pose(path, drawn, arb(0))
+            clear = 1.0 / bending(path, pose)
         except NotDecidedError:
-            if digits < MOST_DIGITS:
+            if ctx.prec < bits(MOST_DIGITS):
                 raise
         if not 0.0 < clear >= clearness:
-            what = "how far the drawing is from another assembly"
-            allowed = f"{clearness:.3g} or more of the mechanism's size; {REMEDY}"
+            what = "the distance of the drawing from another assembly"
+            allowed = f"at least {clearness:.3g} of the mechanism's size; {REMEDY}"
             raise NoReferenceError(what, f"is {clear:.3g}", allowed, clear)
-        pose = _led(way, pose, design, "closing the drawing")
+        pose = _led(path, pose, design, "closing the drawing")
         if not mechanism.handed(pose.box, numbers):
-            raise NotDecidedError("the handedness of the zero found", "not positive", "> 0")
+            raise NotDecidedError("the handedness of the solution found", "not positive", "> 0")
         return Assembly({}, pose)
 
     return with_more_digits(attempt, DIGITS)
 
 
 def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
-    """The assembly at the end of a path from the closed drawing: the straight one, or else one input after
-    another.
+    """The assembly at the end of a path from the closed drawing: straight, or else one input after another.
 
     Raises:
         NoReferenceError: the drawing is at a singular pose, or nearly.
-        InfeasibleError: it is proven that each path meets a fold before its end; the error is the straight
-            one's.
+        InfeasibleError: it is proven that each path meets a fold; the error describes the straight path.
         SingularPoseError: a path meets a singular pose, or comes so near that 400 digits cannot decide.
     """
     here = closed(design, clearness)
@@ -118,20 +115,20 @@ def moved(design: Design, here: Assembly, driven: Driven) -> Assembly:
         SingularPoseError: the path meets a singular pose, or comes so near that 400 digits cannot decide.
     """
 
-    def attempt(_: int) -> Assembly:
+    def attempt() -> Assembly:
         pose = here.pose
         for begin, end in pairwise(_stops(design, here.driven, driven)):
-            way = Way(design.equations(), begin, end)
-            start = start_pose(way, pose.unknown, arb(0))
+            path = StraightPath(design.equations(), begin, end)
+            start = start_pose(path, pose.unknown, arb(0))
             if not pose.holds(start.box):
-                raise NotDecidedError("the start of the way", "another solution", "the same")
-            pose = _led(way, start, design, "the way to the inputs")
+                raise NotDecidedError("the start of the path", "another solution", "the pose followed")
+            pose = _led(path, start, design, "the path to the inputs")
         return Assembly(driven, pose)
 
     return with_more_digits(attempt, DIGITS)
 
 
-def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
+def _led(path: StraightPath, pose: Pose, design: Design, what: str) -> Pose:
     """The pose at the end of a path.
 
     Raises:
@@ -142,23 +139,25 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
         steps += 1
         if steps > MOST_STEPS:
             problem = (
-                f"is given up after {MOST_STEPS} proven steps and {float(pose.t):.3g} of it (needed 1): "
-                "nothing is said of the pose"
+                f"is given up after {MOST_STEPS} proven steps, at {float(pose.t):.3g} of its length (needed "
+                "1): whether there is a pose is not known"
             )
-            raise NoReferenceError(what, problem, "inputs nearer those of the drawing", MOST_STEPS)
-        there = next_pose(way, pose, longest)
+            raise NoReferenceError(what, problem, "inputs nearer to those of the drawing", MOST_STEPS)
+        there = next_pose(path, pose, longest)
         step = float(there.t - pose.t)
         pose, longest = there, arb(4 * step)
         if step < tried and pose.t < 1:
             tried = step * FOLDS_FROM
-            fold = fold_ahead(way, pose)
+            fold = fold_ahead(path, pose)
             if fold is None:
                 continue
             if fold.t < 1:
-                raise InfeasibleError(what, float(fold.t.mid()), _inputs(design, way.numbers(fold.t)))
+                raise InfeasibleError(what, float(fold.t.mid()), _inputs(design, path.numbers(fold.t)))
             if not fold.t > 1:
-                raise NotDecidedError("the fold beyond the end of the way", fold.t, "1")
-            pose = pose_before(way, fold, arb(1))
+                raise NotDecidedError(
+                    "the place of the fold, as a share of the path,", fold.t, "more or less than 1"
+                )
+            pose = pose_before(path, fold, arb(1))
     return pose
 
 
@@ -185,7 +184,9 @@ def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
     """The numbers w of each input; inputs that are not driven have their drawn values."""
     given = {name: balls(driven.get(name, Jet(Fraction(0)))) for name in design.inputs}
     return {
-        name: [jet.value for jet in one.numbers(given, as_ball)] if name in driven else [*one.drawn()]
+        name: [jet.value for jet in one.numbers(given[name], given, as_ball)]
+        if name in driven
+        else [*one.drawn()]
         for name, one in design.mechanism.drives.items()
     }
 

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from flint import arb
 
-# A scalar is anything with + - *: a ball (arb), a Fraction, a Jet, a float or a numpy array. One text
-# of the equations serves them all.
+# A scalar is anything with + - *: a ball (arb), a Fraction, a Jet, a float or a numpy array. So the equations
+# are written once for all of them.
 Scalar = Any
 Vector = tuple[Scalar, Scalar, Scalar]
 Exact = Callable[[Any], Scalar]
-"""Makes an exact number, a fraction of Python's or of flint's, a scalar of one kind."""
+"""Converts a fraction, Python's or flint's, to one kind of scalar."""
 
 
 def each(change: Callable[[Scalar], Scalar], a: Vector) -> Vector:
-    """A change of each component."""
+    """A function of each component."""
     return change(a[0]), change(a[1]), change(a[2])
 
 
@@ -49,7 +49,7 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 def root(number: Scalar) -> Scalar:
-    """The square root of a number of any kind; of a ball, of the part of it that is not negative."""
+    """The square root of a scalar; of a ball, the root of its nonnegative part."""
     if isinstance(number, float | Fraction | int):
         return sqrt(number)
     if isinstance(number, np.ndarray):
@@ -63,14 +63,14 @@ def length(a: Vector) -> Scalar:
 
 
 def across(axis: Vector) -> tuple[Vector, Vector]:
-    """Two vectors square to a line and to each other, of fractions."""
-    # By rounded numbers: a drawing that is moved by a trifle takes the same vectors, moved by as little.
+    """Two vectors of fractions, perpendicular to a line and to each other."""
+    # Rounded, so that a slightly different drawing gives slightly different vectors.
     least = min(range(3), key=lambda i: round(abs(float(axis[i])), 12))
     u = cross(axis, (Fraction(least == 0), Fraction(least == 1), Fraction(least == 2)))
     return near_one(u) or u, near_one(cross(axis, u)) or u
 
 
 def near_one(vector: Vector) -> Vector | None:
-    """The vector of fractions times a power of two, of a length near one; None if it has none."""
+    """A vector of fractions times the power of two that makes its length near one; None if it is zero."""
     longest = max(abs(float(x)) for x in vector)
     return times(vector, Fraction(2) ** -frexp(longest)[1]) if longest else None

@@ -1,160 +1,64 @@
-r"""A mechanism in the form that any multibody program takes: bodies on a tree of joints, and closing ball
-joints.
+r"""Cuts a mechanism into the form that any multibody program takes: a tree of joints, closed by ball joints.
 
 Every body is connected by one joint to its parent, another body or the chassis. Joints with few coordinates
 are chosen first, and those at the chassis before others: hinges, sliding joints, then ball joints. A body
-that is held by rods or lines only is connected to the chassis by six coordinates. A point of no body is a
-body of its own, which slides along its line or moves freely.
+that only rods or lines hold is connected to the chassis by six coordinates. A point of no body becomes a
+body, which slides along its line or moves freely.
 
-Each joint that is not chosen becomes a closure of the tree, and so does every rod. Programs have few closures
-and drives in common, so all closures and drives are built from joints and from ball joints that close loops:
+Every other joint and every rod becomes a closure of the tree. Programs have few closures and drives in
+common, so all closures and drives are built from joints and from ball joints that close loops:
 
     a point on a line      a body that slides along it, and a ball joint with the point
-    a rod                  a body on a ball joint at one end, whose spin is fixed, and one at the other end
-    a driven distance      the same, and the rod is a driven slide
-    a driven height,       a body on three slides at right angles, of which the first is driven, and a ball
-    angle or travel        joint with the point; if it counts from a point that moves, on three slides more
-    a driven hinge         itself
-    directions at right    two points along the first direction that stay equally far along the second one:
-    angles                 bodies on two slides each, which are carried by one slide
-    the ground             a body on a driven joint for each input that moves the chassis, in the reverse
-    sense a wheel's contact      a body on a hinge about the wheel's axis; the point one radius below is
-    driven, and point                  a line across it stays level, by closures as above
+    a rod                  a body on a ball joint at one end, whose spin is fixed; a ball joint at the other
+    a driven distance      a rod that is a driven slide
+    a driven height,       a body on three perpendicular slides, the first of them driven, and a ball joint
+    angle or travel        with the point; three more slides if it counts from a point that moves
+    a driven hinge         the hinge
+    perpendicular          two points along the first direction stay equally far along the second: bodies on
+    directions             two slides each, which one slide carries
+    the ground             a body on a driven joint, in the reverse sense, for each input that moves the
+                           chassis
+    a wheel's contact      a body on a hinge about the wheel's axis; its point one radius below is driven, and
+    point                  a line across it stays level, by closures as above
 
 An angle is driven by the corresponding height, size x cos(angle).
 
-In the reference pose all joint coordinates are zero; every body is at its drawn place and has the axes of
-the car's frame. Exception: a point of no body that is drawn off its line starts on the line. Lengths are
-measured from `origin` in `unit`; in this unit the car's size is between one and two.
+In the reference pose all joint coordinates are zero; every body is at its drawn place, with the axes of the
+car's frame. Exception: a point of no body that is drawn off its line starts on the line. Lengths are measured
+from `origin` in `unit`, in which the car's size is between one and two.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, count, repeat
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from validate.errors import NoAnswer
+from validate.spanning_tree.tree import (
+    CHASSIS,
+    Array,
+    Driven,
+    Joint,
+    Kind,
+    Loop,
+    Place,
+    SpanningTree,
+    across,
+    car_directions,
+)
 
-Array = NDArray[np.float64]
-
-CHASSIS = "chassis"
 NO_AXIS = np.zeros(3)
 TINIEST = 1e-250  # mm: the square of a smaller car is not a normal floating-point number
 # Share of the car's size: points that are nearer to a line count as drawn on it.
 ON_LINE = 16.0 * float(np.finfo(float).eps)
-Kind = Literal["hinge", "ball", "slide"]
 COORDINATES: Mapping[Kind, int] = {"hinge": 1, "slide": 1, "ball": 3}
-
-
-@dataclass(frozen=True)
-class Place:
-    """A point of a body, or a direction that is fixed in it.
-
-    Attributes:
-        body: its name. at: where it is in the reference pose, (3,).
-    """
-
-    body: str
-    at: Array
-
-
-@dataclass(frozen=True)
-class Joint:
-    """A joint and the body that it carries, which has its name.
-
-    Attributes:
-        at: where it is in the reference pose, (3,). axis: unit vector, (3,); zero for a ball joint.
-    """
-
-    body: str
-    parent: str
-    kind: Kind
-    at: Array
-    axis: Array = field(default_factory=lambda: np.zeros(3))
-
-
-@dataclass(frozen=True)
-class Loop:
-    """A ball joint that closes the tree: a place of one body that a place of another one must meet.
-
-    Attributes:
-        name: name of the point, rod, slide or input that it represents.
-    """
-
-    name: str
-    first: Place
-    second: Place
-
-
-@dataclass(frozen=True)
-class Driven:
-    """A joint that is driven: its coordinate is scale x f(input) + start, with f the cosine of an `angle`.
-
-    Attributes:
-        body: the body that the joint carries.
-        drawn: value of the input in the drawing, rad or in the tree's unit.
-        per_input: for a length, mm per unit of the user's input; not 1 for the turn of a steering wheel.
-    """
-
-    input: str
-    kind: Literal["turn", "angle", "distance", "length"]
-    drawn: float
-    body: str
-    scale: float
-    start: float
-    per_input: float = 1.0
-
-    @property
-    def is_angle(self) -> bool:
-        """Whether its value is in rad."""
-        return self.kind in ("turn", "angle")
-
-    def coordinate(self, law: Array) -> Array:
-        """The coordinate with two time derivatives, from the input's, (..., 3)."""
-        value, rate, bend = np.moveaxis(law, -1, 0)
-        if self.kind == "angle":
-            sine, cosine = np.sin(value), np.cos(value)
-            value, rate, bend = cosine, -sine * rate, -cosine * rate * rate - sine * bend
-        found = np.stack([value, rate, bend], axis=-1) * self.scale
-        found[..., 0] += self.start
-        return found
-
-
-@dataclass(frozen=True)
-class SpanningTree:
-    """A mechanism as a tree with closures.
-
-    Attributes:
-        joints: joints of the tree, of its closures and of its drives, parents first; also those of auxiliary
-            bodies without points, between two joints.
-        rods: bodies on a ball joint whose spin about the axis has no effect.
-        points: every point, as a place of that of its bodies that is nearest to the chassis.
-        drawn: every point as drawn, (3,).
-        origin, unit: mm.
-    """
-
-    joints: tuple[Joint, ...]
-    rods: Mapping[str, Array]
-    loops: tuple[Loop, ...]
-    driven: tuple[Driven, ...]
-    points: Mapping[str, Place]
-    drawn: Mapping[str, Array]
-    origin: Array
-    unit: float
-
-    def told(self, values: Array) -> dict[str, float]:
-        """Inputs in rad and mm by name, from one value for each that is driven."""
-        return {
-            driven.input: float(value) * (1.0 if driven.is_angle else self.unit / driven.per_input)
-            for driven, value in zip(self.driven, values, strict=True)
-        }
+Member = TypeVar("Member")
 
 
 @dataclass(frozen=True)
@@ -162,7 +66,7 @@ class _Edge:
     """A possible joint of the tree, or two in a row.
 
     Attributes:
-        slide: the name of its slide, if it is a sliding joint.
+        slide: name of its slide, or "" if it is not a sliding joint.
     """
 
     bodies: tuple[str, str]
@@ -176,23 +80,11 @@ class _Edge:
         return sum(COORDINATES[kind] for kind in self.kinds)
 
 
-class _Groups:
-    """Sets that are merged (union-find)."""
-
-    def __init__(self) -> None:
-        self._above: dict[Any, Any] = {}
-
-    def of(self, member: Any) -> Any:
-        while member in self._above:
-            member = self._above[member]
-        return member
-
-    def join(self, one: Any, other: Any) -> bool:
-        """Whether they were apart."""
-        one, other = self.of(one), self.of(other)
-        if one != other:
-            self._above[one] = other
-        return bool(one != other)
+def _merge(groups: dict[Member, Member], one: Member, other: Member) -> bool:
+    """Merge the groups of two members; `groups` maps each member to its group. Whether they were apart."""
+    old, new = groups.setdefault(one, one), groups.setdefault(other, other)
+    groups.update({member: new for member, group in groups.items() if group == old})
+    return old != new
 
 
 def unit_vector(vector: Array, start: str, end: str) -> Array:
@@ -207,16 +99,8 @@ def unit_vector(vector: Array, start: str, end: str) -> Array:
     return np.asarray(vector / size)
 
 
-def across(axis: Array) -> tuple[Array, Array]:
-    """Two unit vectors at right angles to a unit vector and to each other."""
-    other = np.eye(3)[int(np.argmin(np.abs(axis)))]
-    first = np.cross(axis, other)
-    first /= np.linalg.norm(first)
-    return first, np.cross(axis, first)
-
-
 def turned_least(vector: Array, line: Array, other: Array) -> Array:
-    """A vector after the smallest rotation of one unit vector to the line of another, in either sense."""
+    """A vector after the smallest rotation that brings the unit vector `line` onto plus or minus `other`."""
     cosine, axis = float(line @ other), np.cross(line, other)
     if cosine < 0.0:
         cosine, axis = -cosine, -axis
@@ -234,9 +118,10 @@ def cut(plain: Mapping[str, Any]) -> SpanningTree:
 
 
 class _Cutter:
-    """State of a flat mechanism while it is cut into a tree."""
+    """A flat mechanism while it is cut into a tree."""
 
     def __init__(self, plain: Mapping[str, Any]) -> None:
+        self.plain = plain
         located = {name: np.array(place, dtype=float) for name, place in plain["points"].items()}
         self.origin, self.unit = _measure(located)
         self.drawn = {name: (place - self.origin) / self.unit for name, place in located.items()}
@@ -267,8 +152,7 @@ class _Cutter:
         self.driven: list[Driven] = []
 
     def _sliding_rods(self) -> dict[str, tuple[str, str, str, Array]]:
-        """Rods along a slide's line with one end at a point of a body: the rod itself slides and carries its
-        other end.
+        """Rods along a slide's line with one end at a point of a body: the rod slides with its other end.
 
         Returns:
             For each rod its slide, the end at the body, the other end, and the first end's foot on the line.
@@ -305,6 +189,7 @@ class _Cutter:
         for number, (name, given) in enumerate(self._drives()):
             self._drive(f"drive {number} {name}", name, given)
         return SpanningTree(
+            plain=self.plain,
             joints=tuple(self.joints),
             rods=self.rods_made,
             loops=tuple(self.loops),
@@ -372,7 +257,7 @@ class _Cutter:
         return found
 
     def _require_width(self, body: str, start: str, axis: Array) -> None:
-        """Raise `NoAnswer` unless a moving body on a hinge has a point beside the hinge."""
+        """Raise `NoAnswer` if a moving body on a hinge has no point off the hinge's line."""
         if body == CHASSIS:
             return
         for p in self.bodies[body]:
@@ -391,8 +276,8 @@ class _Cutter:
         ways = sorted(
             edges, key=lambda e: (set(e.bodies) not in turning, e.coordinates, CHASSIS not in e.bodies)
         )
-        groups = _Groups()
-        return [edge for edge in ways if groups.join(*edge.bodies)]
+        groups: dict[str, str] = {}
+        return [edge for edge in ways if _merge(groups, *edge.bodies)]
 
     def _joints(self) -> list[Joint]:
         """Joints from the chassis outwards."""
@@ -422,23 +307,21 @@ class _Cutter:
         kinds: list[Kind] = ["slide", "slide", "slide", "ball"]
         return _in_a_row(CHASSIS, self.at[self.bodies[body][0]], zip(names, kinds, axes, strict=False))
 
-    def _place(self, body: str, point: str) -> Place:
-        return Place(body, self.at[point])
-
     def _close(self, edges: list[_Edge]) -> None:
-        """Add the closures for all that the tree's joints do not hold."""
-        met, numbers = _Groups(), count()
+        """Add the closures for the joints, slides and rods that are not in the tree."""
+        met: dict[tuple[str, str], tuple[str, str]] = {}
+        numbers = count()
         for edge in self.taken:
             if not edge.slide:
                 for p in edge.points:
-                    met.join((p, edge.bodies[0]), (p, edge.bodies[1]))
+                    _merge(met, (p, edge.bodies[0]), (p, edge.bodies[1]))
         for edge in edges:
             if edge.slide:
                 continue
             one, other = edge.bodies
-            apart = [p for p in edge.points if met.join((p, one), (p, other))]
+            apart = [p for p in edge.points if _merge(met, (p, one), (p, other))]
             for p in apart:
-                number, first, second = next(numbers), self._place(other, p), self._place(one, p)
+                number, first, second = next(numbers), Place(other, self.at[p]), Place(one, self.at[p])
                 # Once the first point meets, the second one need only stay on the hinge's line.
                 if p != apart[0] or len(apart) < len(edge.points):
                     self._on_line(f"closure {number} {p}", p, first, second, edge.axis)
@@ -453,10 +336,12 @@ class _Cutter:
                     continue
                 for p in points[:2]:
                     if (name, p) not in on_rods:
-                        self._on_line(f"closure {next(numbers)} {p}", p, self._place(body, p), through, axis)
+                        self._on_line(
+                            f"closure {next(numbers)} {p}", p, Place(body, self.at[p]), through, axis
+                        )
                 if len(points) > 1 and not slide["turns"]:
-                    # Of two places of the body: its frame's origin, and one along v, which is turned with the
-                    # body's own line by the smallest rotation of that line onto the slide's.
+                    # Two places of the body stay level: its frame's origin, and one along u, rotated by the
+                    # smallest rotation of the slide's line onto the body's line.
                     u, v = across(axis)
                     own = unit_vector(self.drawn[points[1]] - self.drawn[points[0]], *points[:2])
                     start = next(joint.at for joint in self.joints if joint.body == body)
@@ -543,11 +428,11 @@ class _Cutter:
             self._rod(label, name, self.points[p], self.points[q], length, True)
 
     def _hangs_by(self, slide: str, body: str) -> bool:
-        """Whether a body's joint on a slide is one of the tree's."""
+        """Whether the joint of a body on a slide is in the tree."""
         return any(edge.slide == slide and body in edge.bodies for edge in self.taken)
 
     def _between(self, kind: Kind, one: str, other: str) -> Joint | None:
-        """The joint of the tree between two bodies, of a kind."""
+        """The joint of a kind between two bodies, if it is in the tree."""
         for joint in self.hung:
             if joint.kind == kind and {joint.body.removesuffix(" slide"), joint.parent} == {one, other}:
                 return joint
@@ -579,7 +464,7 @@ class _Cutter:
         holder = next(iter(self._sliding(slide)))
         joint = self._between("slide", holder, body) if self._hangs_by(slide_name, holder) else None
         if joint is None:
-            ends = self._place(holder, p), Place(body, through)
+            ends = Place(holder, self.at[p]), Place(body, through)
             self._height(label, name, "length", ends, axis, body, size, drawn, per_input)
             return
         # Its coordinate is measured from the reference pose.
@@ -605,7 +490,7 @@ class _Cutter:
         axis, start = along / long, float((first.at - second.at) @ along)
         base = Place(of, first.at)
         if second.body != of:
-            # A body that moves with the second point, and turns with the body `of`.
+            # This body moves with the second point and turns with the body `of`.
             carried = self._slides(f"{label} from", Place(of, second.at), (axis, *across(axis)))
             self.loops.append(Loop(name, carried, second))
             base = Place(carried.body, first.at)
@@ -618,8 +503,8 @@ class _Cutter:
         """The body that represents the ground.
 
         The inputs move the chassis relative to the ground one after the other, turns before displacements,
-        each in the ground's axes. Here the chassis is the base, so the same joints follow in reverse sense,
-        the first input's joint first.
+        each in the ground's axes. Here the chassis is the base, so the joints have the reverse sense, and the
+        joint of the first input comes first.
         """
         moves = [(name, given) for name, given in self.inputs.items() if "moves" in given]
         turns = [(name, given) for name, given in self.inputs.items() if "turns" in given]
@@ -664,26 +549,11 @@ def _in_a_row(parent: str, at: Array, links: Iterable[tuple[str, Kind, Array]]) 
     return joints
 
 
-def car_directions(plain: Mapping[str, Any]) -> dict[str, Array]:
-    """Directions of the car by name, (3,)."""
-    up, right = np.array(plain["up"], dtype=float), np.array(plain["right"], dtype=float)
-    forward = np.cross(up, right)
-    return {
-        "up": up,
-        "down": -up,
-        "right": right,
-        "left": -right,
-        "forward": forward,
-        "rearward": -forward,
-    }
-
-
 def _measure(points: Mapping[str, Array]) -> tuple[Array, float]:
-    """An origin near the car, (3,), mm, so that differences from it are exact; and the car's size, mm, a
-    power of 2.
+    """An origin near the car, (3,), mm, from which differences are exact; the car's size, mm, a power of 2.
 
     Raises:
-        NoAnswer: the car has no size, or one whose square is no normal number.
+        NoAnswer: the car has no size, or the square of its size is not a normal number.
     """
     stack = np.array(list(points.values()))
     if not np.isfinite(stack).all():

@@ -1,4 +1,4 @@
-"""Where inputs stand and end: poses are there up to the end, and none beyond it, by the reference."""
+"""Drawn inputs and ends of inputs: by the reference, poses exist up to the end and not beyond it."""
 
 import pytest
 from cars_in_closed_form import DRAWN, cars_of
@@ -13,7 +13,7 @@ from validate.reference import NoReferenceError, pose_exists
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 2)  # an end takes 0.1 s
-# Of the range: beside what the inputs of the car that is drawn anew are rounded by.
+# Share of the range: more than the rounding of the inputs of the redrawn car.
 NEAR = 1e-11
 
 
@@ -45,5 +45,5 @@ def test_an_end_separates_poses_from_none_to_a_hundred_billionth_of_the_range(
     try:
         assert pose_exists(design, inside)
         assert not pose_exists(design, outside)
-    except NoReferenceError:  # a drawing that is all but another assembly
+    except NoReferenceError:  # a drawing close to another assembly
         return

@@ -1,4 +1,4 @@
-"""Random cars of every mechanism are solved at their drawing, and near poses are as near as they say."""
+"""Random cars of every mechanism are solved as drawn, and near poses have the stated distance from an end."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ NUMBERS = st.integers(0, 2**32 - 1)
 EXAMPLES = settings.default.max_examples if settings.default else 100
 DEEP = EXAMPLES > 100
 searched = settings(deadline=None, max_examples=EXAMPLES if DEEP else 8)
-# Each looks for ends of inputs, half a second of work for one.
+# Each example searches for ends of inputs, which takes half a second.
 searched_for_ends = settings(deadline=None, max_examples=EXAMPLES if DEEP else 2)
 
 
@@ -31,10 +31,10 @@ def test_a_random_car_is_solved_where_it_is_drawn_and_what_slides_is_drawn_on_it
     motion = simulate(Scene.from_mapping(content_of(drawn.car, home)))
     if drawn.car.closure != "drawn":
         return
-    # What is drawn off its line is moved onto it, and the others by what follows from that.
+    # Points drawn off their line are moved onto it, which moves other points too.
     for name, place in drawn.car.array.items():
         assert np.abs(motion.position[name][0] - place).max() <= 0.05 * drawn.car.size, name
-    # On its line, or beside it by no more than is left over.
+    # At most LEFT_OVER off its line.
     p, structure = drawn.car.array, drawn.car.structure
     for slide in structure.slides.values():
         if slide.through not in p:

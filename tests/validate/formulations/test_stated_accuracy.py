@@ -136,12 +136,12 @@ def test_what_a_model_states_of_itself_covers_its_errors_and_is_near_to_them(nam
 def test_it_covers_what_an_early_end_of_newtons_method_leaves() -> None:
     scene = Scene.load("double-wishbone")
     problem, (program, home) = Problem.of(scene), closed_in(InPinocchio, scene, 1e-10)
-    linkage, inputs = program.linkage, program.linkage.inputs(problem.laws)
-    best, coarse = (program.poses(inputs.values, tolerance, home) for tolerance in (1e-10, 1e-2))
+    tree, series = program.tree, program.tree.series(problem.laws)
+    best, coarse = (program.poses(series[..., 0], tolerance, home) for tolerance in (1e-10, 1e-2))
     exact, found = (
-        numbers(linkage, inputs, poses, program.rates(poses, inputs.series)) for poses in (best, coarse)
+        numbers(tree, problem.laws, poses, program.rates(poses, series)) for poses in (best, coarse)
     )
-    solution = problem.solution("relative", found, linkage.accuracy(coarse.last_step))
+    solution = problem.solution("relative", found, tree.accuracy(coarse.last_step))
     asked = asked_of(exact, scene)
     for quantity, arrays in solution.numbers.items():
         for point, array in arrays.items():

@@ -27,7 +27,7 @@ class Faulty(InMujoco):
 
     def poses(self, inputs: Array, tolerance: float, start: Poses) -> Poses:
         poses = super().poses(inputs, tolerance, start)
-        off = poses.places["tie_rod_outer"] + np.array([0.0, 1e-6 / self.linkage.tree.unit, 0.0])
+        off = poses.places["tie_rod_outer"] + np.array([0.0, 1e-6 / self.tree.unit, 0.0])
         return replace(poses, places={**poses.places, "tie_rod_outer": off})
 
     def rates(self, poses: Poses, series: Array) -> Rates:

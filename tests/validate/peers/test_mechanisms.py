@@ -1,6 +1,6 @@
-"""Mechanisms in trees of joints: where they end, what none of them is, and which assembly they are.
+"""Mechanisms in trees of joints: ends of motions, refusals, assemblies.
 
-What the reference says of every shipped one is in tests/mechanisms/test_formulations.py.
+tests/mechanisms/test_formulations.py compares every shipped mechanism with the reference.
 """
 
 from typing import Any
@@ -16,8 +16,8 @@ from validate.errors import NoAnswer
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.in_pinocchio import InPinocchio
-from validate.peers.linkage import linkage_of
 from validate.peers.motion import Poses
+from validate.spanning_tree.cut import cut
 
 Array = NDArray[np.float64]
 
@@ -29,14 +29,14 @@ def plain_car(scene: str, **points: Any) -> dict[str, Any]:
 
 
 def held(values: Array) -> Array:
-    """An input that goes through values, without rates."""
+    """An input with these values, without rates."""
     return np.stack([values, 0.0 * values, 0.0 * values], axis=-1)
 
 
 def solved(mechanism: Any, laws: dict[str, Array], program_of: Any = InPinocchio) -> Poses:
-    linkage = linkage_of(mechanism)
-    program = program_of(linkage)
-    return program.poses(linkage.inputs(laws).values, 1e-12, program.closed(1e-12))
+    tree = cut(mechanism)
+    program = program_of(tree)
+    return program.poses(tree.series(laws)[..., 0], 1e-12, program.closed(1e-12))
 
 
 def test_rows_that_depend_on_others_are_left_out_and_looked_at_in_every_pose() -> None:
@@ -44,7 +44,7 @@ def test_rows_that_depend_on_others_are_left_out_and_looked_at_in_every_pose() -
     mechanism = plain_scene("bricard")
     laws = {name: held(np.linspace(0.0, 0.5, 6)) for name in mechanism["inputs"]}
     solved(mechanism, laws)
-    # Points that are off by 1e-7 mm leave the drawing dependent to rounding, and the motion not.
+    # With errors of 1e-7 mm the rows stay dependent to rounding in the drawing, but not in the motion.
     rng = np.random.default_rng(3)
     for point, place in mechanism["points"].items():
         mechanism["points"][point] = (np.array(place) + 1e-7 * rng.standard_normal(3)).tolist()
@@ -60,7 +60,7 @@ def test_a_way_that_is_blocked_between_two_poses_is_refused_and_the_way_round_is
         return solved(plain_car("bounce"), {"arm_angle": held(np.deg2rad(angles)), "rack": held(racks)})
 
     assert len(reached((37.0, -0.1), (37.0, 0.1), (34.0, 0.1), (34.0, -0.1)).inputs) == 4
-    with pytest.raises(NoAnswer, match="hold each other") as caught:
+    with pytest.raises(NoAnswer, match="lock each other") as caught:
         reached((37.0, -0.1), (34.0, -0.1))
     assert caught.value.instant == 1
     assert "tie_rod" in caught.value.links
@@ -71,11 +71,11 @@ def test_a_way_that_is_blocked_between_two_poses_is_refused_and_the_way_round_is
 def test_inputs_that_are_too_many_or_too_few_are_refused() -> None:
     mechanism = plain_car("bounce")
     mechanism["inputs"]["again"] = dict(mechanism["inputs"]["arm_angle"])
-    with pytest.raises(NoAnswer, match="does not move the mechanism beside the others"):
-        InPinocchio(linkage_of(mechanism)).closed(1e-12)
+    with pytest.raises(NoAnswer, match="does not move the mechanism in addition to the others"):
+        InPinocchio(cut(mechanism)).closed(1e-12)
     del mechanism["inputs"]["again"], mechanism["inputs"]["rack"]
     with pytest.raises(NoAnswer, match="is free to move as drawn"):
-        InPinocchio(linkage_of(mechanism)).closed(1e-12)
+        InPinocchio(cut(mechanism)).closed(1e-12)
 
 
 @pytest.mark.parametrize("wrong", [np.nan, None])
@@ -86,12 +86,14 @@ def test_an_input_that_is_no_number_or_missing_is_refused_with_its_instant(wrong
     else:
         laws["rack"][7, 0] = wrong
     with pytest.raises(NoAnswer, match="rack") as caught:
-        linkage_of(plain_car("bounce")).inputs(laws)
+        cut(plain_car("bounce")).series(laws)
     assert caught.value.instant == (None if wrong is None else 7)
 
 
 def test_two_branches_that_cross_at_once_are_not_exchanged() -> None:
-    """With its cranks in line both loops change the sign of a determinant, and not that of their product."""
+    """With the cranks in line both loops change the sign of their determinants, so the product keeps its
+    sign.
+    """
     with pytest.raises(NoAnswer, match="cannot be reached"):
         solved(plain_scene("n-four-bar"), {"crank": held(np.array([-1.0, -1.6]))})
 
@@ -112,7 +114,7 @@ def parallelogram(apart: float) -> Any:
 def test_a_way_does_not_go_over_to_a_branch_that_crosses_it(
     program_of: Any, apart: float, count: int
 ) -> None:
-    """The determinant changes its sign where cranks stay parallel, and keeps it where they cross."""
+    """The determinant changes its sign if the cranks stay parallel, and keeps it if they cross."""
     turns = np.linspace(0.0, 3.0, count)
     with pytest.raises(NoAnswer, match="cannot be reached") as caught:
         solved(parallelogram(apart), {"crank": held(turns)}, program_of)
@@ -134,16 +136,16 @@ def test_a_way_that_turns_back_before_a_fold_is_followed_back(program_of: Any) -
 def test_what_makes_no_mechanism_is_told_by_name() -> None:
     strut = scene_file("off-axis-strut")["mechanism"]["points"]
     with pytest.raises(NoAnswer, match="lower_arm_front is where lower_arm_rear is"):
-        linkage_of(plain_car("off-axis-strut", lower_arm_rear=strut["lower_arm_front"]))
+        cut(plain_car("off-axis-strut", lower_arm_rear=strut["lower_arm_front"]))
     with pytest.raises(NoAnswer, match="strut_lower is where strut_top is"):
-        linkage_of(plain_car("off-axis-strut", strut_lower=strut["strut_top"]))
+        cut(plain_car("off-axis-strut", strut_lower=strut["strut_top"]))
 
 
 @pytest.mark.parametrize("program_of", [InMujoco, InExudyn, InPinocchio])
 def test_an_assembly_on_another_side_than_the_drawings_is_refused(program_of: Any) -> None:
-    linkage = linkage_of(plain_car("off-axis-strut"))
-    driven = linkage.drawn_inputs[None]
-    engine = program_of(linkage)
+    tree = cut(plain_car("off-axis-strut"))
+    driven = tree.drawn_inputs[None]
+    engine = program_of(tree)
     home = engine.closed(1e-12)
     assert len(engine.poses(driven, 1e-12, home).coordinates) == 1
     # As if the drawing were on the other side.

@@ -1,4 +1,4 @@
-"""A car of each linkage, and mpmath set to more digits than any result carries."""
+"""A car of each mechanism; mpmath has more digits than any result."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mechanism_drawings import CARS, ReferenceCar
 
 @pytest.fixture(scope="session", params=CARS)
 def car(request: pytest.FixtureRequest) -> ReferenceCar:
-    """A car of each linkage in turn."""
+    """One car of each mechanism."""
     return CARS[request.param]
 
 

@@ -37,7 +37,7 @@ def test_any_finite_input_gives_a_proven_instant_or_an_error_of_the_family(
 
 
 def along(*parts: tuple[str, Fraction]) -> Vector:
-    """The lower ball joint, and shares of the ways from it to other points."""
+    """The lower ball joint, moved by shares of the distances to other points."""
     points = CARS["double wishbone"].points
     place = ball = points["lower_ball_joint"]
     for name, share in parts:

@@ -1,4 +1,4 @@
-"""The equations of every mechanism are differentiated rightly by the unknowns."""
+"""The equations of every mechanism are differentiated correctly by the unknowns."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ fractions = st.integers(-1000, 1000).map(lambda n: fmpq(n, 16))
 
 
 def exact_equations(name: str) -> tuple[Equations, int]:
-    """The equations in fractions, and how many numbers of inputs they take."""
+    """The equations in fractions, and the number of the numbers w."""
     design = drawing(name)
     count = sum(len(drive.drawn()) for drive in design.mechanism.drives.values())
     return equations_in(design.mechanism, design.chosen, lambda number: number), count

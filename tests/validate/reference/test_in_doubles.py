@@ -1,4 +1,4 @@
-"""The equations in doubles: what missing one makes of a motion."""
+"""The equations in doubles: the effect of a residual on a motion."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from validate.reference.kinematics import with_rates
 
 
 def unknowns(car: ReferenceCar, places: dict[str, np.ndarray], still: Known) -> np.ndarray:
-    """The unknowns of points, (size, N)."""
+    """The unknowns from points, (size, N)."""
     count = len(next(iter(places.values())))
     read = car.design.mechanism.unknown_of(local_places(car.design, places, still), still.numbers, float)
     return np.array([np.broadcast_to(x, count) for x in read], dtype=float)
@@ -51,7 +51,7 @@ def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions
     values = unknowns(car, places, still)
 
     def moving(missed: np.ndarray) -> tuple[list[Jet], np.ndarray]:
-        """The motion that misses each equation by so much, and the inverse of its Jacobian."""
+        """The motion with these residuals of the equations, and the inverse of its Jacobian."""
         solved = values
         for _ in range(4):
             inverse = inverse_of(jacobian_of(list(solved), still))

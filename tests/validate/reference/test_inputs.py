@@ -1,4 +1,4 @@
-"""What may be given, and what is said when it may not."""
+"""Which inputs are allowed, and the errors for the others."""
 
 from __future__ import annotations
 

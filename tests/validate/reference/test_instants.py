@@ -1,4 +1,4 @@
-"""What an instant says of itself: how alone it is, how far its numbers may be off, which effects it has."""
+"""An instant: the right assembly, its error bounds, its effects."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def test_another_assembly_than_the_one_followed_is_not_taken(car: ReferenceCar) 
     pose = reached(design, CLEAR, driven).pose
     elsewhere = replace(pose, unknown=[(x + arb("1e-3")).mid() for x in pose.unknown])
     with ctx.workprec(bits(60)):
-        prove_instant(design, design.known(driven), pose, 40)
+        prove_instant(design, driven, pose, 40)
         narrow = replace(elsewhere, reach=[arb("1e-4")] * len(pose.unknown))
         with pytest.raises(NotDecidedError, match="the assembly found"):
-            prove_instant(design, design.known(driven), narrow, 40)
+            prove_instant(design, driven, narrow, 40)
 
 
 @pytest.mark.parametrize(("size", "given"), [(0.9, True), (1.1, False), (1.9, False)])

@@ -1,4 +1,4 @@
-"""A car has the numbers that it lacks nothing for, and no others."""
+"""A car has exactly the effects for which it has all that they need."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WHEEL = {"inner": (964, 652, 275), "centre": (1000, 700, 300)}
 
 
 def effects_of(plain: dict[str, Any], **inputs: Fraction | int) -> set[str]:
-    """Those that there are at rest."""
+    """The effects at rest."""
     still = {name: (value, 0, 0) for name, value in inputs.items()}
     return set(next(instants_of(Design.from_plain(plain), [still], effects=EFFECTS)).effects)
 

@@ -1,4 +1,4 @@
-"""Numbers of wheels by the witnesses are the reference's; which wheels have no contact point."""
+"""Numbers of wheels by programs equal those of the reference; wheels without a contact point are refused."""
 
 from __future__ import annotations
 
@@ -11,18 +11,17 @@ from numpy.typing import NDArray
 
 from validate.errors import NoAnswer
 from validate.peers.in_pinocchio import InPinocchio
-from validate.peers.linkage import linkage_of
+from validate.peers.motion import OF_CAR
 from validate.peers.motion import numbers as numbers_of
 from validate.reference import Design, instants_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.effects.wheel import OF_POSITIONS
 from validate.spanning_tree.cut import cut
-from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
 
-# The greatest is 1 m; places are rounded some ten times, raised by no more than a hundred, and an angle is
-# that of a line of 50 mm.
+# Lengths are at most 1 m; places have some ten roundings, magnified at most a hundred times; an angle is that
+# of a line of 50 mm.
 WITHIN_MM, WITHIN_RAD = 1e-10, 2e-12
 SCENES = ("pushrod", "off-axis-strut")
 
@@ -37,7 +36,7 @@ def moved(name: str) -> tuple[dict[str, Any], dict[str, Array]]:
         "aside": {"moves": "chassis", "along": "right"},
         "up": {"moves": "chassis", "along": "up"},
     }
-    tree = linkage_of(plain).tree
+    tree = cut(plain)
     drawn, unit = {driven.input: driven for driven in tree.driven}, tree.unit
     values = {n: d.drawn if d.is_angle else d.drawn * unit for n, d in drawn.items()}
     sizes = {n: 0.1 if d.is_angle else 8.0 for n, d in drawn.items()}
@@ -50,10 +49,10 @@ def moved(name: str) -> tuple[dict[str, Any], dict[str, Array]]:
 
 
 def found(plain: dict[str, Any], laws: dict[str, Array], *effects: Any) -> dict[str, Array]:
-    linkage = linkage_of(plain)
-    program, inputs = InPinocchio(linkage), linkage.inputs(laws)
-    poses = program.poses(inputs.values, 1e-12, program.closed(1e-12))
-    return numbers_of(linkage, inputs, poses, None, *effects)[OF_CAR]
+    tree = cut(plain)
+    program = InPinocchio(tree)
+    poses = program.poses(tree.series(laws)[..., 0], 1e-12, program.closed(1e-12))
+    return numbers_of(tree, laws, poses, None, *effects)[OF_CAR]
 
 
 @pytest.mark.parametrize("name", SCENES)

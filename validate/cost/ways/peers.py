@@ -30,22 +30,23 @@ def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
         tolerance: size of the last Newton correction.
     """
     program, closed = closed_in(program_of(name), scene, tolerance)
-    linkage = program.linkage
-    first = linkage.inputs(laws_at(scene, np.array([scene.time.start])))
-    start = program.poses(first.values, tolerance, closed)
+    tree = program.tree
+    first = tree.series(laws_at(scene, np.array([scene.time.start])))
+    start = program.poses(first[..., 0], tolerance, closed)
     moves = plan_effects(scene.effects).derivative > 0
 
     def solve(instants: Array) -> Answer:
-        inputs = linkage.inputs(laws_at(scene, instants))
+        laws = laws_at(scene, instants)
+        series = tree.series(laws)
         try:
-            poses = program.poses(inputs.values, tolerance, start)
+            poses = program.poses(series[..., 0], tolerance, start)
         except NoAnswer as error:
             if error.instant is None:
                 raise
             what = f"at t = {instants[error.instant]:.6g} s, {error.what}"
             raise NoAnswer(what, error.problem, error.allowed, instant=error.instant) from None
-        rates = program.rates(poses, inputs.series) if moves else None
-        found = numbers(linkage, inputs, poses, rates, asked_of_the_car(scene))
+        rates = program.rates(poses, series) if moves else None
+        found = numbers(tree, laws, poses, rates, asked_of_the_car(scene))
         return Answer(asked_of(found, scene), poses.counts)
 
     return solve

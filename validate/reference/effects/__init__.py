@@ -1,1 +1,1 @@
-"""Effects: the reference's numbers of a pose beside points and bodies. One file for each group of effects."""
+"""Effects: numbers of a pose other than the motion of points and bodies, one file for each group."""

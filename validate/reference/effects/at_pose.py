@@ -1,9 +1,9 @@
-"""A pose in the form that effects take, and the driven inputs by which it can be differentiated."""
+"""Poses as the cars of effects, and the driven inputs by which effects are differentiated."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 from flint import arb
@@ -23,7 +23,7 @@ from validate.reference.vectors import Exact, Vector
 
 @dataclass(frozen=True)
 class Number:
-    """A number that an effect computes from a car.
+    """An effect of a car.
 
     Attributes:
         name: its name in results, for example `left.camber`.
@@ -36,8 +36,7 @@ class Number:
 
 
 def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
-    """The numbers of these names that the car can have; the name of a wheel's number without prefix means all
-    parts.
+    """The numbers of these names that the car can have; a wheel's number without prefix means all parts.
 
     Raises:
         NoReferenceError: there is no such effect.
@@ -47,7 +46,7 @@ def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
         part, dot, base = name.rpartition(".")
         if base not in EFFECTS:
             raise NoReferenceError("effect", f"is {name!r}", "a name of `effects.registry`")
-        effect, pair = EFFECTS[base], pair_of(design)
+        effect, pair = EFFECTS[base], pair_of(design.corners)
         of_both = ((name, pair),) if pair else ()
         of_each = ((prefix + base, (prefix,)) for prefix in ([part + dot] if dot else design.corners))
         for label, prefixes in of_both if PAIR in effect.needs else of_each:
@@ -56,24 +55,19 @@ def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
     return tuple(found.values())
 
 
-def pair_of(design: Design) -> tuple[str, ...]:
-    """The prefixes of the left and the right part, where there are exactly two, on opposite sides."""
-    corners = sorted(design.corners.items(), key=lambda one: one[1])
-    return tuple(prefix for prefix, _ in corners) if [side for _, side in corners] == [-1, 1] else ()
+def pair_of(corners: Mapping[str, int]) -> tuple[str, ...]:
+    """The prefixes of the left and the right part, if there are just two parts on opposite sides."""
+    both = tuple(sorted(corners, key=lambda prefix: corners[prefix]))
+    return both if [corners[prefix] for prefix in both] == [-1, 1] else ()
 
 
 def drawn_car(design: Design, number: Exact, prefix: str = "") -> DrawnCar:
-    """The car as drawn, local.
-
-    Args:
-        number: converts a fraction to the kind of number of the poses.
-        prefix: prefix of the part.
-    """
+    """The corner of a part as drawn, local; `number` converts a fraction to the poses' kind of number."""
     return DrawnCar.of(design.plain, prefix, design.table, design.origin, design.unit, number)
 
 
 def drivers(design: Design, prefix: str = "") -> dict[str, str]:
-    """The driven input of `TRAVEL`, `RACK` and `ROLL` in a part, where there is exactly one."""
+    """The driven input of `TRAVEL`, `RACK` and `ROLL` in a part, for each kind with exactly one."""
     inputs = design.plain["inputs"]
     others = tuple(other for other in design.corners if other != prefix)
     own = [name for name in design.mechanism.drives if not name.startswith(others)]
@@ -85,7 +79,7 @@ def drivers(design: Design, prefix: str = "") -> dict[str, str]:
 
 
 def provided(design: Design, prefix: str = "") -> frozenset[str]:
-    """The needs of effects that a part of the car meets, see `Effect.needs`."""
+    """What a part of the car has, as in `Effect.needs`."""
     lines = (role for role in LINES if design.role(prefix + role) is not None)
     knuckle = [KNUCKLE] if design.role(prefix + KNUCKLE) in design.mechanism.frames else []
     return frozenset({*lines, *drivers(design, prefix), *design.car, *knuckle})
@@ -100,11 +94,11 @@ def car_at(
     """The car at a pose, local.
 
     Args:
-        chassis: its motion, with rates as slopes if the places have rates.
+        chassis: its motion, with slopes if the places have slopes.
         places: positions of the lines' points, relative to the chassis.
         knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
     """
-    turning, lines = chassis.without_displacement(), lines_of(drawn.ends, places)
+    turning, lines = replace(chassis, rise=None), lines_of(drawn.ends, places)
     turned = {role: Line(turning.moved(one.start), turning.moved(one.end)) for role, one in lines.items()}
     frame = None if knuckle is None else (turning.turned(knuckle[0]), turning.turned(knuckle[1]))
     return Car(drawn, turned, lines, frame)
@@ -115,12 +109,11 @@ def effects_at(
 ) -> dict[str, arb]:
     """Numbers in balls, rad, mm and %.
 
-    Gradients are those of the pose y(q): C(y, w(q)) = 0 differentiated by one driven input q, which is the
-    velocity of a motion that drives it at unit rate; those by time are of the motion itself.
+    The derivative of a pose by a driven input is the velocity of a motion that drives it at unit rate.
 
     Args:
-        known: as jets; only numbers that are derivatives by time use the jets' rates.
-        solver: solver for the rates over the enclosure.
+        known: as jets; only derivatives by time use their rates.
+        solver: solves for the rates over the enclosure.
     """
     unit, equations = as_ball(design.unit), known.equations
 
@@ -132,7 +125,7 @@ def effects_at(
             return car_at(drawn, known.chassis.still(), places)
         driven = known
         if along != TIME:
-            # A slide is driven in the design's own unit of length, which is also the car's.
+            # A slide is driven in the design's unit of length, which is also the car's.
             driver = drivers(design, prefix)[along]
             rate = unit if along == RACK else arb(1)
             if "steers" in design.plain["inputs"][driver]:

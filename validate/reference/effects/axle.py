@@ -1,6 +1,6 @@
-r"""The numbers of the two wheels of an axle together, defined in `pointcoord/effects/README.md`.
+"""The numbers of an axle, from both wheels, defined in `pointcoord/effects/README.md`.
 
-c is a contact point, v its velocity as a point of the wheel's carrier during that wheel's travel, d a steer
+c is a contact point, v its velocity as a point of the wheel's carrier during the wheel's travel, d a steer
 angle, positive to the left, L the wheelbase, t the track as drawn.
 """
 
@@ -43,7 +43,7 @@ def _roll_centre(left: Car, right: Car) -> tuple[Scalar, Scalar]:
 
 
 def _by_side(left: Car, right: Car, to_left: Scalar, to_right: Scalar) -> Scalar:
-    """The first if both wheels are steered to the left, the second if both to the right, else no number."""
+    """One number if both wheels are steered to the left, another if to the right, otherwise NaN."""
     one, two = (value_of(steer_angle(car)) for car in (left, right))
     if isinstance(one, np.ndarray):
 
@@ -66,7 +66,7 @@ def _cotangent(car: Car) -> Scalar:
 def _turning_radius(left: Car, right: Car) -> Scalar:
     """L |cot d left + cot d right| / 2."""
     twice = left.drawn.data[data.WHEELBASE] * (_cotangent(left) + _cotangent(right))
-    # Wheels that are steered by more than a right angle have negative cotangents to the left.
+    # Beyond a right angle to the left the cotangent is negative.
     size = root(twice * twice) / 2
     return _by_side(left, right, size, size)
 
@@ -78,7 +78,7 @@ def _drawn_track(left: Car, right: Car) -> Scalar:
 def _ackermann(left: Car, right: Car) -> Scalar:
     """100 (d inner - d outer) / (arccot((R - t/2) / L) - arccot((R + t/2) / L)), R the turning radius.
 
-    The angles are magnitudes. Their difference is d left - d right, whichever wheel is the inner one.
+    The angles are magnitudes; their difference is d left - d right, whichever wheel is the inner one.
     """
     wheelbase, radius = left.drawn.data[data.WHEELBASE], _turning_radius(left, right)
     half = _drawn_track(left, right) / 2
@@ -90,7 +90,7 @@ def _ackermann(left: Car, right: Car) -> Scalar:
 
 
 def _ackermann_error(left: Car, right: Car) -> Scalar:
-    """d outer - arccot(cot d inner + t / L), magnitudes: the excess of the outer wheel's steer angle."""
+    """d outer - arccot(cot d inner + t / L), magnitudes: excess of the outer wheel's steer angle."""
     apart = _drawn_track(left, right) / left.drawn.data[data.WHEELBASE]
 
     def needed(inner: Scalar) -> Scalar:
@@ -109,20 +109,8 @@ _STEERED = (data.PAIR, *ON_GROUND, data.WHEELBASE)
 
 NUMBERS = (
     Effect("track", "mm", (data.PAIR, *ON_GROUND), _track),
-    Effect(
-        "axle_roll_centre_height",
-        "mm",
-        (data.PAIR, *MOVING),
-        lambda *cars: _roll_centre(*cars)[1],
-        data.TRAVEL,
-    ),
-    Effect(
-        "axle_roll_centre_offset",
-        "mm",
-        (data.PAIR, *MOVING),
-        lambda *cars: _roll_centre(*cars)[0],
-        data.TRAVEL,
-    ),
+    Effect("axle_roll_centre_height", "mm", _MOVED, lambda *cars: _roll_centre(*cars)[1], data.TRAVEL),
+    Effect("axle_roll_centre_offset", "mm", _MOVED, lambda *cars: _roll_centre(*cars)[0], data.TRAVEL),
     Effect("turning_radius", "mm", _STEERED, _turning_radius),
     Effect("ackermann", "%", _STEERED, _ackermann),
     Effect("ackermann_error", "rad", _STEERED, _ackermann_error),

@@ -1,4 +1,4 @@
-"""A wheel's corner of the car in any kind of number, and the definition of an effect: a number of a pose."""
+"""A corner of the car in any kind of number, and the definition of an effect, a number of a pose."""
 
 from __future__ import annotations
 
@@ -15,17 +15,16 @@ class Effect:
     """A number of a pose.
 
     Attributes:
-        name: its name in results; if there are parts, the prefix of its part stands before it.
+        name: its name in results, without the prefix of a part.
         unit: unit of the number, a unit or a quotient of two.
-        needs: what the car must have: lines by their roles, a moving knuckle, an entry of `car_data`,
-            exactly one driven input of the kind `along`; with `PAIR` two parts on opposite sides, each with
-            all of these.
+        needs: what the car must have: lines by their roles, a moving knuckle, an entry of `car_data`, exactly
+            one driven input of the kind `along`; with `PAIR` two parts on opposite sides, each with all this.
         evaluate: computes the number from a `Car`, or with `PAIR` from the left and the right one, in their
             kind of scalar and unit of length; not a finite ball if the number is undefined.
         along: None, or the variable of the derivatives, if the numbers of the car are duals. `TRAVEL`: the
-            one driven input that is not the travel of a slide, in any unit. `RACK`: the one that is the
-            travel of a slide, in the car's own unit of length. `ROLL`: the one that rolls the chassis, rad.
-            In these three the other inputs are constant. `TIME`: time, and all inputs move.
+            one driven input that is not the travel of a slide, in any unit. `RACK`: the one that is, in the
+            car's unit of length. `ROLL`: the one that rolls the chassis, rad. The other inputs are constant.
+            `TIME`: time; all inputs move.
     """
 
     name: str
@@ -36,7 +35,7 @@ class Effect:
 
     @property
     def power(self) -> int:
-        """Power of the unit of length by which the number in the car's own unit is multiplied."""
+        """Power of the car's unit of length in the number."""
         # A force is the rate of a spring, N/mm, times a length.
         above, below = (int(part in ("mm", "N")) for part in f"{self.unit}/".split("/")[:2])
         return above - below
@@ -48,31 +47,28 @@ class Effect:
 
 @dataclass(frozen=True)
 class Line:
-    """From one point to another."""
+    """A line from one point to another."""
 
     start: Vector
     end: Vector
 
     @property
     def along(self) -> Vector:
-        """The first minus the second."""
+        """The end minus the start."""
         return minus(self.end, self.start)
 
 
 @dataclass(frozen=True)
 class DrawnCar:
-    """Data of a corner beside its pose; lengths in any unit, the same for all.
+    """A corner as drawn, with data of the car; all lengths in one unit.
 
     Attributes:
-        ends: the two points of each of `LINES` that a role names: for the wheel's spin axis its inner point
-            and the wheel centre, for the steering axis its lower and its upper point, for the damper its
-            ends.
-        lines: the lines as drawn, neither closed nor turned.
-        up: unit vector.
-        forward: unit vector, up x right.
-        outboard: unit vector, away from the car's middle.
+        ends: the two points of each of `LINES` that a role names: inner point and centre of the wheel, lower
+            and upper point of the steering axis, ends of the damper.
+        lines: the lines as drawn, before closing.
+        up, forward, outboard: unit vectors; forward is up x right, outboard leads away from the car's middle.
         origin: origin of the user's coordinates, a point of the car's middle plane.
-        data: data of the car as a whole, see `car_data`.
+        data: data of the whole car, see `car_data`.
     """
 
     ends: Mapping[str, tuple[str, str]]
@@ -93,12 +89,11 @@ class DrawnCar:
         unit: Any,
         number: Exact,
     ) -> DrawnCar:
-        """A description's corner.
+        """The corner of a description whose names have a prefix.
 
         Args:
-            prefix: prefix of its names.
             points: as drawn, (p - origin) / unit.
-            number: converts a given number to the kind of number of the poses.
+            number: converts a fraction or float to the kind of number of the poses.
         """
         named = {role: plain["roles"].get(prefix + role) for role in LINES}
         ends = {role: (points[0], points[1]) for role, points in named.items() if points is not None}
@@ -158,7 +153,7 @@ class Car:
 
     @property
     def is_right(self) -> bool:
-        """Whether outboard is the right of the car, which is forward x up."""
+        """Whether outboard is to the right, forward x up."""
         return bool(dot(self.outboard, cross(self.forward, self.up)) > 0)
 
     @property

@@ -1,8 +1,8 @@
 r"""The numbers of one wheel, defined in `pointcoord/effects/README.md`.
 
-a is the wheel's spin axis, k the steering axis, W the wheel centre, c the contact point. Where the car's
-numbers are duals, ' is the derivative by their input. The wheel's carrier turns with omega and moves its own
-point at p with W' + omega x (p - W); v is that of c.
+a is the wheel's spin axis, k the steering axis, W the wheel centre, c the contact point. ' is the derivative
+if the car's numbers are duals. The wheel's carrier turns with omega and moves its point at p with W' + omega
+x (p - W); v is the velocity of its point at c.
 """
 
 from __future__ import annotations
@@ -27,16 +27,18 @@ LEANS: dict[str, tuple[str, Callable[[Scalar, Scalar, Scalar], Scalar]]] = {
     "kingpin": (data.STEERING, lambda out, _, up: angle(-out, up)),  # eq. (16)
     "toe": (data.WHEEL, lambda out, ahead, _: angle(ahead, out)),  # ISO 8855, 7.1.6
     "caster": (data.STEERING, lambda _, ahead, up: angle(-ahead, up)),
-    # The arcsine of a unit vector's component, from the three components of a vector of any length along the
-    # car's axes. As the axes are rounded, l^2 - s^2 is not the sum of squares of the other two components.
+    # The arcsine of the component of a unit vector. As the car's axes are rounded, l^2 - s^2 is not exactly
+    # the sum of squares of the other two components.
     "camber_by_arcsine": (data.WHEEL, lambda out, ahead, up: angle(-up, root(out * out + ahead * ahead))),
     "toe_by_arcsine": (data.WHEEL, lambda out, ahead, up: angle(ahead, root(out * out + up * up))),
 }
-"""Angles of a line from its components outboard, forward and up; by arcsine as in Adams/Car and OptimumK."""
+"""Angles of a line of a role from its components outboard, forward and up; arcsines as in Adams/Car,
+OptimumK.
+"""
 
 
 def _lean(name: str, car: Car, along: Vector | None = None) -> Scalar:
-    """One of `LEANS`, of its own line unless another direction is given."""
+    """One of `LEANS`, of the line of its role or of another direction."""
     role, formula = LEANS[name]
     v = along or car.lines[role].along
     return formula(dot(v, car.outboard), dot(v, car.forward), dot(v, car.up))
@@ -59,7 +61,7 @@ def _travel(car: Car) -> Scalar:
 
 
 def _contact_travel(car: Car) -> Scalar:
-    """(c - drawn c) . up, before the turns of the chassis, c of the disc that hangs along its own up."""
+    """(c - drawn c) . up, before the turns of the chassis."""
     return dot(minus(contact_of(car.drawn, car.on_chassis[data.WHEEL]), car.drawn.contact), car.up)
 
 
@@ -89,7 +91,7 @@ OFFSETS: dict[str, tuple[bool, Callable[[Car, Vector, Vector], Scalar]]] = {
     "kingpin_offset_at_wheel": (False, lambda car, off, _: dot(off, car.outboard)),
     "hub_trail": (False, lambda car, off, _: dot(off, car.forward)),
 }
-"""By number: whether it belongs to c, not W; its formula from that point's offset from an axis, and a."""
+"""For each number, whether it belongs to c or to W, and its formula from that point's offset and from a."""
 
 
 def _offset(name: str, car: Car, start: Vector, k: Vector, known: Callable[[Vector], Vector]) -> Scalar:
@@ -144,8 +146,8 @@ def _roll_centre(car: Car, v: Vector) -> Scalar:
 
 
 def _arm_roll_centre_height(car: Car) -> Scalar:
-    """The same with an added turn f k about the steering axis. f is such that no point of the axis of the
-    total motion moves along it: (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
+    """The roll centre with an added turn f k about the steering axis that makes the motion a pure rotation:
+    (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
     """
     axis, omega = car.lines[data.STEERING], _turning(car)
     lower, k = _values(axis.start), _values(axis.along)
@@ -159,25 +161,14 @@ def _damper_per_wheel(car: Car) -> Scalar:
     return -slope_of(_damper_length(car)) / slope_of(_travel(car))
 
 
-def _wheel_per_damper(car: Car) -> Scalar:
-    """-travel' / l'."""
-    return -slope_of(_travel(car)) / slope_of(_damper_length(car))
-
-
-def _wheel_rate(car: Car) -> Scalar:
-    """K times the square of the first of these."""
-    return car.drawn.data[data.SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car)
-
-
 def _spring_force(car: Car) -> Scalar:
     """K (l_0 - l)."""
     given = car.drawn.data
     return given[data.SPRING_RATE] * (given[data.FREE_LENGTH] - value_of(_damper_length(car)))
 
 
-# As the rack moves and all else is fixed, the carrier turns with omega about an axis through
-# W + omega x W' / omega^2, and moves along it by omega . W' / omega^2 per radian. If it does not turn, or
-# omega is level, the quotients are not finite.
+# When only the rack moves, the carrier turns with omega about an axis through W + omega x W' / omega^2, and
+# moves along it by omega . W' / omega^2 per radian. The quotients are not finite if omega is zero or level.
 
 
 def _from_screw(name: str, car: Car) -> Scalar:
@@ -187,27 +178,26 @@ def _from_screw(name: str, car: Car) -> Scalar:
 
 
 def _screw_lean(name: str, car: Car) -> Scalar:
-    """Of the axis omega (omega . up), which leads up."""
+    """One of `LEANS` of the screw axis, omega (omega . up), which leads up."""
     omega = _turning(car)
     return _lean(name, car, times(omega, dot(omega, car.up)))
 
 
 def _screw_pitch(car: Car) -> Scalar:
-    """Omega . W' / omega^2."""
+    """omega . W' / omega^2."""
     omega = _turning(car)
     return dot(omega, _slopes(car.wheel.end)) / dot(omega, omega)
 
 
-# In the plane through c that a level direction h and `up` span, the carrier moves its points as a plane
-# figure. The point c + x h + z up rests in this plane where
+# In the plane through c that a level direction h and `up` span, the instant centre of the carrier is
+# c + x h + z up with
 #     v . h - z omega . a = 0,      v . up + x omega . a = 0,      a = h x up.
-# Where omega . a = 0 this instant centre is at infinity, and so is by definition what is farther from c than
-# this, in radii of the wheel: there is no number.
+# It has no number if omega . a = 0 or if it is farther from c than this, in wheel radii.
 FARTHEST = 10**9
 
 
 def _beside(car: Car, h: Vector) -> Scalar:
-    """x."""
+    """x of the instant centre; NaN at infinity."""
     far = -dot(velocity_of_contact(car), car.up) / dot(_turning(car), cross(h, car.up))
     away, limit = abs(value_of(far)), FARTHEST * car.drawn.data[data.RADIUS]
     if isinstance(away, np.ndarray):
@@ -216,39 +206,32 @@ def _beside(car: Car, h: Vector) -> Scalar:
 
 
 def _above(car: Car, h: Vector) -> Scalar:
-    """z, none where x is."""
+    """z of the instant centre; NaN at infinity."""
     return dot(velocity_of_contact(car), h) / dot(_turning(car), cross(h, car.up)) + 0 * _beside(car, h)
 
 
-# A force F that brakes the car shifts F h / L from the rear wheels to the front ones: h is the height of the
-# centre of gravity above the ground at this pose, L the wheelbase. This axle's part of it, b F rearward, acts
-# on a point of the carrier that moves with v as the wheel travels, and so lifts the wheel as a force
-# b F (v . rearward) / (v . up) would. The share of the shifted load that this force carries is
+# A force F that brakes the car shifts the load F h / L from the rear to the front wheels; h is the height of
+# the centre of gravity above the ground at this pose, L the wheelbase. This axle's part, b F rearward, acts
+# on a point of the carrier that moves with v as the wheel travels, like a lifting force
+# b F (v . rearward) / (v . up). The share of the shifted load that this force carries is
 #     b s (v . rearward) / (v . up) L / h,      s = -1 at the front and +1 at the rear.
-# A brake at the wheel locks the wheel to the carrier: v is the velocity of c. A driving force is forward and
-# shifts load rearward, which gives the same quotient; a shaft from the chassis transmits its torque, so the
-# carrier has a force at the wheel centre alone: v = W'.
+# A brake locks the wheel to the carrier: v is the velocity of c. A driving force points forward and shifts
+# load rearward, which gives the same quotient; the shaft from the chassis takes the torque, so v = W'.
 
 
-def _anti(car: Car, share: str, v: Vector) -> Scalar:
-    given = car.drawn.data
-    lever = given[data.WHEELBASE] / (given[data.HEIGHT] - value_of(_contact_travel(car)))
-    return 100 * given[share] * given[data.AXLE] * -dot(v, car.forward) / dot(v, car.up) * lever
+def _anti(name: str, share: str, velocity: Callable[[Car], Vector]) -> Effect:
+    def evaluate(car: Car) -> Scalar:
+        given, v = car.drawn.data, velocity(car)
+        lever = given[data.WHEELBASE] / (given[data.HEIGHT] - value_of(_contact_travel(car)))
+        return 100 * given[share] * given[data.AXLE] * -dot(v, car.forward) / dot(v, car.up) * lever
 
-
-def _anti_brake(car: Car) -> Scalar:
-    return _anti(car, data.BRAKE_SHARE, velocity_of_contact(car))
-
-
-def _anti_drive(car: Car) -> Scalar:
-    return _anti(car, data.DRIVE_SHARE, _slopes(car.wheel.end))
+    return _of_travel(f"anti_{name}", "%", evaluate, (*MOVING, data.AXLE, data.WHEELBASE, data.HEIGHT, share))
 
 
 _WHEEL = (data.WHEEL,)
 ON_GROUND = (*_WHEEL, data.RADIUS)
 MOVING = (*ON_GROUND, data.KNUCKLE, data.TRAVEL)
 _SPRUNG = (data.DAMPER, data.WHEEL, data.TRAVEL, data.SPRING_RATE, data.FREE_LENGTH)
-_OF_THE_CAR = (*MOVING, data.AXLE, data.WHEELBASE, data.HEIGHT)
 
 OF_POSITIONS = (
     *(Effect(name, "rad", (role,), partial(_lean, name)) for name, (role, _) in LEANS.items()),
@@ -283,25 +266,35 @@ OF_MOTION = (
     *(_of_screw(name, "mm", partial(_from_screw, name)) for name in OFFSETS),
     _of_screw("pitch", "mm/rad", _screw_pitch),
     _of_travel("damper_per_wheel", "mm/mm", _damper_per_wheel, _SPRUNG[:3]),
-    _of_travel("wheel_per_damper", "mm/mm", _wheel_per_damper, _SPRUNG[:3]),
+    _of_travel(
+        "wheel_per_damper",
+        "mm/mm",
+        lambda car: -slope_of(_travel(car)) / slope_of(_damper_length(car)),
+        _SPRUNG[:3],
+    ),
     _of_travel("spring_force", "N", _spring_force, _SPRUNG),
     _of_travel("wheel_force", "N", lambda car: _spring_force(car) * _damper_per_wheel(car), _SPRUNG),
-    _of_travel("wheel_rate", "N/mm", _wheel_rate, _SPRUNG),
+    _of_travel(
+        "wheel_rate",
+        "N/mm",
+        lambda car: car.drawn.data[data.SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car),
+        _SPRUNG,
+    ),
     _of_travel("arm_roll_centre_height", "mm", _arm_roll_centre_height, (*MOVING, data.STEERING)),
     _of_travel("roll_centre_height", "mm", lambda car: _roll_centre(car, velocity_of_contact(car))),
     _of_travel("front_view_swing_arm", "mm", lambda car: -_beside(car, car.outboard)),
     _of_travel("front_view_centre_height", "mm", lambda car: _above(car, car.outboard)),
     _of_travel("side_view_swing_arm", "mm", lambda car: _beside(car, times(car.forward, -1))),
     _of_travel("side_view_centre_height", "mm", lambda car: _above(car, times(car.forward, -1))),
-    _of_travel("anti_brake", "%", _anti_brake, (*_OF_THE_CAR, data.BRAKE_SHARE)),
-    _of_travel("anti_drive", "%", _anti_drive, (*_OF_THE_CAR, data.DRIVE_SHARE)),
+    _anti("brake", data.BRAKE_SHARE, velocity_of_contact),
+    _anti("drive", data.DRIVE_SHARE, lambda car: _slopes(car.wheel.end)),
 )
 
 PER = {data.TRAVEL: "mm", data.RACK: "mm", data.ROLL: "rad", data.TIME: "s"}
 
 
 def _gradient(effect: Effect, along: str) -> Effect:
-    """N', by the one driven input that goes along, see `Effect.along`; by travel N' / travel'."""
+    """The derivative N' by a variable of `Effect.along`; by travel it is N' / travel'."""
     travels = along == data.TRAVEL
     needs = (*effect.needs, *([data.WHEEL] if travels else []), *([] if along == data.TIME else [along]))
 

@@ -1,18 +1,17 @@
-r"""The assembly at the end of a path, followed with a proof of every step.
+"""The assembly at the end of a path, followed with a proof of every step.
 
-Along a path (`Way`), 0 <= t <= 1, the numbers of the inputs change linearly from one value to another,
+Along a path, 0 <= t <= 1, the numbers of the inputs change linearly,
 
     C(y, w(t)) - (1 - t) c = 0,          w(t) = w0 + t (w1 - w0).
 
-c is the residual of the drawing; it is zero unless the drawing does not close. From a solution y(t0) follow
-the terms of its power series one by one: the coefficient k of C needs only the terms before k, and
-y_k = -C'^-1 C_k. Let q(u) be this polynomial about the middle of a step, |u| <= h, and A(u) another one,
-nearly the inverse of C'(q(u)). With q and A it is proven, for each u by itself, that a box about q(u)
-contains one solution and that the Jacobian is regular there (see `krawczyk`): a branch that meets no singular
-pose. A body whose rotation is nearly undetermined turns far while the inputs hardly move. As q and A follow
-this rotation, the box need only be as wide as the error of q, and steps are as long as for any other body. At
-the start of the next step a far smaller box is proven to contain a solution and to lie inside the first box,
-so both solutions are the same. All arithmetic is in balls.
+c is the residual of the drawing, zero if the drawing closes. The terms of the power series of a solution y
+follow one by one: the coefficient C_k needs only the terms before y_k, and y_k = -C'^-1 C_k. Let q(u) be this
+polynomial about the middle of a step, |u| <= h, and A(u) one that is nearly the inverse of C'(q(u)). It is
+proven for each u that a box about q(u) contains one solution, with a regular Jacobian (see `krawczyk`): a
+branch without singular poses. A body whose rotation is nearly undetermined turns far while the inputs hardly
+move. As q and A follow this rotation, the box is only as wide as the error of q, and steps stay long. At the
+start of the next step a far smaller box is proven to contain a solution and to lie inside the first box, so
+both solutions are the same. All arithmetic is in balls.
 """
 
 from __future__ import annotations
@@ -27,19 +26,19 @@ from validate.reference.errors import NotDecidedError
 from validate.reference.krawczyk import Contraction, Curve, Matrix, column, largest, less, newton, within
 from validate.reference.vectors import Scalar
 
-ORDER = 9  # of the series: the error of a step is proportional to its length to the power ORDER + 1
-SHARE = 0.4  # of the series' radius at most: 0.4^8 is 1/1500
-SHORTER = 0.6  # after a step that could not be proven, this share of it is tried
-BOXES = (0.75, 0.5, 0.25)  # of the bits: how narrow the boxes about a pose are
+ORDER = 9  # order of the series: the error of a step goes with its length to the power ORDER + 1
+SHARE = 0.4  # longest step as a share of the series' radius: 0.4^8 is 1/1500
+SHORTER = 0.6  # a step that could not be proven is shortened by this factor
+BOXES = (0.75, 0.5, 0.25)  # the boxes about a pose are 2^-(share of the bits) wide
 
 
 @dataclass(frozen=True)
-class Way(Curve):
+class StraightPath(Curve):
     """A straight path.
 
     Attributes:
         begin, end: the numbers w at its two ends.
-        missed: c, or nothing.
+        missed: c, or empty if it is zero.
     """
 
     equations: Equations
@@ -67,7 +66,8 @@ class Way(Curve):
 
 @dataclass(frozen=True)
 class Pose:
-    """A solution on a curve: it lies within `error` of `unknown`, and no other within `reach`, by coordinate.
+    """A proven solution on a curve: within `error` of `unknown`, and no other one within `reach`, by
+    coordinate.
 
     Attributes:
         t: place on the curve.
@@ -87,7 +87,7 @@ class Pose:
         return [arb(x, r) for x, r in zip(self.unknown, self.error, strict=True)]
 
     def holds(self, solution: Sequence[arb]) -> bool:
-        """Whether a solution, enclosed, is this one."""
+        """Whether an enclosed solution is this one."""
         return within(solution, self.unknown, self.reach)
 
 
@@ -96,7 +96,7 @@ class Tube:
     """A step: each box of half width `width` about the series in t - `start` holds one solution.
 
     Attributes:
-        all_along: a box that contains all these boxes.
+        all_along: a box around all these boxes.
     """
 
     start: arb
@@ -109,19 +109,19 @@ class Tube:
         return [one(t - self.start) for one in self.series]
 
     def holds(self, t: arb, solution: Sequence[arb]) -> bool:
-        """Whether a solution at t, given as a box, is the tube's."""
+        """Whether an enclosed solution at t is the one in the tube."""
         return within(solution, self.at(t), self.width)
 
 
 def start_pose(curve: Curve, near: Sequence[arb], t: arb) -> Pose:
-    """The solution next to a place, proven.
+    """The proven solution near a place.
 
     Raises:
-        NotDecidedError: no solution is that near, or the Jacobian is singular to the present precision.
+        NotDecidedError: none is proven, or the Jacobian is singular to the present precision.
     """
     unknown, inverse = newton(curve, near, t)
     proof = Contraction.at(curve, unknown, t, inverse)
-    # The narrowest box gives the place of the solution, the widest its distance from any other solution.
+    # The narrowest box gives the place of the solution, the widest the distance of any other solution.
     proofs = []
     for share in BOXES:
         width = [2 * x + arb(2) ** int(-ctx.prec * share) for x in proof.missed]
@@ -130,7 +130,7 @@ def start_pose(curve: Curve, near: Sequence[arb], t: arb) -> Pose:
             break
         proofs.append((image, width))
     if not proofs:
-        raise NotDecidedError("a solution in its box on the way, reach", largest(image), largest(width))
+        raise NotDecidedError("the image of the box about a solution", largest(image), largest(width))
     return Pose(t, unknown, proofs[0][0], proofs[-1][1], inverse)
 
 
@@ -138,7 +138,7 @@ def next_pose(curve: Curve, pose: Pose, longest: arb) -> Pose:
     """The pose one step further, proven to be on the same branch; the step is at most `longest`.
 
     Raises:
-        NotDecidedError: the step becomes smaller than the present digits allow.
+        NotDecidedError: the step becomes too small for the present digits.
     """
     series = series_of(curve, pose, ORDER)
     step = arb.min(arb(_reach(curve, pose, series)), longest).mid()
@@ -153,19 +153,19 @@ def next_pose(curve: Curve, pose: Pose, longest: arb) -> Pose:
         if tube is not None and there is not None and tube.holds(stop, there.box):
             return there
         step = ((stop - pose.t) * SHORTER).mid()
-    raise NotDecidedError(f"the way: a step at {float(pose.t):.6g} of it", step, least)
+    raise NotDecidedError(f"the step at {float(pose.t):.6g} of the path", step, f"> {least.str(6)}")
 
 
 def bending(curve: Curve, pose: Pose) -> float:
-    """|A C''| at a pose, in doubles. From any start nearer than half of its inverse, Newton's method
-    converges to the solution (Kantorovich).
+    """|A C''| at a pose, in doubles: Newton's method converges from all starts nearer than half its inverse
+    (Kantorovich).
     """
     box = [arb(0, 1)] * len(pose.unknown)
     return float(largest((pose.inverse * (curve.bend(box) * column(box))).entries()))
 
 
 def series_of(curve: Curve, pose: Pose, order: int) -> list[arb_poly]:
-    """The unknowns as polynomials in t minus the pose's t."""
+    """The unknowns as polynomials in t - pose.t."""
     terms, time = [[x] for x in pose.unknown], arb_poly([pose.t, 1])
     for k in range(1, order + 1):
         rows = curve.rows([arb_poly(one) for one in terms], time)
@@ -175,7 +175,7 @@ def series_of(curve: Curve, pose: Pose, order: int) -> list[arb_poly]:
 
 
 def proven_tube(curve: Curve, start: arb, series: Sequence[arb_poly], begin: arb, stop: arb) -> Tube | None:
-    """The step from `begin` to `stop` along a series about `start`, or None if it cannot be proven."""
+    """The step from `begin` to `stop` along a series about `start`; None if it cannot be proven."""
     middle = ((stop + begin) / 2).mid()
     span = arb(0, arb.max(abs(stop - middle), abs(middle - begin)).upper())
     about = [one(arb_poly([middle - start, 1])) for one in series]
@@ -189,8 +189,7 @@ def proven_tube(curve: Curve, start: arb, series: Sequence[arb_poly], begin: arb
 
 
 def _reach(curve: Curve, pose: Pose, series: Sequence[arb_poly]) -> float:
-    """Length of a step of a series; its radius is estimated from the ratio of its last two terms to its
-    first.
+    """Length of a step of a series, whose radius is estimated from its first and last two terms.
 
     The error of the series is about speed * radius * share^(ORDER + 1), and may change A C' by an eighth.
     """
