@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.angle import WHEEL
+from pointcoord.effects.car_number import WHEEL
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
@@ -72,16 +72,12 @@ def standing(scene: Scene) -> Standing:
     0.0
     """
     mechanism, closed = _closed(scene)
-    drawn = _drawn(mechanism)
+    drawn, part = _drawn(mechanism), scene.mechanism
+    angles = drawn_angles(mechanism, part.axes, part.effects, closed.y)
     return Standing(
         inputs=drawn,
         reach={name: _ends(mechanism, closed, name) for name in drawn},
-        angles={
-            name: float(angle)
-            for name, angle in drawn_angles(
-                mechanism, scene.mechanism.axes, scene.mechanism.effects, closed.y
-            ).items()
-        },
+        angles={name: float(angle) for name, angle in angles.items()},
         closing=closing(mechanism, closed.y),
     )
 

@@ -15,8 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import EFFECTS, plan_effects
 from pointcoord.errors import AssemblyError, InputOutOfRange, PointcoordError, UnknownName
 from pointcoord.linkage.chassis import SPREAD, ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import plan_effects
 from pointcoord.errors import (
     InputOutOfRange,
     MechanismError,
@@ -82,18 +82,7 @@ def simulate(scene: Scene | str | PathLike[str], method: Method | str = AUTO) ->
     """
     if isinstance(scene, str | PathLike):
         scene = Scene.load(str(scene))
-    require_scene(scene)
-    return solve_task(checked_task(scene, method_of(method)))
-
-
-def checked_task(scene: Scene, method: Method) -> Task:
-    """Check a scene and prepare it for solving.
-
-    Raises:
-        SceneError, InputOutOfRange, AssemblyError: as `simulate`.
-    """
-    # A scene's dictionaries can be changed after reading.
-    return prepare_task(Scene.checked(scene, scene.title or "scene"), method)
+    return solve_task(prepare_task(scene, method_of(method)))
 
 
 def solve_task(task: Task) -> Motion:
@@ -121,31 +110,24 @@ class Effort:
     """Work that the method `auto` does for the accuracy that a scene asks for.
 
     Attributes:
-        method: the method used, `series` or `map`. why: a note on why, if it is `map`.
+        task, solved: the scene as prepared, with the method used, and its solution between the instants.
         tolerance: tolerance of positions, mm: the scene's, or the nearest that a series can keep.
         part: that tolerance as a share of the car's size, used for rates.
-        orders: order of each series.
         unknowns: number of unknown coordinates in the series.
         not_needed: number of unknowns that are not solved for, because nothing reported depends on them.
-        points_not_needed: the points that are not solved for.
-        start: work of assembling the first pose.
-        work: all work but the sums at the instants.
-        stop: time that the series reach, s.
-        status: whether the motion ends there, and if not, why.
     """
 
-    method: str
-    why: str
+    task: Task
+    solved: SolvedScene
     tolerance: float
     part: float
-    orders: tuple[int, ...]
     unknowns: int
     not_needed: int
-    points_not_needed: tuple[str, ...]
-    start: Work
-    work: Work
-    stop: float
-    status: Status
+
+    @property
+    def work(self) -> Work:
+        """All work but the sums at the instants."""
+        return self.task.start.work + self.solved.solving
 
 
 def effort(scene: Scene) -> Effort:
@@ -154,25 +136,12 @@ def effort(scene: Scene) -> Effort:
     Raises:
         PointcoordError: the errors that `simulate` raises before a motion begins.
     """
-    require_scene(scene)
-    task, solved = solve_by_either(prepare_task(Scene.checked(scene, scene.title or "scene"), AUTO))
+    task, solved = solve_by_either(prepare_task(scene, AUTO))
     mechanism = task.readout.mechanism
-    whole, mapped = scene.mechanism.topology, task.method is MAP
-    kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
-    return Effort(
-        method=task.method.name,
-        why=solved.notes[0] if mapped else "",
-        tolerance=kept * float(mechanism.unit) / truncation_share(mechanism),
-        part=kept / truncation_share(mechanism),
-        orders=solved.orders,
-        unknowns=mechanism.map.unknowns,
-        not_needed=whole.layout.unknowns - mechanism.map.unknowns,
-        points_not_needed=_unsolved(task),
-        start=task.start.work,
-        work=task.start.work + solved.solving,
-        stop=max(solved.stop, scene.time.start),
-        status=solved.status,
-    )
+    unknowns, whole = mechanism.map.unknowns, task.scene.mechanism.topology.layout.unknowns
+    kept = chain_settings(task.scene, mechanism, task.readout.plan.derivative).kept.tolerance
+    part = kept / truncation_share(mechanism)
+    return Effort(task, solved, part * float(mechanism.unit), part, unknowns, whole - unknowns)
 
 
 @dataclass(frozen=True)
@@ -194,6 +163,12 @@ class Task:
     closing: Closing
     instants: Array
 
+    @property
+    def unsolved(self) -> tuple[str, ...]:
+        """The points that are not solved for."""
+        there = self.readout.mechanism.topology.points
+        return tuple(name for name in self.scene.mechanism.topology.points if name not in there)
+
 
 def prepare_task(scene: Scene, method: Method) -> Task:
     """Check everything that can be checked before the motion, and assemble the first pose.
@@ -201,6 +176,9 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     Raises:
         SceneError, InputOutOfRange, AssemblyError: as `simulate`.
     """
+    require_scene(scene)
+    # A scene's dictionaries can be changed after reading.
+    scene = Scene.checked(scene, scene.title or "scene")
     whole = scene_mechanism(scene, method)
     plan = plan_effects(scene.effects, method.effects, scene.unreported_points)
     mechanism = whole.part(plan.derivatives(whole.topology))
@@ -271,7 +249,11 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
         solved = solve_by_series(task, hopeful=False)
         stopped = solved.status.stopped
     if isinstance(stopped, NotFollowed):
-        mapped = solve_by_map(task, why_map(stopped))
+        if stopped.name:
+            why = f"no series in time follows {stopped.name!r} after t = {stopped.instant:.10g} s"
+        else:
+            why = f"series in time would be about {stopped.expected:.2g}, and {stopped.limit} are allowed"
+        mapped = solve_by_map(task, f"solved by a map of the inputs: {why}")
         if mapped.status.complete:
             return replace(task, method=MAP), mapped
         # Neither is complete: take the series as far as they reach.
@@ -288,15 +270,6 @@ def foreseen(task: Task) -> NotFollowed | None:
         return None
     reached = float(inner[MOST_SEGMENTS - 1])
     return NotFollowed(reached, limit=MOST_SEGMENTS, start=time.start, stop=time.stop)
-
-
-def why_map(stopped: NotFollowed) -> str:
-    """A note on why a map was used instead of series."""
-    if stopped.name:
-        reason = f"no series in time follows {stopped.name!r} after t = {stopped.instant:.10g} s"
-    else:
-        reason = f"series in time would be about {stopped.expected:.2g}, and {stopped.limit} are allowed"
-    return f"solved by a map of the inputs: {reason}"
 
 
 def _stop_of_map(task: Task, solved: ByMap) -> PointcoordError:
@@ -354,31 +327,13 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
 
 def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
     """Notes for the user: on the drawing, on the solution, and on missing numbers."""
-    closed = (task.closing.words,) if task.closing.noticeable else ()
-    return (
-        *closed,
-        *_unsolved_in_words(task),
-        *task.scene.mechanism.doubts,
-        *solved.notes,
-        *_missing_numbers(solved, samples),
-    )
-
-
-def _unsolved(task: Task) -> tuple[str, ...]:
-    """The points that are not solved for."""
-    there = task.readout.mechanism.topology.points
-    return tuple(name for name in task.scene.mechanism.topology.points if name not in there)
-
-
-def _unsolved_in_words(task: Task) -> tuple[str, ...]:
-    """A note on the points that are not solved for."""
-    left_out = _unsolved(task)
-    if not left_out:
-        return ()
-    return (
-        f"not solved for, because nothing reported depends on them: {', '.join(left_out)}; "
-        "whether these points can follow the inputs is not checked",
-    )
+    notes = [task.closing.words] if task.closing.noticeable else []
+    if task.unsolved:
+        notes.append(
+            f"not solved for, because nothing reported depends on them: {', '.join(task.unsolved)}; "
+            "whether these points can follow the inputs is not checked"
+        )
+    return (*notes, *task.scene.mechanism.doubts, *solved.notes, *_missing_numbers(solved, samples))
 
 
 def require_the_drawn_car(scene: Scene, moved: Closing) -> None:

@@ -44,7 +44,7 @@ class TimeFunction(ABC):
 
     @abstractmethod
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
-        """Rounding error of the computed value or derivative, beside one rounding of the exact one, (N,)."""
+        """Rounding error of the computed value or derivative, over one rounding of the exact one, (N,)."""
 
     @abstractmethod
     def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
@@ -53,7 +53,7 @@ class TimeFunction(ABC):
     def enclosed(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         """The exact value and time derivatives of the law, each rounded once, (N,).
 
-        A series does not round its value to a double, so that one rounding is expected beside `rounding`.
+        A series does not round its value to a double, so one rounding is expected in addition to `rounding`.
         """
         values = enumerate(self.exact(instants, derivatives))
         return [self._rounded_once(value, instants, derivative) for derivative, value in values]
@@ -119,25 +119,23 @@ class Polynomial(TimeFunction):
         count = min(order + 1, len(self.coefficients))
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(count):
-                result[..., k] = _doubled_horner(*self._shifted(k), numbers)
+                result[..., k] = _doubled_horner(*self._shifted[k], numbers)
             if not np.isfinite(result).all():
                 # Splitting a number above 1e300 overflows; the plain sum does not.
                 for k in range(count):
-                    plain = np.polyval(self._shifted(k)[0][::-1], t)
+                    plain = np.polyval(self._shifted[k][0][::-1], t)
                     np.copyto(result[..., k], plain, where=~np.isfinite(result[..., k]))
         return result
 
-    def _shifted(self, k: int) -> tuple[list[float], list[float]]:
-        """binomial(j, k) c_j as high and low parts, for all j from k."""
-        if k not in self._shifts:
+    @cached_property
+    def _shifted(self) -> list[tuple[list[float], list[float]]]:
+        """By k: binomial(j, k) c_j as high and low parts, for all j from k."""
+        found = []
+        for k in range(len(self.coefficients)):
             factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
             high, low = two_product(np.array(factors), np.array(self.coefficients[k:]))
-            self._shifts[k] = high.tolist(), low.tolist()
-        return self._shifts[k]
-
-    @cached_property
-    def _shifts(self) -> dict[int, tuple[list[float], list[float]]]:
-        return {}
+            found.append((high.tolist(), low.tolist()))
+        return found
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
         """4 n^2 u^2 times the sum of n terms' sizes (Graillat, Langlois, Louvet); zero for a constant."""

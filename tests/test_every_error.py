@@ -43,7 +43,7 @@ CAUGHT = {"pointcoord.mechanism.faults.TableFault", "validate.exit_status.Termin
 
 BOUNCE = pointcoord.Scene.load("bounce")
 TABLE = dict(BOUNCE.mechanism.points)
-COLLINEAR = mechanism_file("macpherson").topology("collinear", points=TABLE)
+COLLINEAR = mechanism_file("macpherson").topology(TABLE, "collinear")
 UPRIGHT = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 IN_LINE = {name: np.array([1.0, 2.0, 3.0]) * i for i, name in enumerate("abc")}
 

@@ -38,8 +38,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.certified_poses import CertifiedPoses
-from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.constraints.in_body import carrier_weights
+from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import Way
 from pointcoord.numerics.double_double import PAIRS, two_sum

@@ -1,1 +1,1 @@
-"""Effects: the results beside positions that a scene may request."""
+"""Effects: the results that a scene may request in addition to positions."""

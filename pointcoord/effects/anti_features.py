@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from pointcoord.effects.arithmetic import Dual, multiple, ratio
-from pointcoord.effects.corner import Corner, contact_place, told_from_none, velocity_at
+from pointcoord.effects.corner import Corner, above_rounding, contact_place, velocity_at
 
 PERCENT = 100.0
 
@@ -33,7 +33,7 @@ def _carried(corner: Corner[Dual[Any]], share: str, velocity: Any) -> Any:
     car = {name: number.value for name, number in corner.car.items()}
     travel = corner.chassis.along(corner.moved_in_chassis(), "up").value
     height = car["centre_of_gravity_height"] - travel
-    up = told_from_none(corner.seen.along(velocity, "up"), velocity)
+    up = above_rounding(corner.seen.along(velocity, "up"), velocity)
     slope = ratio(corner.seen.along(velocity, "rearward"), up)
     part = multiple(PERCENT, car[share] * car["axle"])
     return part * slope * ratio(car["wheelbase"], height)

@@ -5,20 +5,35 @@ that the error bound needs no derivation of its own. Numbers that depend on how 
 input, such as wheel or rack travel, take points as duals. Among the driven inputs, those that are a slide's
 travel steer the car; the other one moves the wheel up and down. The other inputs and the chassis are held
 (see `linkage.slopes`).
+
+An angle is the inclination of a line of the car in a plane of two of the car's axes: atan2(p, q) of the
+line's components p and q along two directions of the car. It is positive where the line has a positive
+component along the first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.arithmetic import S, angle
 from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
-from pointcoord.effects.effect import Effect, Point, Poses, Quantity, lacks, no_radius, no_role, not_one_input
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.effects.effect import (
+    Doubt,
+    Effect,
+    Point,
+    Poses,
+    Quantity,
+    lacks,
+    no_radius,
+    no_role,
+    not_one_input,
+)
+from pointcoord.linkage.directions import CarAxes, Direction
 from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
@@ -40,6 +55,9 @@ SUCH_AS = {
     "spring_free_length": "350.0",
 }
 LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
+WHEEL = Quantity("wheel", "wheel angle", "rad", "car")
+# Symbols of the axes, as in the README.
+LETTERS = {"wheel_axis": "n", "steering_axis": "k"}
 KINDS = {
     BY_TRAVEL: "is not the travel of a slide, such as wheel travel",
     BY_RACK: "is the travel of a slide or a steering wheel, such as a rack",
@@ -78,20 +96,71 @@ class Number:
     source: str = ""
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Angle(Number):
+    """An angle of a line of the car, in a plane of the car's axes; rad.
+
+    Attributes:
+        line: the axis by its role in the topology, from its first point to its second.
+        sine, cosine: the directions along which the line has the angle's sine and cosine.
+        steepest: degrees; a drawing with a larger angle gets a warning.
+    """
+
+    line: Literal["wheel_axis", "steering_axis"]
+    sine: Direction
+    cosine: Direction
+    steepest: float = 180.0
+    quantity: Quantity = WHEEL
+    needs_radius: bool = False
+    power: int = 0
+    formula: Callable[..., Any] = field(init=False)
+
+    def __post_init__(self) -> None:
+        letter, seen = LETTERS[self.line], (d.replace("_", " ") for d in (self.sine, self.cosine))
+        components = ", ".join(f"{letter} . {direction}" for direction in seen)
+        made = {"formula": self._of_corner, "roles": (self.line,), "definition": f"atan2({components})"}
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
+
+    def _of_corner(self, corner: Corner[S]) -> S:
+        view = corner.seen
+        line = view.line(*self.ends(view.of))
+        return angle(view.along(line, self.sine), view.along(line, self.cosine))
+
+    def ends(self, wheel: Wheel) -> tuple[str, str]:
+        start, end = wheel.role(self.line)
+        return start, end
+
+    def doubt(self, wheel: Wheel, drawn: Mapping[str, Array], axes: CarAxes) -> Doubt:
+        """A warning for drawings with a larger angle than any car has.
+
+        Args:
+            drawn: the points, each (..., 3), mm.
+        """
+        start, end = self.ends(wheel)
+        line = drawn[end] - drawn[start]
+        degrees = np.degrees(angle(axes.component(line, self.sine), axes.component(line, self.cosine)))
+
+        def words(member: tuple[int, ...]) -> str:
+            steepness = float(degrees[member])
+            return (
+                f"the drawn {self.words} is {steepness:.4g} deg, by the line from {start} to {end}: "
+                f"{'are they swapped, or is side wrong' if abs(steepness) > 90.0 else 'is one misdrawn'}?"
+            )
+
+        return Doubt(np.abs(degrees) > self.steepest, words)
+
+
 @dataclass(frozen=True, eq=False)
 class CarNumbers(Effect):
     """Numbers of the car, along at most one way: of each wheel, or of the two wheels of an axle together.
 
     Attributes:
         numbers: the numbers.
-        base: the effect of whose numbers these are the gradients; empty if they are not gradients.
-        nowhere: where else, besides a wheel that does not travel, there is no number; in words.
         of_axle: whether the formulas take two wheels, the left one and the right one.
     """
 
-    numbers: tuple[Number, ...]
-    base: str = ""
-    nowhere: str = ""
+    numbers: tuple[Number, ...] = ()
     of_axle: bool = False
 
     @classmethod
@@ -108,15 +177,27 @@ class CarNumbers(Effect):
         """The effect that gives some numbers.
 
         Args:
+            base: the effect of whose numbers these are the gradients; empty if they are not gradients.
+            nowhere: where else, besides a wheel that does not travel, there is no number because a divisor
+                is zero; in words.
             derivative: 1 if the formulas take the points' derivatives by time.
         """
-        signs = "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
-        quantities = tuple({number.quantity.name: number.quantity for number in numbers}.values())
-        return cls(name, gives, signs, derivative, quantities, numbers, base, nowhere, of_axle)
-
-    @property
-    def own_names(self) -> tuple[str, ...]:
-        return tuple(number.name for number in self.numbers)
+        way = numbers[0].way
+        travels = "the wheel does not travel there" if way == BY_TRAVEL else ""
+        return cls(
+            name,
+            gives,
+            sign="; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers),
+            derivative=derivative,
+            quantities=tuple({number.quantity.name: number.quantity for number in numbers}.values()),
+            own_names=tuple(number.name for number in numbers),
+            lines=tuple(dict.fromkeys(role for number in numbers for role in number.roles)),
+            way=way,
+            base=base,
+            no_number=" or ".join(filter(None, (travels, nowhere))),
+            numbers=numbers,
+            of_axle=of_axle,
+        )
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
         prefixes = [prefix for prefix, _ in self._subjects(topology)]
@@ -130,22 +211,8 @@ class CarNumbers(Effect):
             for quantity in self.quantities
         }
 
-    @property
-    def lines(self) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(role for number in self.numbers for role in number.roles))
-
-    @property
-    def way(self) -> str:
-        return self.numbers[0].way
-
     def ways(self, topology: Topology) -> tuple[Way, ...]:
         return tuple(wheel.way(self.way) for wheel in self._wheels(topology) if self.way)
-
-    @property
-    def no_number(self) -> str:
-        """Why a number may be missing: a divisor is zero there."""
-        travels = "the wheel does not travel there" if self.way == BY_TRAVEL else ""
-        return " or ".join(filter(None, (travels, self.nowhere)))
 
     def needs(self, topology: Topology) -> Collection[str]:
         return {p for wheel in self._wheels(topology) for role in self.lines for p in wheel.role(role)}
@@ -219,21 +286,19 @@ class CarNumbers(Effect):
 def corner_of(poses: Poses | EnclosedPoses, wheel: Wheel) -> Corner[Any]:
     """One wheel of poses: floats or duals in mm, or enclosures in units of the mechanism."""
     mechanism, axes = poses.mechanism, poses.axes.on(wheel.side)
-    unit = 1.0
-    constant: Callable[..., Any] = Enclosed.of
-    component: Callable[..., Any] = axes.enclosed
+    constant: Callable[[Array], Any]
     if isinstance(poses, Poses):
-        constant, component = poses.constant, axes.component
+        unit, constant = 1.0, poses.constant
         places, drawn, origin = poses.states[0], poses.drawn, poses.beside(mechanism.origin)
     else:
-        unit, vectors = float(mechanism.unit), mechanism.drawing.vectors
+        unit, constant, vectors = float(mechanism.unit), Enclosed.of, mechanism.drawing.vectors
         drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
         places, origin = poses.points[0], mechanism.origin / unit
     radius = constant(np.array(np.nan if axes.wheel_radius is None else axes.wheel_radius / unit))
     up, outboard = constant(axes.up), constant(axes.outboard)
 
     def view(points: Mapping[str, Any]) -> View[Any]:
-        return View(wheel, points, component, up, outboard, radius)
+        return View(wheel, points, axes, up, outboard, radius)
 
     car = {n: constant(np.array(number / unit if n in LENGTHS else number)) for n, number in axes.car.items()}
     return Corner(view(places), view(poses.in_chassis[0]), view(drawn), constant(origin), car)

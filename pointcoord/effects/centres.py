@@ -44,13 +44,13 @@ import numpy as np
 from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, times
 from pointcoord.effects.corner import (
     Corner,
+    above_rounding,
     angular_velocity,
     contact_place,
-    told_from_none,
     turning_of,
     velocity_at,
 )
-from pointcoord.linkage.car_axes import Direction
+from pointcoord.linkage.directions import Direction
 
 # In radii of the wheel. Doubles cannot tell a farther centre from one at infinity: so small an angular
 # velocity is a difference of larger ones, each known to some 1e-16.
@@ -67,10 +67,10 @@ def roll_centre_height(corner: Corner[Dual[Any]]) -> Any:
 
 
 def middle_plane_height(corner: Corner[Dual[Any]], velocity: Any, *of: Any) -> Any:
-    """Roll centre height for a velocity of the contact point, of any length; of: as `told_from_none`."""
+    """Roll centre height for a velocity of the contact point, of any length; of: as in `above_rounding`."""
     view = corner.seen
     far = view.along(corner.origin.value + contact_place(corner), "outboard")
-    up = told_from_none(view.along(velocity, "up"), velocity, *of)
+    up = above_rounding(view.along(velocity, "up"), velocity, *of)
     return far * ratio(view.along(velocity, "outboard"), up)
 
 

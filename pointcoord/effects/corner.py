@@ -9,7 +9,7 @@ is also w x the vector, with the angular velocity w, so that
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic
 
@@ -28,7 +28,7 @@ from pointcoord.effects.arithmetic import (
     still,
     times,
 )
-from pointcoord.linkage.car_axes import Direction
+from pointcoord.linkage.directions import CarAxes, Direction
 from pointcoord.linkage.slopes import ByInput
 from pointcoord.linkage.topology import Topology
 
@@ -91,21 +91,21 @@ class View(Generic[S]):
     Attributes:
         of: the wheel, whose roles name the points.
         points: places, as vectors.
-        component: function (vector without derivatives, direction) -> component.
+        axes: the car's axes, for its components.
         up, outboard: these directions as vectors.
         radius: radius of the wheel.
     """
 
     of: Wheel
     points: Mapping[str, S]
-    component: Callable[..., Any]
+    axes: CarAxes
     up: S
     outboard: S
     radius: S
 
     def along(self, vector: P, direction: Direction) -> P:
         """The component of a vector along a direction; for a dual, with its derivative."""
-        return linear(self.component, vector, direction)
+        return linear(self.axes.component, vector, direction)
 
     def role(self, name: str) -> S:
         """The vector from the first point of a role to its second."""
@@ -174,7 +174,7 @@ class Corner(Generic[S]):
 
         def dual(view: View[Any], points: Mapping[str, Dual[Any]]) -> View[Dual[Any]]:
             up, outboard, radius = (held(part) for part in (view.up, view.outboard, view.radius))
-            return View(view.of, points, view.component, up, outboard, radius)
+            return View(view.of, points, view.axes, up, outboard, radius)
 
         def moved(view: View[Any], slope: Mapping[str, Any]) -> View[Dual[Any]]:
             return dual(view, {n: Dual(p, slope[n]) for n, p in view.points.items() if n in slope})
@@ -212,7 +212,7 @@ def turning_of(corner: Corner[Dual[Any]], vector: Any) -> Any:
     return times(a, e1.slope) + times(b, e2.slope) + times(c, normal.slope)
 
 
-def told_from_none(part: Any, *of: Any) -> Any:
+def above_rounding(part: Any, *of: Any) -> Any:
     """A component of a velocity; NaN where rounding may hide that it is zero.
 
     Args:
@@ -227,7 +227,7 @@ def told_from_none(part: Any, *of: Any) -> Any:
 def rising(corner: Corner[Dual[Any]]) -> Any:
     """The derivative of the wheel centre's travel; NaN where the wheel does not travel."""
     view = corner.chassis
-    return told_from_none(corner.risen().slope, view.points[view.of.centre].slope)
+    return above_rounding(corner.risen().slope, view.points[view.of.centre].slope)
 
 
 def angular_velocity(corner: Corner[Dual[Any]]) -> Any:
@@ -254,4 +254,4 @@ def _frame(corner: Corner[Dual[Any]]) -> tuple[Dual[Any], Dual[Any], Dual[Any]]:
 def at_rest(view: View[Dual[Any]]) -> View[Any]:
     """A view without derivatives."""
     points = {name: place.value for name, place in view.points.items()}
-    return View(view.of, points, view.component, view.up.value, view.outboard.value, view.radius.value)
+    return View(view.of, points, view.axes, view.up.value, view.outboard.value, view.radius.value)

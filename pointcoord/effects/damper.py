@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root
-from pointcoord.effects.corner import Corner, rising, told_from_none
+from pointcoord.effects.corner import Corner, above_rounding, rising
 
 
 def damper_length(corner: Corner[S]) -> S:
@@ -30,7 +30,7 @@ def damper_per_wheel(corner: Corner[Dual[Any]]) -> Any:
 def wheel_per_damper(corner: Corner[Dual[Any]]) -> Any:
     """Travel of the wheel centre per shortening of the damper (Lotus, OptimumK)."""
     slope = damper_length(corner).slope
-    return -ratio(corner.risen().slope, told_from_none(slope, corner.seen.role("damper").slope))
+    return -ratio(corner.risen().slope, above_rounding(slope, corner.seen.role("damper").slope))
 
 
 def spring_force(corner: Corner[Dual[Any]]) -> Any:

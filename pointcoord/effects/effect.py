@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
@@ -109,6 +109,12 @@ class Effect(ABC):
         sign: the sign convention of its numbers.
         derivative: highest time derivative of positions that it needs.
         quantities: the quantities of its numbers in results.
+        own_names: names of its numbers for one wheel; empty for effects of points and bodies.
+        lines: the axes that it needs, as roles of the topology: wheel_axis, steering_axis.
+        way: kind of way along which it needs derivatives of positions, for each wheel; empty for none.
+        base: the effect of whose numbers this one gives the derivatives; empty if it has its own definition.
+        reports_states: whether its numbers are the states of every point, including what reporting adds.
+        no_number: why a number may be missing, in words; empty if none can be.
     """
 
     name: str
@@ -116,11 +122,12 @@ class Effect(ABC):
     sign: str
     derivative: int
     quantities: tuple[Quantity, ...]
-
-    @property
-    def own_names(self) -> tuple[str, ...]:
-        """Names of its numbers for one wheel; empty for effects of points and bodies."""
-        return ()
+    own_names: tuple[str, ...] = ()
+    lines: tuple[str, ...] = ()
+    way: str = ""
+    base: str = ""
+    reports_states: bool = False
+    no_number: str = ""
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...] | None]:
         """Quantity -> the names that it gives for a mechanism; None for every point or every body."""
@@ -131,34 +138,9 @@ class Effect(ABC):
         numbers = self.gives_numbers(topology)
         return tuple(n for q in self.quantities if q.of == "car" for n in numbers[q.name] or ())
 
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """The axes that it needs, as roles of the topology: wheel_axis, steering_axis."""
-        return ()
-
-    @property
-    def way(self) -> str:
-        """Kind of way along which it needs derivatives of positions, for each wheel; empty for none."""
-        return ""
-
     def ways(self, topology: Topology) -> tuple[Way, ...]:
         """The ways along which it needs derivatives, for every wheel."""
         return ()
-
-    @property
-    def base(self) -> str:
-        """The effect of whose numbers this one gives the derivatives; empty if it has its own definition."""
-        return ""
-
-    @property
-    def reports_states(self) -> bool:
-        """Whether its numbers are the states of every point, including what reporting adds."""
-        return False
-
-    @property
-    def no_number(self) -> str:
-        """Why a number may be missing, in words; empty if none can be."""
-        return ""
 
     @abstractmethod
     def needs(self, topology: Topology) -> Collection[str]:

@@ -24,7 +24,7 @@ from pointcoord.effects.arithmetic import P, cross, multiple, plain, still
 from pointcoord.effects.corner import turn_of_edges
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.errors import SingularConfiguration
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed, both
 from pointcoord.numerics.rounding import EPS

@@ -5,14 +5,14 @@ move by dc and the knuckle rotate by dt, and
 
     N dl = F . dc + M . dt,
 
-with N the rod's tension. N of the damper follows likewise: the damper holds its corner in place of the input
-that moves the wheel, which is free. With W_q and l_q the work and the damper's length per unit of that input,
-and W_s and l_s along another way s, the work along s with the damper held is W_s - W_q l_s / l_q. At a ball
-joint the half of one body moves by e from that of the other, on which the force f acts:
-f . e = F . dc + M . dt. At each of the two points of a hinge this gives the force across the hinge's line.
-Along the line only the sum of both forces is determined, since a body stretched between the points would not
-move as a rigid one. A point on a slide has the force that belongs to moving the slide's line away from it:
-across the line, and along it where an input drives the travel.
+with N the rod's tension. N of the damper follows in the same way: the damper holds its corner in place of the
+input that moves the wheel, which is free. With W_q and l_q the work and the damper's length per unit of that
+input, and W_s and l_s along another way s, the work along s with the damper held is W_s - W_q l_s / l_q. At a
+ball joint the half of one body moves by e from that of the other, on which the force f acts: f . e = F . dc +
+M . dt. At each of the two points of a hinge this gives the force across the hinge's line. Along the line only
+the sum of both forces is determined, since a body stretched between the points would not move as a rigid one.
+A point on a slide has the force that belongs to moving the slide's line away from it: across the line, and
+along it where an input drives the travel.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from pointcoord.effects.arithmetic import dot, ratio, root, times
 from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of
 from pointcoord.effects.corner import Corner, Wheel, contact_place, turning_of, velocity_at, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, lacks, no_radius, no_role, not_one_input
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.slopes import GAP, ByGap, ByLength, Way
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
@@ -91,16 +91,10 @@ class _Along:
 
 @dataclass(frozen=True, eq=False)
 class Loads(Effect):
-    """The forces that hold a mechanism under its scene's loads."""
+    """The forces that hold a mechanism under its scene's loads.
 
-    @property
-    def way(self) -> str:
-        """Non-empty, since it needs derivatives along lengths, gaps and the inputs that dampers replace."""
-        return "lengths"
-
-    @property
-    def no_number(self) -> str:
-        return "the wheel's travel does not change the damper's length there"
+    It needs derivatives along lengths, gaps and the inputs that dampers replace.
+    """
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
         """Names of rods and dampers; points of ball joints, hinges and slides; hinges with thrusts."""
@@ -240,4 +234,6 @@ LOADS = Loads(
     "point of a hinge to the second",
     derivative=0,
     quantities=(ROD_FORCE, JOINT_FORCE, HINGE_THRUST),
+    way="lengths",
+    no_number="the wheel's travel does not change the damper's length there",
 )

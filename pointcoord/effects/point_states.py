@@ -20,16 +20,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PointStates(Effect):
-    """The time derivative of order `derivative` of every point's position."""
+    """The time derivative of order `derivative` of every point's position.
 
-    @property
-    def base(self) -> str:
-        """The position, for a derivative without a name of its own; else empty."""
-        return "" if self.derivative < len(NAMED) else NAMED[0]
-
-    @property
-    def reports_states(self) -> bool:
-        return True
+    Its base is the position if the derivative has no name of its own.
+    """
 
     def needs(self, topology: Topology) -> Collection[str]:
         return topology.points
@@ -38,20 +32,13 @@ class PointStates(Effect):
         """The states plus the user's origin and the chassis' displacement, each (..., N, 3)."""
         states, added = poses.states[self.derivative], poses.added[self.derivative]
         reported = {name: state if added is None else state + added for name, state in states.items()}
-        return {self._quantity: reported}
+        return {self.quantities[0].name: reported}
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """Distances of the reported states from the exact ones, with the expected rounding of a sum."""
-        errors = {
-            name: poses.reported(name, self.derivative).errors(reported)
-            for name, reported in numbers[self._quantity].items()
-        }
-        return {self._quantity: errors}
-
-    @property
-    def _quantity(self) -> str:
-        (quantity,) = self.quantities
-        return quantity.name
+        of, quantity = self.derivative, self.quantities[0].name
+        errors = {name: poses.reported(name, of).errors(each) for name, each in numbers[quantity].items()}
+        return {quantity: errors}
 
 
 NAMED = ("position", "velocity", "acceleration", "jerk", "snap", "crackle", "pop")
@@ -72,6 +59,8 @@ def _states(derivative: int) -> PointStates:
         sign="components along the user's axes",
         derivative=derivative,
         quantities=(Quantity(name, words, unit, "point"),),
+        base="" if named else NAMED[0],
+        reports_states=True,
     )
 
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Generic
+from typing import Any, Generic, Literal
 
 import numpy as np
 
@@ -36,9 +36,9 @@ from pointcoord.effects.arithmetic import (
     times,
 )
 from pointcoord.effects.corner import Corner, View, angular_velocity, at_rest
-from pointcoord.linkage.car_axes import Direction
+from pointcoord.linkage.directions import Direction
 
-# Rotation of the knuckle for a rack travel of one wheel radius, rad: a smaller one cannot be told from zero.
+# Rotation of the knuckle for a rack travel of one wheel radius, rad: a smaller one may be rounding.
 LEAST = 1e-9
 
 
@@ -79,14 +79,10 @@ def steering_axis(corner: Corner[S]) -> Axis[S]:
     return Axis(view, view.role("steering_axis"), view.line(view.of.centre, start))
 
 
-def kingpin_offset(axis: Axis[S]) -> S:
-    """From the axis to the contact point at the ground, along the car's outboard."""
-    return axis.view.along(axis.at_ground, "outboard")
-
-
-def castor_offset(axis: Axis[S]) -> S:
-    """From the axis to the contact point at the ground, along the car's rearward."""
-    return axis.view.along(axis.at_ground, "rearward")
+def offset(height: Literal["contact", "centre"], direction: Direction, axis: Axis[S]) -> S:
+    """At the contact point's height, from the axis to the contact point; at the wheel centre's height, from
+    the wheel centre to the axis; each along a direction of the car."""
+    return axis.view.along(axis.at_ground if height == "contact" else axis.at_wheel, direction)
 
 
 def scrub_radius(axis: Axis[S]) -> S:
@@ -104,16 +100,6 @@ def mechanical_trail(axis: Axis[S]) -> S:
     level = cross(view.spin, view.up)
     rearward = times(view.along(cross(view.outboard, view.up), "rearward"), level)
     return ratio(dot(axis.at_ground, rearward), root(dot(rearward, rearward)))
-
-
-def kingpin_offset_at_wheel(axis: Axis[S]) -> S:
-    """From the axis to the wheel centre at the wheel centre's height, along the car's outboard."""
-    return -axis.view.along(axis.at_wheel, "outboard")
-
-
-def hub_trail(axis: Axis[S]) -> S:
-    """From the wheel centre to the axis at the wheel centre's height, along the car's rearward (Lotus)."""
-    return axis.view.along(axis.at_wheel, "rearward")
 
 
 def screw_axis(corner: Corner[Dual[Any]]) -> Axis[Any]:

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
-from pointcoord.linkage.directions import axis_along
-from pointcoord.linkage.drives import V, times, turn_slopes
+from pointcoord.linkage.directions import V, axis_along
+from pointcoord.linkage.drives import times, turn_slopes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosure
 from pointcoord.numerics.double_double import PAIRS

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.errors import MechanismError, UnknownName
+from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.in_body import carrier_weights
 from pointcoord.linkage.directions import car_directions, direction_of
 from pointcoord.linkage.drawing import Drawing
@@ -31,11 +31,10 @@ def build_mechanism(
     """A mechanism from a topology and hardpoints, checked.
 
     Args:
-        points: every point of the topology, shape (..., 3), mm.
+        points: every point of the topology, finite, shape (..., 3), mm; the scene's checks see to that.
         directions: `up` and `right` of the car, unit vectors, shape (..., 3).
     Raises:
-        UnknownName: a point or direction is missing or not part of the topology.
-        MechanismError: a coordinate is not finite, a link has no length, or the equations lose rank in the
+        MechanismError: the car has no usable size, a link has no length, or the equations lose rank in the
             drawing; the message names the free direction and the redundant rows.
     """
     mechanism = drawn_mechanism(topology, points, directions)
@@ -47,8 +46,8 @@ def drawn_mechanism(
     topology: Topology, points: Mapping[str, ArrayLike], directions: Mapping[str, ArrayLike]
 ) -> Mechanism:
     """As `build_mechanism`, without the check that the equations have one solution."""
-    located = _checked(points, topology.points, "point")
-    car = car_directions(**_checked(directions, AXES, "direction"))
+    located = {name: np.array(points[name], dtype=float) for name in topology.points}
+    car = car_directions(*(np.array(directions[name], dtype=float) for name in AXES))
     stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
     with np.errstate(over="ignore", invalid="ignore"):
         extent = (stack.max(axis=-2) - stack.min(axis=-2)).max(axis=-1)
@@ -115,23 +114,6 @@ def hardpoints_moved(mechanism: Mechanism, moves: Mapping[str, Array]) -> Mechan
 def _carrier_weights(topology: Topology, drawing: Drawing) -> dict[str, Array]:
     """Weights of every carried point."""
     return {name: carrier_weights(drawing, name, carriers)[0] for name, carriers in topology.carried.items()}
-
-
-def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:
-    for name in given:
-        if name not in names:
-            raise UnknownName(kind, name, names)
-    result: dict[str, Array] = {}
-    for name in names:
-        if name not in given:
-            raise MechanismError(f"{kind} {name!r} is missing; needed: {', '.join(names)}", [name])
-        array = np.array(given[name], dtype=float)
-        if array.shape[-1:] != (3,) or not np.isfinite(array).all():
-            raise MechanismError(
-                f"{kind} {name!r} is {array.tolist()}; allowed: three finite numbers", [name]
-            )
-        result[name] = array
-    return result
 
 
 def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:

@@ -126,7 +126,11 @@ def known_slopes(mechanism: Mechanism, inputs: Mapping[str, Array], way: Way) ->
                 known[..., place - unknowns] = drive.travel.series(series, mechanism.drawing)[..., 1]
         return known
     if isinstance(way, ByLength):
-        known[..., length_coordinate(topology, way.rod) - unknowns] = 1.0
+        ends = {*topology.rods[way.rod]}
+        of_the_rod = (one.constants for one in topology.constraints if ends in map(set, one.segments))
+        # The one constant of a rod's constraint is its length, in whatever form.
+        length = next(constants[0] for constants in of_the_rod if len(constants) == 1)
+        known[..., topology.layout.scalar(length) - unknowns] = 1.0
     elif way.point in topology.chassis and way.point not in topology.sliding:
         known[..., topology.layout.vector(way.point)[way.axis] - unknowns] = 1.0
     return known
@@ -159,14 +163,6 @@ def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
         if of_this_half:
             rows[list(numbers)] = 1.0
     return moved, rows
-
-
-def length_coordinate(topology: Topology, rod: str) -> int:
-    """Index of the one constant of a rod's constraint: its length, in whatever form."""
-    ends = {*topology.rods[rod]}
-    of_the_rod = (constraint for constraint in topology.constraints if ends in map(set, constraint.segments))
-    length = next(one.constants[0] for one in of_the_rod if len(one.constants) == 1)
-    return topology.layout.scalar(length)
 
 
 def point_slopes(mechanism: Mechanism, y: Array, slopes: Array, way: Way) -> dict[str, Array]:

@@ -28,8 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.effects.effect import Effect
-from pointcoord.effects.plan import Plan, plan_effects
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import EFFECTS, Plan, plan_effects
 from pointcoord.errors import InputOutOfRange, NotComputed, NotCovered, WrongArgument
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism

@@ -69,7 +69,7 @@ class Compiler:
 
     Attributes:
         driven: names of the driven inputs, which may include chassis inputs.
-        points: drawn places, mm; all the same place if only the points' order counts.
+        points: drawn places, mm.
         axes: `up` and `right` of the car.
         lengths: further lengths that inputs need, by name, mm.
     """
@@ -102,7 +102,7 @@ class Compiler:
             rows, own = self._input(input, structure.inputs[input])
             constraints += rows
             driving += own
-        roles = {role: (who,) if isinstance(who, str) else who for role, who in structure.roles.items()}
+        roles = {role: structure.role(role) for role in structure.roles}
         roles |= {role: triangles[body] for role, body in structure.knuckles.items()}
         moves = {name: (one.along, "") for name, one in structure.inputs.items() if isinstance(one, Moves)}
         turns = {n: (one.along, one.about) for n, one in structure.inputs.items() if isinstance(one, Turns)}
@@ -214,7 +214,7 @@ class Compiler:
         """The first triangle that is not flat, or the least flat one."""
         sines = [_sine([self.points[name] for name in one]) for one in tried]
         good = next((one for one, sine in zip(tried, sines, strict=True) if sine > FLAT), None)
-        if max(sines) <= IN_LINE and len({*self.points.values()}) > 1:
+        if max(sines) <= IN_LINE:
             names = tuple(dict.fromkeys(name for one in tried for name in one))
             raise MechanismError(
                 f"{', '.join(names)} lie in one line, so they do not fix a body's orientation; move one of "

@@ -25,10 +25,9 @@ from pointcoord.wording import shown
 MECHANISMS = Path(__file__).parents[1] / "mechanisms"
 AS_DRAWN = "drawn"
 ENDING = ".toml"
-BY_ORDER: Place = (0.0, 0.0, 0.0)
-"""Place of every point if only the points' order counts."""
 AXES: Mapping[str, Place] = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 """Axes of a car that gives none."""
+NO_LENGTHS: Mapping[str, float] = {}
 
 
 @cache
@@ -80,54 +79,50 @@ class MechanismFile:
 
     def topology(
         self,
+        points: Mapping[str, Place],
         closure: str = AS_DRAWN,
         driven: Collection[str] | None = None,
-        points: Mapping[str, Place] | None = None,
-        axes: Mapping[str, Place] | None = None,
-        lengths: Mapping[str, float] | None = None,
+        axes: Mapping[str, Place] = AXES,
+        lengths: Mapping[str, float] = NO_LENGTHS,
     ) -> Topology:
         """The linkage of a car; cars of equal `Compiler.key` share one.
 
         Args:
-            driven: names of the driven inputs; by default the first in the file that hold all freedoms.
             points: drawn places, mm. They decide which optional points exist, and which points represent a
-                body; by default the order in the file decides.
+                body.
+            driven: names of the driven inputs; by default the first in the file that hold all freedoms.
             axes: `up` and `right` of the car.
             lengths: further lengths that inputs need, by name, mm.
         """
-        whole, along = self.structures[closure], axes or AXES
-        linkage = partial(self._linkage, closure, points, along, lengths or {})
+        inputs, linkage = (
+            self.structures[closure].inputs,
+            partial(self._linkage, closure, points, axes, lengths),
+        )
         if driven is None:
-            holding = [
+            free = linkage(())
+            driven = tuple(
                 name
-                for name, one in whole.inputs.items()
-                if not one.moves_the_chassis and (not one.length or one.length in (lengths or {}))
-            ]
-            if self.freedoms(closure) > 0:
-                driven = _first_driven(holding, linkage)
+                for name, one in inputs.items()
+                if not one.moves_the_chassis and (not one.length or one.length in lengths)
+            )
+            if free.layout.unknowns > len(free.labels):
+                driven = _first_driven(driven, linkage)
             else:
-                driven = holding[: max(self.freedoms(closure, points, axes), 0)] if points else ()
-        own = tuple(name for name in whole.inputs if name in driven)
-        topology = linkage(own)
-        if points is None or len(topology.labels) <= topology.layout.unknowns:
-            return topology
-        count = sum(not whole.inputs[name].moves_the_chassis for name in own)
-        too_many = count > self.freedoms(closure, points, axes)
-        return topology if too_many else settled(topology, points, along)
+                driven = driven[: max(Freedoms.of(free, points, axes).count, 0)]
+        topology = linkage(tuple(name for name in inputs if name in driven))
+        spare = len(topology.labels) > topology.layout.unknowns
+        return settled(topology, points, axes) if spare else topology
 
     def _linkage(
         self,
         closure: str,
-        points: Mapping[str, Place] | None,
+        points: Mapping[str, Place],
         axes: Mapping[str, Place],
         lengths: Mapping[str, float],
         driven: tuple[str, ...],
     ) -> Topology:
-        """The linkage with all its rows."""
-        whole = self.structures[closure]
-        structure = whole if points is None else whole.drawn_with(points)
-        there = dict.fromkeys(structure.points, BY_ORDER) if points is None else points
-        compiler = Compiler(structure, driven, there, axes, lengths)
+        """The linkage with all its rows, redundant ones included."""
+        compiler = Compiler(self.structures[closure].drawn_with(points), driven, points, axes, lengths)
         key = closure, compiler.key
         if key not in self._compiled:
             named = f"{self.name}, {closure}" if closure != AS_DRAWN else self.name
@@ -135,20 +130,10 @@ class MechanismFile:
         return self._compiled[key]
 
     def freedoms(
-        self,
-        closure: str = AS_DRAWN,
-        points: Mapping[str, Place] | None = None,
-        axes: Mapping[str, Place] | None = None,
+        self, points: Mapping[str, Place], closure: str = AS_DRAWN, axes: Mapping[str, Place] = AXES
     ) -> int:
-        """Number of freedoms without driven inputs: coordinates less independent equations.
-
-        Args:
-            points: drawn places, mm. Without them every equation is taken as independent.
-        """
-        topology = self._linkage(closure, points, axes or AXES, {}, ())
-        if points is None:
-            return topology.layout.unknowns - len(topology.labels)
-        return Freedoms.of(topology, points, axes or AXES).count
+        """Number of freedoms of a drawing without driven inputs: coordinates less independent equations."""
+        return Freedoms.of(self._linkage(closure, points, axes, NO_LENGTHS, ()), points, axes).count
 
     @cached_property
     def _compiled(self) -> dict[Hashable, Topology]:

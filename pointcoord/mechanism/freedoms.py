@@ -135,40 +135,20 @@ def _closed(mechanism: Mechanism) -> Array:
     )
 
 
-def free_directions(
-    topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]
-) -> tuple[str, ...]:
-    """The coordinates of a drawing that its equations leave free."""
-    try:
-        return Freedoms.of(topology, points, axes).free
-    except MechanismError:
-        return ("unknown, since the drawing does not close",)
-
-
 def settled(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]) -> Topology:
     """A topology with as many rows as unknowns: redundant rows are left out.
 
-    Raises:
-        MechanismError: a freedom is left, or two inputs drive the same freedom.
+    The topology itself if its drawing does not close, if a freedom is left or if two inputs drive the same
+    freedom; the scene's checks report these.
     """
-    found = Freedoms.of(topology, points, axes)
+    try:
+        found = Freedoms.of(topology, points, axes)
+    except MechanismError:
+        return topology
     lost = [row for row in range(len(topology.labels)) if row not in found.kept]
-    fighting = not set(lost).isdisjoint(_rows_of_inputs(topology))
-    if found.count or fighting:
-        raise MechanismError(_words(topology, found, fighting), found.free or found.redundant)
+    if found.count or not set(lost).isdisjoint(_rows_of_inputs(topology)):
+        return topology
     return topology.without(tuple(lost))
-
-
-def _words(topology: Topology, found: Freedoms, fighting: bool) -> str:
-    driven, count = ", ".join(topology.holding_inputs) or "none", len(topology.holding_inputs)
-    words = []
-    if fighting:
-        words.append(f"has inputs that drive the same freedom in the drawing: {', '.join(found.redundant)}")
-    if found.count:
-        more = "freedom" if found.count == 1 else "freedoms"
-        words.append(f"has {found.count} {more} left; free in the drawing: {', '.join(found.free)}")
-    inputs = f"{count} driven input{'' if count == 1 else 's'} ({driven})"
-    return f"{topology.name} with {inputs} {'; it '.join(words)}"
 
 
 def locked(mechanism: Mechanism, y: Array, off: Array) -> dict[int, MechanismError]:

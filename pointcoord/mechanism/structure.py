@@ -133,6 +133,11 @@ class Structure:
         """Points that both bodies have, in the order of the first."""
         return tuple(point for point in self.bodies[body] if point in self.bodies[other])
 
+    def role(self, name: str) -> tuple[str, ...]:
+        """The names that have a role; empty without such a role."""
+        who = self.roles.get(name, ())
+        return (who,) if isinstance(who, str) else who
+
     @property
     def knuckles(self) -> dict[str, str]:
         """Role of a knuckle, with the part's prefix -> the body that carries the wheel."""

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Poses
-from pointcoord.effects.plan import Plan
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.effects.registry import Plan
 from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import ByInput, Way, moved_along
 from pointcoord.results.table import Table, vectors

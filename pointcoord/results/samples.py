@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Quantity
-from pointcoord.effects.plan import Plan
+from pointcoord.effects.registry import Plan
 from pointcoord.errors import NotComputed, UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.results.read_only import ReadOnly

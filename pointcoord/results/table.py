@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Effect
-from pointcoord.effects.plan import Plan
-from pointcoord.effects.registry import QUANTITIES
+from pointcoord.effects.registry import QUANTITIES, Plan
 from pointcoord.linkage.topology import Topology
 from pointcoord.results.samples import Channel, Samples
 

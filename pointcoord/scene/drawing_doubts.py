@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pointcoord.effects.corner import wheels_of
 from pointcoord.effects.effect import Doubt
 from pointcoord.effects.registry import ANGLES
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.topology import Topology
 
 Array = NDArray[np.float64]

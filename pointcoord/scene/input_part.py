@@ -165,10 +165,10 @@ def with_values(law: Any, change: Callable[[Any], Any], keys: Collection[str]) -
     return changed(law, of_one)
 
 
-def with_drawn(law: Any, value: float) -> Any:
-    """A law as plain data with "drawn" replaced by the input's value in the drawing."""
+def with_drawn(law: Any, value: Callable[[], float]) -> Any:
+    """A law as plain data with "drawn" replaced by the input's value in the drawing, found only if needed."""
     return with_values(
-        law, lambda own: value if isinstance(own, str) and own == DRAWN else own, ("offset", "values")
+        law, lambda own: value() if isinstance(own, str) and own == DRAWN else own, ("offset", "values")
     )
 
 

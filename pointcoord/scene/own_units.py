@@ -5,7 +5,7 @@ The result is a plain scene in mm; all results are in mm. Angles and times have 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
@@ -57,37 +57,32 @@ def in_directions(mechanism: dict[str, Any]) -> dict[str, Any]:
     return mechanism | AXES[axes]
 
 
-def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
-    """A scene's content with every length in mm, in place of `units`.
+def mm_of(units: object) -> float:
+    """A unit of length in mm.
 
-    Values that are not numbers stay as they are; the scene's checks report them.
-
-    Args:
-        lengths: names of the inputs that are lengths.
     Raises:
         TableFault: no unit has that name.
     """
-    if "units" not in content:
-        return content
-    units = content.pop("units")
     if not isinstance(units, str) or units not in UNITS:
         raise TableFault(("units",), f"is {shown(units)}", ", ".join(UNITS))
-    factor = UNITS[units]
-    inputs = content.pop("inputs", None)
-    content = {name: _scaled(value, factor, POWERS.get(name, 0)) for name, value in content.items()}
-    if isinstance(inputs, Mapping):
-        in_mm = partial(_scaled, factor=factor, power=1)
-        inputs = {n: with_values(law, in_mm, OF_A_LAW) if n in lengths else law for n, law in inputs.items()}
-    return content if inputs is None else {**content, "inputs": inputs}
+    return UNITS[units]
 
 
-def _scaled(value: Any, factor: float, power: int) -> Any:
-    """Numbers, lists and tables of them, times factor**power; in a table a key may give the power."""
+def law_scaled(law: Any, factor: float) -> Any:
+    """The law of an input that is a length, as plain data, with its lengths times a factor."""
+    return law if factor == 1.0 else with_values(law, partial(scaled, factor=factor, power=1), OF_A_LAW)
+
+
+def scaled(value: Any, factor: float, power: int = 0) -> Any:
+    """Numbers, lists and tables of them, times factor**power; in a table a key may give the power.
+
+    Values that are not numbers stay as they are; the scene's checks report them.
+    """
     if isinstance(value, Mapping):
-        return {name: _scaled(each, factor, power or POWERS.get(name, 0)) for name, each in value.items()}
+        return {name: scaled(each, factor, power or POWERS.get(name, 0)) for name, each in value.items()}
     if not power:
         return value
     value = own_list(own_number(value))
     if isinstance(value, tuple):
-        return [_scaled(each, factor, power) for each in value]
+        return [scaled(each, factor, power) for each in value]
     return factor**power * value if isinstance(value, int | float) and not isinstance(value, bool) else value

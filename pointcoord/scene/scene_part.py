@@ -93,8 +93,6 @@ class Part(BaseModel):
         Raises:
             SceneError: the first fault, with its key; further ones are counted.
         """
-        if type(content) is cls and content.unchanged:
-            return content
         try:
             return cls.model_validate(content)
         except ValidationError as error:
@@ -109,9 +107,11 @@ class Part(BaseModel):
     @model_validator(mode="wrap")
     @classmethod
     def _in_whole(cls, content: object, by_keys: ModelWrapValidatorHandler[Self]) -> Self:
-        # Objects are checked again wherever they are used: their dictionaries may have been changed.
+        # Dictionaries of objects may have been changed since these were checked.
         if isinstance(content, cls):
-            content = content._as_given()
+            if type(content) is cls and content.unchanged:
+                return content
+            content = content.as_given()
         if isinstance(content, Mapping):
             content = cls.completed(dict(content))
             known_keys(content, (*cls.model_fields, *cls.short_forms))
@@ -132,7 +132,8 @@ class Part(BaseModel):
         """Whether the part is as it was when checked: its dictionaries can be changed afterwards."""
         return self._checked is not None and self._checked == self.model_dump()
 
-    def _as_given(self) -> dict[str, Any]:
+    def as_given(self) -> dict[str, Any]:
+        """The values that were given, by key, as plain content of an equal part."""
         return {name: value for name, value in self if name in self.model_fields_set}
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
@@ -143,5 +144,5 @@ class Part(BaseModel):
         """
         if not update:
             return super().model_copy(deep=deep)
-        changed = {**self._as_given(), **update}
+        changed = {**self.as_given(), **update}
         return self.checked(copy.deepcopy(changed) if deep else changed, f"a changed {type(self).__name__}")

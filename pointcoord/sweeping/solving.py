@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.drawing_stands import drawn_angles
-from pointcoord.effects.plan import Plan, plan_effects
+from pointcoord.effects.registry import Plan, plan_effects
 from pointcoord.errors import (
     AssemblyError,
     MechanismError,

@@ -16,7 +16,8 @@ from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.inputs import KINDS
 from pointcoord.mechanism.structure import PAIR_ROLES
-from pointcoord.scene.scene_file import TURNS, CarPart
+from pointcoord.scene.mechanism_part import CarPart
+from pointcoord.scene.scene_file import TURNS
 
 PACKAGE = Path(pointcoord.__file__).parent
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
@@ -74,8 +75,7 @@ def own_files() -> dict[Path, list[str]]:
 OWN = own_files()
 # Kinds of effects may name the quantity that all of their kind give; conventions are about names.
 OF_KINDS = {
-    PACKAGE / "effects" / f"{name}.py"
-    for name in ("gradients", "angle", "car_number", "conventions", "numbers", "point_states", "registry")
+    PACKAGE / "effects" / f"{name}.py" for name in ("car_number", "numbers", "point_states", "registry")
 }
 # What a mechanism calls its parts, effects of them may be called too; a list pops.
 NAMES = {

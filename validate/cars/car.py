@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.mechanism.structure import TABLES, Structure
-from pointcoord.scene.scene_file import MechanismPart
+from pointcoord.scene.mechanism_part import MechanismPart
 from validate.spanning_tree.tree import car_directions
 
 Array = NDArray[np.float64]

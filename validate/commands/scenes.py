@@ -9,9 +9,9 @@ import numpy as np
 
 from pointcoord import AssemblyError, PointcoordError, Scene, built_in_scenes, standing
 from pointcoord.drawing_stands import Standing
-from pointcoord.effects.plan import Plan, plan_effects
-from pointcoord.effects.registry import ALWAYS, EFFECTS
+from pointcoord.effects.registry import ALWAYS, EFFECTS, Plan, plan_effects
 from pointcoord.mechanism.structure import joints_in_words
+from pointcoord.method import MAP
 from pointcoord.results.closing import ALLOWED
 from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
@@ -132,25 +132,27 @@ def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
     except PointcoordError as error:
         yield f"effort: not known, because the scene cannot be solved: {error}"
         return
-    by_map = found.method == "map"
-    yield found.why or "solved by series in time: few are needed, so no map of the inputs is built"
+    task, solved, orders = found.task, found.solved, found.solved.orders
+    by_map = task.method is MAP
+    few_needed = "solved by series in time: few are needed, so no map of the inputs is built"
+    yield solved.notes[0] if by_map else few_needed
     rates = f", rates to {found.part:.2g} of their size" if plan.derivative else ""
     yield f"accuracy: positions to {found.tolerance:.3g} mm{rates}"
-    if found.orders:
-        few, many = min(found.orders), max(found.orders)
+    if orders:
+        few, many = min(orders), max(orders)
         unknowns = [f"{found.unknowns} unknowns"]
         if found.not_needed:
-            unknowns.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
+            unknowns.append(f"the {found.not_needed} of {', '.join(task.unsolved)} are not needed")
         yield f"solved {'on each patch' if by_map else 'at each step'}: {'; '.join(unknowns)}"
-        series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
+        series = "1 power series" if len(orders) == 1 else f"{len(orders)} power series"
         series += " in the inputs, each proven on a patch of their path," if by_map else ""
         yield (
             f"effort: {series} of {f'order {few}' if few == many else f'orders {few} to {many}'}, "
-            f"{sum(found.orders)} orders in all; {found.work.factorisations} factorisations, "
-            f"{found.start.factorisations} of them to assemble the start"
+            f"{sum(orders)} orders in all; {found.work.factorisations} factorisations, "
+            f"{task.start.work.factorisations} of them to assemble the start"
         )
-    if not found.status.complete:
-        yield f"up to t = {found.stop:.6g} s, where the motion stops"
+    if not solved.status.complete:
+        yield f"up to t = {max(solved.stop, scene.time.start):.6g} s, where the motion stops"
 
 
 def _where_it_stands(scene: Scene, stands: Standing) -> Iterator[str]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pointcoord import Motion, NotFollowed, PointcoordError, Scene, SceneError, simulate
-from pointcoord.effects.angle import WHEEL
+from pointcoord.effects.car_number import WHEEL
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, UnknownName, WrongArgument, solve_poses
-from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.effects.loads import LOADS
-from pointcoord.effects.numbers import READ_FIRST
+from pointcoord.effects.numbers import CONVENTIONS, READ_FIRST
 from pointcoord.wording import meant
 from validate.commands.pages import Command
 from validate.commands.solved import solved
@@ -46,7 +45,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.convention:
         if options.convention not in CONVENTIONS:
             raise UnknownName("convention", options.convention, CONVENTIONS)
-        if options.all and CONVENTIONS[options.convention].means:
+        if options.all and CONVENTIONS[options.convention]:
             raise UsageError(
                 "--all prints every number by pointcoord's own definitions; leave --convention out with it"
             )

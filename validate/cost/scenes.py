@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import EFFECTS, plan_effects
 from pointcoord.toml_text import parsed
 
 Array = NDArray[np.float64]

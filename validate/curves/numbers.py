@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, NotComputed, Samples, Scene
-from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.effects.effect import Effect, Quantity
+from pointcoord.effects.numbers import meant_by
 from pointcoord.effects.registry import ALWAYS, EFFECTS, number_called, words_of
 from pointcoord.wording import meant as hint
 from validate.closed_drawing import closed_drawing
@@ -139,7 +139,7 @@ def numbers_asked(
     Raises:
         UsageError: the car has no such number, or no numbers at all.
     """
-    part, numbers, convention = scene.mechanism, numbers_of(scene), CONVENTIONS[scene.convention]
+    part, numbers = scene.mechanism, numbers_of(scene)
     had = {number for effect in part.effects for number in EFFECTS[effect].names(part.topology)}
     every = [n for n in numbers if n.of_the_car and not n.is_force and n.path[1] in had]
     every = [n for n in every if number_called(n.path[1])]
@@ -158,7 +158,7 @@ def numbers_asked(
     else:
         found = []
         for own in first:
-            called, sign = convention.number(own)
+            called, sign = meant_by(own, scene.convention)
             wheels = [n for n in every if n.path[1].rpartition(".")[2] == called]
             found += wheels if sign > 0 else [n.negative() for n in wheels]
     return tuple({number.path: number for number in found}.values())
@@ -170,7 +170,7 @@ def numbers_called(words: str, scene: Scene) -> tuple[Number, ...]:
     Raises:
         UsageError: the name fits no number, or numbers with different names.
     """
-    called, sign = CONVENTIONS[scene.convention].number(words)
+    called, sign = meant_by(words, scene.convention)
     own = called.rpartition(".")[2]
     try:
         numbers = found(called, numbers_of(scene))

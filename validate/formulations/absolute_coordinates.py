@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.point_states import STATES
-from pointcoord.effects.registry import QUANTITIES
+from pointcoord.effects.registry import QUANTITIES, plan_effects
 from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import Scene
 from validate.extras import not_there

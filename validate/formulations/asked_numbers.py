@@ -7,8 +7,7 @@ from collections.abc import Iterable
 from pointcoord import Scene
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.loads import LOADS
-from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES, plan_effects
 from pointcoord.linkage.topology import Topology
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import plan_effects
 from pointcoord.scene.input_part import InputPart, TablePart
 from pointcoord.scene.scene_file import Scene
 from validate.extras import not_there

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import UnknownName
-from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.file import AS_DRAWN
+from pointcoord.mechanism.structure import Structure
 from validate.hardpoint_files.contents import (
     ALLOWED,
     DIRECTIONS,
@@ -163,7 +163,7 @@ class OneWheel:
             drawn: angles of the drawing by our names, rad.
         """
         places, left_open = self.chosen.places, 0.0
-        for ends in map(self.topology.role, ("wheel_axis", "steering_axis")):
+        for ends in map(self.structure.role, ("wheel_axis", "steering_axis")):
             if ends and {*ends} <= places.keys():
                 one, other = (places[name] for name in ends)
                 half, length = max(map(_half_a_digit, (*one, *other))), dist(one, other)
@@ -175,14 +175,14 @@ class OneWheel:
                     yield AngleCheck(name, words, line, float(value), degrees(drawn[name]), off)
 
     def drawing(self) -> Drawing:
-        """The wheel's points in the order of its topology, and points that follow from them.
+        """The wheel's points in the order of its mechanism, and points that follow from them.
 
         Raises:
             FileError: the file lacks something that is needed, or its points contradict it.
             UnknownName: a name in the user's file of names is not in this file.
             UsageError: `axes` are not valid.
         """
-        if not (self.topology.wheel_axis and self.topology.role("inboard")):
+        if not (self.structure.role("wheel_axis") and self.structure.role("inboard")):
             raise self.refuse(
                 f"is read as {self.kind}, whose mechanism file lacks the roles wheel_axis and inboard",
                 "a suspension of one wheel; for others write a scene (pointcoord new)",
@@ -193,7 +193,7 @@ class OneWheel:
         side = self.side(turned)
         found = {n: ScenePoint(n, at, self.chosen.ours[n].source) for n, at in turned.items()}
         found |= self.following(turned, 1 if side == "right" else -1)
-        points = [found[name] for name in self.topology.points if name in found]
+        points = [found[name] for name in self.structure.points if name in found]
         facts = [
             f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
             "here x rearward, y right, z up, in mm",
@@ -208,7 +208,7 @@ class OneWheel:
             points = [point.mirrored for point in points]
         facts += [
             f"{name} is not in the file: {other} is used instead"
-            for name, other in self.topology.stand_ins.items()
+            for name, other in self.structure.stand_ins.items()
             if name not in found
         ]
         return Drawing(self.source, self.kind, side, tuple(points), tuple(facts), self.chosen.others)
@@ -242,9 +242,9 @@ class OneWheel:
         return best[0]
 
     @cached_property
-    def topology(self) -> Topology:
-        """The topology of our type of suspension."""
-        return mechanism_file(self.kind).topology()
+    def structure(self) -> Structure:
+        """The structure of our type of suspension."""
+        return mechanism_file(self.kind).structures[AS_DRAWN]
 
     @property
     def called(self) -> dict[str, str]:
@@ -332,7 +332,7 @@ class OneWheel:
         camber, toe, given = self.choices.camber, self.choices.toe, self.axle.spin_axis
         if camber is None and toe is None:
             return given
-        inner = self.topology.wheel_axis[0]
+        inner = self.structure.role("wheel_axis")[0]
         if given is not None or inner in self.chosen.places:
             by = f" by {inner}" if given is None else ""
             raise self.refuse(f"gives the direction of its spin axis{by}", "neither --camber nor --toe")
@@ -351,7 +351,7 @@ class OneWheel:
             out: 1 if outboard is to the right, -1 if it is to the left.
         """
         lost, axis, found = missing(self.kind, places), self.spin_axis, dict[str, ScenePoint]()
-        inner, centre = self.topology.wheel_axis
+        inner, centre = self.structure.role("wheel_axis")
         if inner in lost and axis is not None and centre in places:
             how = f"from {centre}: {INWARD:g} mm inboard on the spin axis, from {axis.words}"
             found[inner] = ScenePoint(inner, _inboard(places[centre], out, axis), how)
@@ -381,7 +381,7 @@ class OneWheel:
         problem += f"; without three numbers: {self.lines}" if self.lines else ""
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
-        if self.topology.wheel_axis[0] in lost:
+        if self.structure.role("wheel_axis")[0] in lost:
             advice += (
                 "; for the spin axis you may give --camber and --toe, + leaning out at the top and + toe in"
             )
@@ -426,10 +426,10 @@ class OneWheel:
         Yields the direction in words, as a vector in the file's axes, (3,), and its direction in the car. If
         the mechanism does not have these roles, nothing is yielded.
         """
-        topology, places = self.topology, self.chosen.places
+        structure, places = self.structure, self.chosen.places
         for way, ends in (
-            ("forward", topology.role("front_and_rear")),
-            ("up", topology.role("steering_axis")[::-1]),
+            ("forward", structure.role("front_and_rear")),
+            ("up", structure.role("steering_axis")[::-1]),
         ):
             if ends:
                 one, other = ends
@@ -460,7 +460,7 @@ class OneWheel:
 
     def side(self, turned: Mapping[str, Place]) -> str:
         """The wheel's side, from its position; it must be the side that the file or the user gives."""
-        wheel, (inner,) = self.topology.wheel_centre, self.topology.role("inboard")
+        wheel, (inner,) = self.structure.role("wheel_axis")[1], self.structure.role("inboard")
         lies, out = turned[wheel][1], turned[wheel][1] - turned[inner][1]
         if not out:
             raise self.refuse(f"has {wheel} as far out as {inner}", "a wheel outboard of it; see --axes")
@@ -483,8 +483,8 @@ class OneWheel:
 
 def missing(kind: str, known: Iterable[str]) -> list[str]:
     """The required points that are missing; points of the spin axis are required too, without defaults."""
-    topology, there = mechanism_file(kind).topology(), {*known}
-    needed = dict.fromkeys((*topology.required_points, *topology.wheel_axis))
+    structure, there = mechanism_file(kind).structures[AS_DRAWN], {*known}
+    needed = dict.fromkeys((*structure.required_points, *structure.role("wheel_axis")))
     return [name for name in needed if name not in there]
 
 

@@ -10,8 +10,7 @@ from typing import Any
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import Standing
-from pointcoord.effects.angle import Angle
-from pointcoord.effects.car_number import BY_TRAVEL
+from pointcoord.effects.car_number import BY_TRAVEL, Angle
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file
@@ -97,7 +96,7 @@ def scene_of(drawing: Drawing) -> Scene:
     kind, places = drawing.kind, {point.name: point.coordinates for point in drawing.points}
     try:
         file = mechanism_file(kind) if drawing.tables is None else MechanismFile.of(drawing.tables, kind)
-        driven = driven_inputs(file, file.topology(points=places))
+        driven = driven_inputs(file, file.topology(places))
     except TableFault as fault:
         raise fault.of_file(drawing.source) from None
     content = {

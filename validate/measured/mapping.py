@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from pointcoord import Scene, SceneError
-from pointcoord.effects.conventions import CONVENTIONS, ConventionName
+from pointcoord.effects.numbers import ConventionName, meant_by
 from pointcoord.mechanism.faults import faults_of, known_keys
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant, shown_key
@@ -351,8 +351,8 @@ class _Map:
         found = named(name, self.meanings)
         if found is None or found.kind != "number" or name in self.meanings:
             return found, 1
-        meant_by, sign = CONVENTIONS[self.said.convention or self.scene.convention].number(found.name)
-        return (found if meant_by == found.name else named(meant_by, self.meanings)), sign
+        meant, sign = meant_by(found.name, self.said.convention or self.scene.convention)
+        return (found if meant == found.name else named(meant, self.meanings)), sign
 
     @cached_property
     def meant(self) -> dict[str, tuple[Meaning, int] | None]:

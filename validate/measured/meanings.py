@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Literal
 
-from pointcoord.effects.angle import Angle
-from pointcoord.effects.registry import QUANTITIES, angle_called
+from pointcoord.effects.car_number import Angle
+from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.linkage.topology import Topology
 from validate.formulations.asked_numbers import known_names, per_second
 
@@ -96,5 +96,5 @@ def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
 
 def angle_of(meaning: Meaning) -> Angle | None:
     """The angle of a line that a number is; None for other numbers."""
-    angle = angle_called(meaning.name)
-    return angle if angle and meaning.quantity == angle.quantity.name else None
+    angle = number_called(meaning.name)
+    return angle if isinstance(angle, Angle) and meaning.quantity == angle.quantity.name else None

@@ -22,7 +22,7 @@ from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.numerics.infinitesimal import slope_of
 from pointcoord.numerics.rounding import EPS
 from pointcoord.poses import PoseSolver
-from pointcoord.scene.scene_file import MechanismPart
+from pointcoord.scene.mechanism_part import MechanismPart
 from pointcoord.simulation import scene_mechanism
 from pointcoord.sweeping.hardpoint_slopes import ByHardpoints, moves_of, slopes_of_motion, slopes_of_poses
 from validate.measured.mapping import Measured, Series

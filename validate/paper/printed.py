@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord import Scene
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, BodyRates, Edges, States
 from pointcoord.linkage.constraints.constraint import Constraint, Equation, Term
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Topology
-from pointcoord.mechanism import mechanism_file
 from pointcoord.method import Method
 from pointcoord.numerics.quadratic import QuadraticMap, Row
 from pointcoord.solve.pointwise import square_velocity_term
@@ -63,7 +63,7 @@ _ROWS = (
 )
 
 
-_PAPERS = mechanism_file("macpherson").topology("collinear")
+_PAPERS = Scene.load("bounce").mechanism.topology
 
 
 def as_printed(topology: Topology) -> Topology | None:
@@ -98,11 +98,6 @@ def printed_square_velocity_term(system: QuadraticMap, velocity: Array) -> Array
 class PrintedQuotients(BodyRates):
     """The printed quotients for omega and alpha."""
 
-    @property
-    def no_number(self) -> str:
-        """Why a rate may not exist."""
-        return "the printed quotient divides by zero there"
-
     def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
         """Omega and alpha; not finite where their denominator is zero.
 
@@ -133,7 +128,9 @@ class PrintedQuotients(BodyRates):
             return np.asarray(np.fmin(above + 2.0 * below, MOST_LOST)[..., None])
 
 
-QUOTIENTS = PrintedQuotients(**vars(KNUCKLE_RATES))
+QUOTIENTS = PrintedQuotients(
+    **{**vars(KNUCKLE_RATES), "no_number": "the printed quotient divides by zero there"}
+)
 
 
 def _from_first(states: States) -> tuple[Array, Array]:

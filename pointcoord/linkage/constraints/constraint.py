@@ -1,8 +1,8 @@
 r"""A constraint: named equations between points, directions and coordinates of y, as data.
 
 The equations contain no dimensions of a particular car; these are in y. A constraint names the coordinates of
-y that it needs beside points, and computes them from a drawing, so no other code depends on its kind. Each
-kind is a function that makes a `Constraint`, in a module of this package.
+y that it needs in addition to points, and computes them from a drawing, so no other code depends on its kind.
+Each kind is a function that makes a `Constraint`, in a module of this package.
 
 An equation is a sum of terms that is zero. A term is a product of two numbers, of a number and a vector, or
 the scalar or vector product of two vectors; a vector is an edge, p_head - p_tail.

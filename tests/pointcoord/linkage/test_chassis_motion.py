@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from pointcoord import InputOutOfRange, Scene, simulate
-from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.linkage.directions import CarAxes
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.time_functions import Polynomial
 
@@ -47,7 +47,7 @@ def test_a_heave_of_any_speed_leaves_the_series_as_they_are(make_scene: Callable
 def test_rearward_is_enclosed_as_the_exact_product_of_directions_that_are_rounded() -> None:
     up, right = np.array([0.1, -0.7, 0.9]), np.array([0.3, 0.6, -0.2])
     vector = np.array([0.7, 1.1, -1.3])
-    found = CarAxes(up, right, right).enclosed(Enclosed.of(vector), "rearward")
+    found = CarAxes(up, right, right).component(Enclosed.of(vector), "rearward")
     u, r, v = ([Fraction(x) for x in each.tolist()] for each in (up, right, vector))
     exact = sum(v[i] * (r[i - 2] * u[i - 1] - r[i - 1] * u[i - 2]) for i in range(3))
     error = abs(exact - Fraction(float(found.high)) - Fraction(float(found.low)))

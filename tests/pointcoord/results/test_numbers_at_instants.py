@@ -11,8 +11,7 @@ from within_bounds import among, beyond_claims, differing
 
 from pointcoord import Motion, NotComputed, OutsideMotion, Scene, simulate
 from pointcoord.effects.numbers import CAR_NUMBERS
-from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.registry import ANGLES
+from pointcoord.effects.registry import ANGLES, plan_effects
 from pointcoord.results.by_series import ByChain
 
 EPS = float(np.finfo(float).eps)

@@ -26,7 +26,7 @@ def test_a_car_in_another_unit_is_doubted_and_solved(factor: float, length: str)
     assert repr(motion).endswith(f"; {count} note{'s' if count > 1 else ''}>")
 
 
-# Where points are drawn: at a place, at that of another, or not at all.
+# Where points are drawn: at a place, or at that of another.
 MISDRAWN: list[tuple[str, dict[str, Any], str]] = [
     (
         STRUT,
@@ -55,8 +55,6 @@ def test_a_misdrawn_or_swapped_point_is_doubted_with_its_value(
     for one, other in moved.items():
         if isinstance(other, str):
             points[one], points[other] = points[other], points[one]
-        elif other is None:
-            del points[one]
         else:
             points[one] = other
     doubts = scene_with(name, {"points": points}, effects=[]).mechanism.doubts

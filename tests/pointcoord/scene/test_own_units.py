@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from pointcoord.scene.own_units import UNITS, in_mm
+from pointcoord.scene.own_units import UNITS
 
 CAR: dict[str, Any] = {
     "axle": "front",
@@ -50,7 +50,6 @@ def test_every_length_of_a_scene_is_in_its_units_and_nothing_else_is(
     name: str, units: str, as_given: Callable[[list[float]], Any]
 ) -> None:
     content, factor = plain(name), UNITS[units]
-    there = in_mm({**content, "units": "mm"}, ())
     # Written in the other unit, by the same rule backwards: a length is divided, all else stays.
     lengths = of_length(name)
     written: dict[str, Any] = {**content, "units": units, "tolerance": content["tolerance"] / factor}
@@ -73,7 +72,7 @@ def test_every_length_of_a_scene_is_in_its_units_and_nothing_else_is(
         return value / factor
 
     written["inputs"] = {n: divided(law) if n in lengths else law for n, law in content["inputs"].items()}
-    found, wanted = Scene.from_mapping(written), Scene.from_mapping(there)
+    found, wanted = Scene.from_mapping(written), Scene.from_mapping({**content, "units": "mm"})
     assert found.tolerance == pytest.approx(wanted.tolerance, rel=1e-15)
     one, other = (numbers(scene.mechanism.plain(lengths)) for scene in (wanted, found))
     assert len(one) > 3 * len(wanted.mechanism.points)

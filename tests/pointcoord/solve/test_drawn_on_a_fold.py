@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 import pointcoord.solve.assembly
 from pointcoord import AssemblyError, MechanismError, Scene
 from pointcoord.linkage.hardpoints import build_mechanism
-from pointcoord.scene.scene_file import MechanismPart
+from pointcoord.scene.mechanism_part import MechanismPart
 from pointcoord.solve.assembly import close_drawing
 from pointcoord.solve.proven_step import Proof
 

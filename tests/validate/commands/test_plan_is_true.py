@@ -29,12 +29,12 @@ def test_the_effort_that_is_planned_and_printed_is_the_work_of_the_solved_motion
     scene = Scene.load(name)
     planned, motion = effort(scene), simulate(scene)
     work = motion.work
-    assert (len(planned.orders), sum(planned.orders)) == (work.segments, work.series_orders)
+    assert (len(planned.solved.orders), sum(planned.solved.orders)) == (work.segments, work.series_orders)
     assert (int(told["segments"]), int(told["orders"])) == (work.segments, work.series_orders)
     assert planned.work.factorisations == work.factorisations == int(told["all"])
     assert planned.work.residuals == work.residuals
-    assert planned.start.factorisations == motion.start.work.factorisations == int(told["start"])
-    assert (planned.stop, planned.status.complete) == (scene.time.stop, True)
+    assert planned.task.start.work.factorisations == motion.start.work.factorisations == int(told["start"])
+    assert (planned.solved.stop, planned.solved.status.complete) == (scene.time.stop, True)
     assert planned.tolerance == scene.tolerance == float(told["tolerance"])
     assert planned.part == pytest.approx(planned.tolerance / motion.unit, rel=1e-12)
     assert int(told["few"]) <= work.series_orders / work.segments <= int(told["many"] or told["few"])
@@ -48,7 +48,7 @@ def test_the_tolerance_that_is_planned_is_the_asked_one_or_the_finest_and_the_mo
 ) -> None:
     scene = Scene.load("five-link").model_copy(update={"tolerance": tolerance})
     planned, motion = effort(scene), simulate(scene)
-    assert sum(planned.orders) == motion.work.series_orders
+    assert sum(planned.solved.orders) == motion.work.series_orders
     noted = [note for note in motion.notes if note.startswith("the tolerance of ")]
     assert (planned.tolerance == pytest.approx(tolerance, rel=1e-12, abs=0.0)) == (not noted)
     assert bool(noted) == (tolerance < 1e-13)
@@ -61,10 +61,10 @@ def test_a_long_table_is_planned_by_a_map_and_says_why(
     table = {"times": times.tolist(), "values": (9.0 * np.sin(times)).tolist()}
     scene = scene_with("steer", laws={"rack": {"table": table}})
     planned, motion = effort(scene), simulate(scene)
-    assert planned.method == motion.method == "map"
-    assert planned.why in motion.notes
+    assert planned.task.method.name == motion.method == "map"
+    assert planned.solved.notes[0] in motion.notes
     work = motion.work
-    assert (len(planned.orders), sum(planned.orders)) == (work.segments, work.series_orders)
+    assert (len(planned.solved.orders), sum(planned.solved.orders)) == (work.segments, work.series_orders)
     assert planned.work.factorisations == work.factorisations
     monkeypatch.setattr("validate.commands.scenes.load_scene", lambda _: scene)
     assert main(["plan", "steer"]) == 0

@@ -38,10 +38,6 @@ STUB = Quantity("stub", "stub length", "mm", "car")
 class Stub(Effect):
     """How far the wheel centre lies outboard of the inner point of the spin axis, mm."""
 
-    @property
-    def own_names(self) -> tuple[str, ...]:
-        return ("stub_axle",)
-
     def needs(self, topology: Topology) -> Collection[str]:
         return topology.wheel_axis
 
@@ -51,12 +47,12 @@ class Stub(Effect):
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, np.ndarray]]:
         inner, centre = (poses.points[0][name] for name in poses.mechanism.topology.wheel_axis)
-        exact = poses.axes.enclosed(centre - inner, "outboard").scaled(float(poses.mechanism.unit))
+        exact = poses.axes.component(centre - inner, "outboard").scaled(float(poses.mechanism.unit))
         found = numbers[STUB.name]["stub_axle"]
         return {STUB.name: {"stub_axle": exact.errors(found)}}
 
 
-OURS = Stub("stub_axle", "length of the stub axle, mm", "positive outboard", 0, (STUB,))
+OURS = Stub("stub_axle", "length of the stub axle, mm", "positive outboard", 0, (STUB,), ("stub_axle",))
 
 
 def stub_axle(scale: float = 1.0) -> AbsoluteEffect:

@@ -174,7 +174,7 @@ def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_know
     text = table().replace("CHAS_TiePnt", "Rack End").replace("Wheel Center", "Hub")
     with pytest.raises(FileError) as caught:
         imported(tmp_path, text)
-    parts = ("lacks tie_rod_inner", "wheel_centre", "'CHAS_TiePnt'", "'Rack End' on line", "'Hub' on line")
+    parts = ("lacks wheel_centre", "tie_rod_inner", "'CHAS_TiePnt'", "'Rack End' on line", "'Hub' on line")
     assert [part for part in parts if part not in str(caught.value)] == []
     names = tmp_path / "names.toml"
     # What is given goes before what the file has by a name that is known.

@@ -21,7 +21,7 @@ from validate.paper.printed import (
     printed_square_velocity_term,
 )
 
-COLLINEAR = mechanism_file("macpherson").topology("collinear", points=PAPER)
+COLLINEAR = mechanism_file("macpherson").topology(PAPER, "collinear")
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from pointcoord import Scene
-from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import plan_effects
 from validate.cost.way import Answer, Solve, Way, laws_at
 from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car

@@ -17,7 +17,7 @@ from pointcoord import Scene
 from pointcoord.method import CHORD, MAP, NEWTON, NEWTON_COLD, SERIES, Method
 from pointcoord.results.motion import read
 from pointcoord.results.samples import Samples
-from pointcoord.simulation import Task, checked_task, solve_by_map, solve_task
+from pointcoord.simulation import Task, prepare_task, solve_by_map, solve_task
 from validate.cost.way import Answer, Solve, Way
 from validate.formulations.protocol import Array
 
@@ -30,7 +30,7 @@ def task_of(scene: Scene, method: Method, tolerance: float) -> Task:
     Raises:
         PointcoordError: pointcoord refuses the scene.
     """
-    return checked_task(scene.model_copy(update={"tolerance": tolerance}), method)
+    return prepare_task(scene.model_copy(update={"tolerance": tolerance}), method)
 
 
 def by_method(method: Method, scene: Scene, tolerance: float) -> Solve:

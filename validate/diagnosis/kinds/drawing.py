@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
-from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.linkage.directions import Direction
 from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
 from pointcoord.method import AUTO

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, solve_poses
 from pointcoord.drawing_stands import drawn_inputs
+from pointcoord.effects.car_number import Angle
 from pointcoord.effects.corner import Wheel
-from pointcoord.effects.registry import QUANTITIES, angle_called
+from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, Hypothesis, Row, WouldBe, roundest, together
 
@@ -199,8 +200,8 @@ SINGLE = float(np.finfo(np.float32).eps)
 def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each other definition, for all angles that disagree."""
     for row in evidence.wrong:
-        angle, wheel = angle_called(row.name), Wheel.of(evidence.scene.mechanism.topology, row.name)
-        if row.of != "car" or angle is None:
+        angle, wheel = number_called(row.name), Wheel.of(evidence.scene.mechanism.topology, row.name)
+        if row.of != "car" or not isinstance(angle, Angle):
             continue
         start, end = (evidence.places(point) for point in angle.ends(wheel))
         if start is None or end is None:

@@ -1,0 +1,425 @@
+"""The mechanism of a scene: a shipped one or a user's, with its drawn points, the car's axes and data."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Mapping
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
+
+from pointcoord.effects.effect import Effect
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.errors import MechanismError
+from pointcoord.linkage.directions import CarAxes
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.linkage.topology import Topology
+from pointcoord.mechanism.faults import TableFault, no_such
+from pointcoord.mechanism.file import (
+    MechanismFile,
+    is_path,
+    mechanism_file,
+    read_tables,
+    shipped,
+    whole_tables,
+)
+from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
+from pointcoord.mechanism.structure import TABLES, Structure
+from pointcoord.numerics.rounding import EPS
+from pointcoord.scene.drawing_doubts import drawing_doubts
+from pointcoord.scene.own_units import in_directions
+from pointcoord.scene.scene_part import NotZero, Part, PlainTable, Positive, Share, Text, Vector
+from pointcoord.wording import shown
+
+# Largest error in products of directions: ROUNDED for directions that were rotated in doubles, SLIP for those
+# printed with 12 digits. A larger error is a mistake.
+ROUNDED, SLIP = 16.0 * EPS, 1e-12
+NO_DIRECTION = (0.0, 0.0, 0.0)
+# Position of an axle along the car, seen from the middle.
+AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
+
+
+class CarPart(Part):
+    """Data of the whole car, for the effects that need them.
+
+    `axle` is the axle of the wheel. Lengths are in mm; the height of the centre of gravity is above the drawn
+    ground. The shares are this axle's parts of the car's whole braking and driving force. The spring acts
+    between the damper's ends; its rate is in N/mm.
+    """
+
+    axle: Literal["front", "rear"] | None = None
+    wheelbase: Positive | None = None
+    centre_of_gravity_height: Positive | None = None
+    brake_share: Share | None = None
+    drive_share: Share | None = None
+    spring_rate: Positive | None = None
+    spring_free_length: Positive | None = None
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The given values by name; `axle` is -1 for the front and +1 for the rear."""
+        given = self.model_dump(exclude_none=True)
+        return {name: AXLES.get(value, value) for name, value in given.items()}
+
+
+class LoadPart(Part):
+    """The load on a wheel at its contact point, along the scene's axes: force, N, and moment, N mm."""
+
+    force: Vector
+    moment: Vector = (0.0, 0.0, 0.0)
+
+
+class MechanismPart(Part):
+    """The mechanism, its side of the car, its drawn points in mm and the car's axes.
+
+    The mechanism is a shipped one, named by `type`, or is given by its tables. A `type` that is the path of a
+    mechanism file is replaced by that file's tables, so that a scene does not depend on the file. `closure`
+    says how a drawing that does not close is corrected: `drawn` keeps the points, other closures move some.
+    `points` also contains the chassis points that the scene omits, at the places of their stand-ins.
+    """
+
+    type: Text | None = None
+    title: Text = ""
+    bodies: PlainTable | None = None
+    rods: PlainTable | None = None
+    slides: PlainTable | None = None
+    inputs: PlainTable | None = None
+    roles: PlainTable | None = None
+    stand_ins: PlainTable | None = None
+    closures: PlainTable | None = None
+    parts: PlainTable | None = None
+    closure: Text = "drawn"
+    side: Literal["left", "right"] = "left"
+    up: Vector = (0.0, 0.0, 1.0)
+    right: Annotated[Vector, Field(validate_default=True)] = (0.0, 1.0, 0.0)
+    wheel_radius: Positive | None = None
+    rack_per_turn: NotZero | None = None
+    car: CarPart | None = None
+    loads: dict[str, LoadPart] = Field(default_factory=dict)
+    points: dict[str, Vector]
+
+    short_forms = ("axes",)
+
+    _driven: tuple[str, ...] | None = PrivateAttr(None)
+
+    @classmethod
+    def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
+        """The content with mechanism files in place of their paths, and points by their dotted names.
+
+        Raises:
+            SceneError: a mechanism file cannot be read, or something in it is wrong.
+            TableFault: the tables are wrong, or are given together with a type.
+        """
+        content = in_directions(content)
+        given = [name for name in TABLES if content.get(name) is not None]
+        if content.get("type") is not None and given:
+            problem = f"{given[0]} is given together with type = {shown(content['type'])}"
+            raise TableFault((given[0],), problem, "a type, or the mechanism's tables and then no type")
+        if is_path(content.get("type")):
+            content |= read_tables(Path(content.pop("type")))
+        elif given:
+            content |= whole_tables({name: content[name] for name in given}, Path())
+            MechanismFile.of({name: content[name] for name in given}, "mechanism")
+        loads = content.get("loads")
+        if isinstance(loads, Mapping) and not loads.keys().isdisjoint(LoadPart.model_fields):
+            content["loads"] = {"": loads}
+        if "points" in content:
+            content["points"] = by_dotted_name(content["points"], lambda table: False)
+        return content
+
+    @field_validator("type")
+    @classmethod
+    def _known_type(cls, type: str | None) -> str | None:
+        if type is not None:
+            mechanism_file(type)
+        return type
+
+    @field_validator("up", "right")
+    @classmethod
+    def _to_rounding(cls, direction: Vector, others: ValidationInfo) -> Vector:
+        """The direction, corrected to full digits: models would each complete a printed one differently.
+
+        `agree` refuses larger errors.
+        """
+        given, up = np.array(direction), np.array(others.data.get("up", NO_DIRECTION))
+        with np.errstate(over="ignore", invalid="ignore"):
+            off = max(abs(float(given @ given) - 1.0), abs(float(given @ up)))
+        if not ROUNDED < off <= SLIP:
+            return direction
+        x, y, z = across = given - float(given @ up) * up
+        size = float(np.linalg.norm(across))
+        return float(x) / size, float(y) / size, float(z) / size
+
+    @field_validator("closure")
+    @classmethod
+    def _known_closure(cls, closure: str, others: ValidationInfo) -> str:
+        file = _file_of(others.data)
+        if file is not None and closure not in file.closures:
+            raise no_such(f"closure of a {file.name}", closure, file.closures)
+        return closure
+
+    @field_validator("points")
+    @classmethod
+    def _known_points(cls, points: dict[str, Vector], others: ValidationInfo) -> dict[str, Vector]:
+        file = _file_of(others.data)
+        if file is None or not {"closure", "right"} <= others.data.keys():
+            return points
+        structure = file.structures[others.data["closure"]]
+        points = _of_every_part(points, file, structure, others.data["right"])
+        for name in points:
+            if name not in structure.points:
+                raise no_such(f"point of a {file.name}", name, structure.points)
+        for name in structure.required_points:
+            if name not in points:
+                raise ValueError(f"{name!r} is missing; needed: {', '.join(structure.required_points)}")
+        standing = {
+            name: points[other]
+            for name, other in structure.stand_ins.items()
+            if name in structure.bodies[CHASSIS] and other in points
+        }
+        return standing | points
+
+    def agree(self) -> None:
+        if _file_of(self.__dict__) is None:
+            raise TableFault(("type",), "this key is missing", f"{', '.join(shipped())}, a path, or tables")
+        up, right = np.array(self.up), np.array(self.right)
+        with np.errstate(over="ignore", invalid="ignore"):
+            worst = np.max(np.abs([up @ up - 1.0, right @ right - 1.0, up @ right]))
+        if not worst <= SLIP:
+            raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
+        sides = self._whole.sides
+        self._check_wheel("", self.side)
+        for part, side in sides.items():
+            self._check_wheel(f"{part}.", side)
+        for part in self.loads:
+            if part not in sides and (part or sides):
+                known = f"a table for one of its parts, {', '.join(sides)}" if sides else "force and moment"
+                raise TableFault(("loads", part) if part else ("loads",), "names no wheel", known)
+
+    def _check_wheel(self, prefix: str, side: str) -> None:
+        """Check that a wheel lies outboard, and that its spin axis has a direction.
+
+        Args:
+            prefix: of the roles of the wheel's part. side: the part's side of the car.
+        """
+        roles = self.structure.roles
+        inner, axis = roles.get(f"{prefix}inboard"), roles.get(f"{prefix}wheel_axis")
+        if axis is None:
+            return
+        wheel = axis[1]
+        if isinstance(inner, str):
+            across = np.array(self.points[inner]) - np.array(self.points[wheel])
+            with np.errstate(over="ignore", invalid="ignore"):
+                inboard = float(self.axes.on(side).component(across, "outboard"))
+            if inboard >= 0.0:
+                other = "right" if side == "left" else "left"
+                advice = (
+                    f"its part needs side = {other!r}, or to be mirrored"
+                    if prefix
+                    else f"try side = {other!r}"
+                )
+                raise ValueError(
+                    f"{wheel} lies {inboard:.6g} mm inboard of {inner} for side = {side!r}; allowed: "
+                    f"{wheel} outboard of {inner}, here towards {'-' if side == 'left' else '+'}right "
+                    f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, "
+                    f"0.0]; if it is a wheel of the other side, {advice}"
+                )
+        if self.points[axis[0]] == self.points[wheel]:
+            own = self._whole.roles[f"{prefix}wheel_axis"][0]
+            raise ValueError(
+                f"{axis[0]} and {wheel} are at the same place, so that the wheel's spin axis has "
+                f"no direction; allowed: a place of {own} away from {wheel}"
+            )
+
+    @property
+    def driven(self) -> tuple[str, ...] | None:
+        """The inputs that the scene drives; None for a part outside a scene."""
+        return self._driven
+
+    def driven_by(self, inputs: Collection[str]) -> MechanismPart:
+        """This part in a scene that drives some of its inputs; a new part if another scene drives others."""
+        driven = tuple(name for name in self.structure.inputs if name in inputs)
+        part = self if self.driven in (None, driven) else type(self).model_validate(self.as_given())
+        part._driven = driven
+        return part
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name in messages: its type, or the title of its tables."""
+        return self.file.name
+
+    @cached_property
+    def file(self) -> MechanismFile:
+        found = _file_of(self.__dict__)
+        assert found is not None  # such a part fails its checks
+        return found
+
+    @cached_property
+    def structure(self) -> Structure:
+        """Bodies, rods, slides and inputs of a car with these points, stand-ins applied."""
+        return self._whole.drawn_with(self.points)
+
+    @property
+    def _whole(self) -> Structure:
+        """The structure with every point that a car may give, without stand-ins."""
+        return self.file.structures[self.closure]
+
+    def plain(self, driven: Collection[str]) -> dict[str, Any]:
+        """The mechanism as plain data, for models that compile it themselves.
+
+        Args:
+            driven: names of the driven inputs, chassis inputs included; only these are returned.
+        Returns:
+            Bodies, rods, slides, inputs and roles by name, every point as drawn (mm), the car's axes, its
+            side, the wheel's radius and the rack's travel per turn (mm, or None), the given data of the
+            whole car, and the loads (N, N mm).
+        """
+        structure = self.structure
+        return {
+            **structure.plain(driven),
+            "name": self.name,
+            "points": {name: list(self.points[name]) for name in structure.points},
+            "up": list(self.up),
+            "right": list(self.right),
+            "side": self.side,
+            "wheel_radius": self.wheel_radius,
+            "rack_per_turn": self.rack_per_turn,
+            "car": {} if self.car is None else self.car.model_dump(exclude_none=True),
+            "loads": {part: {n: list(v) for n, v in load} for part, load in self.loads.items()},
+        }
+
+    @cached_property
+    def topology(self) -> Topology:
+        given = {name: getattr(self, name) for name in LENGTHS}
+        lengths = {name: length for name, length in given.items() if length is not None}
+        return self.file.topology(self.points, self.closure, self.driven, self.directions, lengths)
+
+    @property
+    def directions(self) -> dict[str, Vector]:
+        """The scene's directions up and right."""
+        return {"up": self.up, "right": self.right}
+
+    def drawn_value(self, input: str) -> float:
+        """The drawn value of a driven input; rad or mm.
+
+        Zero if the hardpoints make no mechanism that the inputs drive; the scene's checks report that.
+        """
+        try:
+            if self.topology.layout.unknowns == len(self.topology.labels):
+                mechanism = build_mechanism(self.topology, dict(self.points), self.directions)
+                return float(mechanism.drawn_inputs.get(input, 0.0)) + 0.0
+        except MechanismError:
+            pass
+        return 0.0
+
+    @cached_property
+    def freedoms(self) -> int:
+        """Number of freedoms, which is the number of inputs needed.
+
+        Raises:
+            MechanismError: the mechanism has more equations than coordinates, and the drawing does not close.
+        """
+        return self.file.freedoms(self.points, self.closure, self.directions)
+
+    @property
+    def axis_point(self) -> str:
+        """The optional point for the inner end of the spin axis; empty without a wheel axis."""
+        axis = self._whole.roles.get("wheel_axis")
+        return axis[0] if axis else ""
+
+    @property
+    def defaults_taken(self) -> tuple[str, ...]:
+        """Notes on defaults that affect the results."""
+        axis = self.structure.roles.get("wheel_axis")
+        if not axis or axis[0] == self.axis_point:
+            return ()
+        return (f"{self.axis_point} is not given: the wheel's spin axis starts at {axis[0]}",)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Warnings about what looks wrong in the drawing although it can be solved."""
+        points = {name: np.array(place) for name, place in self.points.items()}
+        return drawing_doubts(self.topology, points, self.axes)
+
+    @property
+    def axes(self) -> CarAxes:
+        """The car's directions, wheel radius, car data and loads."""
+        car = {} if self.car is None else self.car.numbers
+        loads = {part: (np.array(load.force), np.array(load.moment)) for part, load in self.loads.items()}
+        return CarAxes(np.array(self.up), np.array(self.right), self.outboard, self.wheel_radius, car, loads)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Names of the effects that this car has. Derivatives of points that have no name but a number are
+        left out, since every car has them."""
+        return tuple(
+            name
+            for name, effect in EFFECTS.items()
+            if not ((effect.reports_states and effect.base) or self.refusal(effect))
+        )
+
+    def refusal(self, effect: Effect) -> str:
+        """Why this car does not have an effect, and what to do; empty if it has."""
+        return effect.refusal(self.topology, self.points, self.axes)
+
+    @property
+    def outboard(self) -> NDArray[np.float64]:
+        """Unit vector away from the car's middle, on the wheel's side."""
+        return np.array(self.right) * (-1.0 if self.side == "left" else 1.0)
+
+
+def _of_every_part(
+    points: dict[str, Vector], file: MechanismFile, structure: Structure, right: Vector
+) -> dict[str, Vector]:
+    """Points by their full names: a name without a prefix is expanded to every part that has the point."""
+    found: dict[str, Vector] = {}
+    for name, place in points.items():
+        of_parts = {
+            f"{prefix}{name}": _mirrored(place, right) if mirrored else place
+            for prefix, mirrored in file.mirrored.items()
+            if name not in structure.points and f"{prefix}{name}" in structure.points
+        }
+        for own, where in (of_parts or {name: place}).items():
+            if own not in points or own == name:
+                found[own] = where
+    return found
+
+
+def _mirrored(place: Vector, right: Vector) -> Vector:
+    """The mirror image at the car's middle plane."""
+    out = 2.0 * sum(p * r for p, r in zip(place, right, strict=True))
+    x, y, z = (p - out * r for p, r in zip(place, right, strict=True))
+    return x, y, z
+
+
+def _file_of(keys: Mapping[str, Any]) -> MechanismFile | None:
+    """The mechanism described by a part's keys; None if they do not describe one."""
+    if "type" not in keys or any(name not in keys for name in TABLES):
+        return None
+    if keys["type"] is not None:
+        return mechanism_file(keys["type"])
+    tables = {name: keys[name] for name in TABLES if keys[name] is not None}
+    return _inline(json.dumps({"title": keys.get("title", ""), **tables})) if tables else None
+
+
+@lru_cache(maxsize=64)
+def _inline(tables: str) -> MechanismFile:
+    return MechanismFile.of(json.loads(tables), "mechanism")
+
+
+def by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -> object:
+    """A nested table with dotted names: TOML reads left.wheel_centre as a table within a table."""
+    if not isinstance(table, Mapping):
+        return table
+    found: dict[Any, Any] = {}
+    for name, value in table.items():
+        inner = by_dotted_name(value, whole) if isinstance(value, Mapping) and not whole(value) else None
+        if isinstance(name, str) and isinstance(inner, Mapping) and inner:
+            found |= {f"{name}.{own}": each for own, each in inner.items()}
+        else:
+            found[name] = value
+    return found
