@@ -17,11 +17,10 @@ from pointcoord.effects.effect import Poses
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
-from pointcoord.solve.assembly import close_drawing, driven_to
+from pointcoord.solve.assembly import close_drawing, driven_to, limiting
 from pointcoord.solve.follower import follow
 from pointcoord.solve.path import Path
 
@@ -160,4 +159,4 @@ def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> 
 def _limits(mechanism: Mechanism, path: Path) -> tuple[str, ...]:
     if float(path.done) == 1.0:
         return ()
-    return mechanism.topology.strongest(smallest_left_singular_vector(path.factors.matrix))
+    return limiting(mechanism, path.y, path.factors.matrix, path.factors.row_scale)[1]

@@ -158,10 +158,13 @@ class CarNumbers(Effect):
     Attributes:
         numbers: the numbers.
         of_axle: whether the formulas take two wheels, the left one and the right one.
+        apart: whether no body may carry two wheels. A roll centre is found from the motion of each wheel
+            alone; a beam axle that rolls moves both.
     """
 
     numbers: tuple[Number, ...] = ()
     of_axle: bool = False
+    apart: bool = False
 
     @classmethod
     def of(
@@ -172,6 +175,7 @@ class CarNumbers(Effect):
         base: str = "",
         nowhere: str = "",
         of_axle: bool = False,
+        apart: bool = False,
         derivative: int = 0,
     ) -> CarNumbers:
         """The effect that gives some numbers.
@@ -197,6 +201,7 @@ class CarNumbers(Effect):
             no_number=" or ".join(filter(None, (travels, nowhere))),
             numbers=numbers,
             of_axle=of_axle,
+            apart=apart,
         )
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
@@ -270,6 +275,10 @@ class CarNumbers(Effect):
             return no_role(self.name, next(r for r in self.lines if not wheels_of(topology, [r])), topology)
         if axes.wheel_radius is None and any(number.needs_radius for number in self.numbers):
             return no_radius(self.name)
+        knuckles = [wheel.role("knuckle") for wheel in wheels_of(topology, ["knuckle"])]
+        if self.apart and len({*knuckles}) < len(knuckles):
+            needs = "each wheel on a body of its own: the travel of one wheel gives no roll centre of a beam"
+            return lacks(self.name, needs, "use a mechanism with two such bodies")
         data = dict.fromkeys(name for number in self.numbers for name in number.data)
         if absent := [name for name in data if name not in axes.car]:
             needs = f"car data that the scene does not give: {', '.join(absent)}"

@@ -184,4 +184,8 @@ def no_radius(effect: str) -> str:
 def not_one_input(effect: str, which: str, driven: Sequence[str]) -> str:
     """The message that an effect needs exactly one driven input of a kind."""
     needs = f"exactly one driven input {which}, but there is {', '.join(driven) or 'none'}"
-    return lacks(effect, needs, "drive one")
+    several = (
+        "drive one for each wheel; if each moves a wheel of its own, make these wheels parts, and begin each "
+        "input's name with its part, such as left.wheel_travel"
+    )
+    return lacks(effect, needs, several if driven else "drive one")

@@ -52,7 +52,7 @@ ConventionName = Literal["iso", "paper", "lotus", "optimumk", "adams"]
 CONVENTIONS: Mapping[ConventionName, Mapping[str, str]] = TABLES["conventions"]
 """Convention -> name -> pointcoord's number of that meaning, with a minus in front if reversed."""
 
-OF_EFFECTS = ("gives", "nowhere", "of_axle", "gradients", "taken", "numbers")
+OF_EFFECTS = ("gives", "nowhere", "of_axle", "apart", "gradients", "taken", "numbers")
 OF_FORMULAS = ("formula", "screw", "file", "axis")
 
 
@@ -64,8 +64,8 @@ def _effects() -> Iterator[CarNumbers]:
         for one, entry in entries.items():
             made[one] = _number(one, {**shared, **entry}, made)
         numbers = (made[one] for one in (*effect.get("taken", ()), *entries))
-        nowhere, of_axle = effect.get("nowhere", ""), effect.get("of_axle", False)
-        yield CarNumbers.of(name, effect["gives"], *numbers, nowhere=nowhere, of_axle=of_axle)
+        own = {key: effect[key] for key in ("nowhere", "of_axle", "apart") if key in effect}
+        yield CarNumbers.of(name, effect["gives"], *numbers, **own)
 
 
 def _number(name: str, entry: Entry, made: Mapping[str, Number]) -> Number:

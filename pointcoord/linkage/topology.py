@@ -169,22 +169,18 @@ class Topology:
             number += kept
         return tuple(found)
 
-    def strongest(self, forces: Array) -> tuple[str, ...]:
-        """Names of the constraints that take part in a balance of forces.
-
-        Links and slides, which can lock, come first; constraints that only hold a body together come last.
+    def largest(self, parts: Array) -> tuple[str, ...]:
+        """Names of the constraints with the largest parts of a sum over the rows, down to a tenth.
 
         Args:
-            forces: one per row, shape (rows,). A constraint counts by the largest of its rows, and takes part
-                from a tenth of the largest of all.
+            parts: one per row, shape (rows,).
         """
-        sizes: dict[str, float] = {}
-        ranks: dict[str, int] = {}
-        for constraint, rows in zip(self.constraints, self.rows_of, strict=True):
-            sizes[constraint.name] = float(np.abs(forces[list(rows)]).max(initial=0.0))
-            ranks[constraint.name] = 0 if constraint.may_lock else 2 if constraint.holds_a_body else 1
-        acting = [name for name, size in sizes.items() if size > 0.1 * max(sizes.values())]
-        return tuple(sorted(acting, key=lambda name: (ranks[name], -sizes[name])))
+        sizes = {
+            constraint.name: abs(float(parts[list(rows)].sum()))
+            for constraint, rows in zip(self.constraints, self.rows_of, strict=True)
+        }
+        ranked = sorted(sizes, key=sizes.__getitem__, reverse=True)
+        return tuple(name for name in ranked if sizes[name] > 0.1 * sizes[ranked[0]])
 
     @cached_property
     def layout(self) -> Layout:

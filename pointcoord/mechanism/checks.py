@@ -26,6 +26,8 @@ def check(structure: Structure) -> None:
     for point, other in structure.stand_ins.items():
         for name in (point, other):
             known_name(A_POINT, name, structure.points, ("stand_ins", point))
+        if point == other:
+            raise TableFault(("stand_ins", point), f"is {other!r}, the omitted point itself", "another point")
 
 
 def _bodies(structure: Structure) -> None:
@@ -136,8 +138,16 @@ def _inputs(structure: Structure) -> None:
 
 def _roles(structure: Structure) -> None:
     """Check names in roles, and that points of some roles belong to the chassis or the wheel's carrier."""
+    for part in structure.sides:
+        if not any(name.startswith(f"{part}.") for name in (*structure.bodies, *structure.roles)):
+            raise TableFault(
+                ("parts", part), "has no mechanism and no role", f'a mechanism, or "{part}.knuckle"'
+            )
     for role, who in structure.roles.items():
         place, (prefix, dot, last) = ("roles", role), role.rpartition(".")
+        if prefix and prefix not in structure.sides:
+            known = ", ".join(structure.sides) or 'none yet: write [parts] with PART = { side = "left" }'
+            raise TableFault(place, f"is a role of {prefix!r}, which is no part", f"a part: {known}")
         if last == "knuckle":
             known_name("body", who, structure.bodies, place)
             if who == CHASSIS:

@@ -44,16 +44,6 @@ def _of_part(mechanism: object) -> MechanismFile:
     return mechanism_file(mechanism)
 
 
-class _Part(BaseModel, defer_build=True):
-    mechanism: Annotated[Any, AfterValidator(_of_part)]
-    side: Literal["left", "right"] = "left"
-    mirrored: StrictBool = False
-
-
-CHANGES = Annotated[dict[Name, dict[Name, Any]], AfterValidator(lambda changes: known_keys(changes, CLOSING))]
-PART = Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields))]
-
-
 @dataclass(frozen=True)
 class MechanismFile:
     """A mechanism's checked tables.
@@ -61,7 +51,7 @@ class MechanismFile:
     Attributes:
         name: the mechanism's name in messages and results.
         structures: closure -> structure; "drawn" is the structure of the unchanged tables.
-        mirrored: prefix of a part -> whether its points are mirrored.
+        mirrored: prefix of a part, or of a part of it -> whether its points are mirrored.
     """
 
     name: str
@@ -167,6 +157,9 @@ class MechanismFile:
                     raise
                 raise fault.under("closures", closure) from None
         mirrored = {f"{part}.": one.mirrored for part, one in parts.items()}
+        for part, one in parts.items():
+            inner = one.mechanism.mirrored.items()
+            mirrored |= {f"{part}.{prefix}": one.mirrored != other for prefix, other in inner}
         return cls(title or name, structures, mirrored)
 
 
@@ -190,14 +183,26 @@ def _closed(tables: Mapping[str, Any], parts: Mapping[str, _Part], closure: str)
     """The tables joined with those of the parts (each in this closure if it has it), and checked."""
     if "bodies" not in tables and not parts:
         raise TableFault(("bodies",), "this table is missing", "bodies with their points")
-    whole = Structure({CHASSIS: ()}, sides={part: one.side for part, one in parts.items()})
+    whole = Structure({CHASSIS: ()})
     for part, one in parts.items():
         of_part = one.mechanism.structures
-        whole = whole.joined(of_part[closure if closure in of_part else AS_DRAWN].prefixed(f"{part}."))
-    own = {table: tables[table] for table in CLOSING if table in tables}
-    whole = whole.joined(read(Structure, own))
+        own = of_part[closure if closure in of_part else AS_DRAWN].prefixed(f"{part}.")
+        whole = whole.joined(own if own.sides else replace(own, sides={part: one.side}))
+    whole = whole.joined(read(Structure, {table: tables[table] for table in CLOSING if table in tables}))
     check(whole)
     return whole
+
+
+class _Part(BaseModel, defer_build=True):
+    """A part: another mechanism, or without one a wheel that this mechanism's own bodies carry."""
+
+    mechanism: Annotated[Any, AfterValidator(_of_part)] = MechanismFile("", {AS_DRAWN: Structure()}, {})
+    side: Literal["left", "right"] = "left"
+    mirrored: StrictBool = False
+
+
+CHANGES = Annotated[dict[Name, dict[Name, Any]], AfterValidator(lambda changes: known_keys(changes, CLOSING))]
+PART = Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields))]
 
 
 @cache
@@ -223,7 +228,7 @@ def read_tables(path: Path, whole: tuple[Path, ...] = ()) -> dict[str, Any]:
     """
     if path.resolve() in whole:
         raise SceneError(str(path), "parts", "is a part of itself", "a part that is another mechanism")
-    allowed = f"a path to a mechanism file, or one of {', '.join(shipped())}"
+    allowed = f"as type in [mechanism], or as mechanism of a part: a path, or one of {', '.join(shipped())}"
     own = parsed(read_file(path, allowed), str(path))
     tables = whole_tables(own, path.parent, (*whole, path.resolve()))
     tables.setdefault("title", path.stem)

@@ -7,7 +7,7 @@ one is violated there, the mechanism is locked; a compromise between its rows is
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -68,7 +68,7 @@ class Freedoms:
         matrix = system.jacobian(_closed(mechanism))
         scale = np.abs(matrix).max(axis=1, keepdims=True)
         matrix = matrix / np.where(scale > 0.0, scale, 1.0)
-        kept = _independent(matrix, _rows_of_inputs(topology))
+        kept = _independent(matrix, (_rows_of_rods(topology), _rows_of_inputs(topology)))
         rank = len(kept)
         null, left = (np.linalg.svd(each)[2][rank:] for each in (matrix, matrix.T))
         free = tuple(topology.layout.describe(i) for i in dominant(null))
@@ -87,9 +87,24 @@ def _rows_of_inputs(topology: Topology) -> list[int]:
     ]
 
 
-def _independent(matrix: Array, last: Iterable[int]) -> list[int]:
-    """Numbers of independent rows; rows of `last` are tried after all others. Each time the row farthest from
-    the span of the rows before is taken.
+def _rows_of_rods(topology: Topology) -> list[int]:
+    """Numbers of the rows of rods.
+
+    One of two rods side by side can be left out in every pose. A row of the body that both hold cannot:
+    where the rods lie across it, the other rows do not determine it.
+    """
+    rods = {frozenset(ends) for ends in topology.rods.values()}
+    return [
+        row
+        for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True)
+        for row in rows
+        if any(frozenset(ends) in rods for ends in constraint.squared_lengths)
+    ]
+
+
+def _independent(matrix: Array, last: Sequence[list[int]]) -> list[int]:
+    """Numbers of independent rows; each group of `last` is tried after all rows before. Each time the row
+    farthest from the span of the rows before is taken.
 
     A row is dependent if its part outside that span is below 64 n EPS of the largest row, the rounding of the
     coordinates that its numbers are made of.
@@ -97,8 +112,8 @@ def _independent(matrix: Array, last: Iterable[int]) -> list[int]:
     count, n = matrix.shape
     rest, kept = matrix.copy(), list[int]()
     least = 64.0 * max(count, n) * EPS * float(np.linalg.norm(matrix, axis=1).max(initial=1.0))
-    inputs = list(last)
-    for group in ([row for row in range(count) if row not in inputs], inputs):
+    first = [row for row in range(count) if not any(row in group for group in last)]
+    for group in (first, *last):
         waiting = list(group)
         while waiting and len(kept) < n:
             lengths = np.linalg.norm(rest[waiting], axis=1)

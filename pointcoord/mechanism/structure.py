@@ -103,7 +103,7 @@ class Structure:
         rods: name -> its two ends. slides, inputs: by name.
         roles: role -> the name or the two names that have it.
         stand_ins: point that a drawing may omit -> the point that then stands in for it.
-        sides: part -> the side of the car, left or right.
+        sides: part with a wheel -> the side of the car, left or right.
     """
 
     bodies: dict[Name, Distinct] = field(default_factory=dict)
@@ -213,7 +213,7 @@ class Structure:
         `stand_ins` keeps its entries, since messages name them.
 
         Args:
-            prefix: put before the names of rods, inputs and roles.
+            prefix: put before the names of rods, inputs, roles and parts.
         """
         p, b, s = points or {}, bodies or {}, slides or {}
         rename = {"point": p, "body": b, "slide": s}
@@ -228,6 +228,7 @@ class Structure:
             inputs={prefix + name: one.renamed(rename) for name, one in self.inputs.items()},
             roles={prefix + role: renamed(who, {**p, **b}) for role, who in self.roles.items()},
             stand_ins={prefix + point: prefix + other for point, other in self.stand_ins.items()},
+            sides={prefix + part: side for part, side in self.sides.items()},
         )
 
     def prefixed(self, prefix: str) -> Structure:
@@ -242,7 +243,7 @@ class Structure:
     def joined(self, other: Structure) -> Structure:
         """The structure with the tables of another added, on one chassis."""
         tables: dict[str, Any] = {
-            table: {**getattr(self, table), **getattr(other, table)} for table in CLOSING
+            table: {**getattr(self, table), **getattr(other, table)} for table in (*CLOSING, "sides")
         }
         both = (*self.bodies.get(CHASSIS, ()), *other.bodies.get(CHASSIS, ()))
         tables["bodies"][CHASSIS] = tuple(dict.fromkeys(both))

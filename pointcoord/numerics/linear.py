@@ -176,6 +176,7 @@ def null_directions(matrix: Array) -> tuple[Array, Array]:
     return right[rank:], left[:, rank:].T
 
 
-def smallest_left_singular_vector(matrix: Array) -> Array:
-    """The unit vector of the combination of rows that nearly vanishes, for a nearly singular (n, n); (n,)."""
-    return np.asarray(np.linalg.svd(matrix)[0][:, -1])
+def smallest_singular_vectors(matrix: Array) -> tuple[Array, Array]:
+    """Unit vectors (n,) of the combinations of rows and of columns of (n, n) that are nearest to zero."""
+    left, _, right = np.linalg.svd(matrix)
+    return left[:, -1], right[-1]

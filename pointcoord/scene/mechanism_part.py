@@ -190,8 +190,16 @@ class MechanismPart(Part):
         with np.errstate(over="ignore", invalid="ignore"):
             worst = np.max(np.abs([up @ up - 1.0, right @ right - 1.0, up @ right]))
         if not worst <= SLIP:
-            raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
+            raise ValueError(
+                f"up {self.up} and right {self.right} are not unit vectors at right angles: a product "
+                f"is {worst:.3g} off; allowed: at most {SLIP:g}, as for up = [0.0, 0.0, 1.0] and right = "
+                "[0.0, 1.0, 0.0]"
+            )
         sides = self._whole.sides
+        if sides and self.side != "left":  # the default, which a written scene has too
+            parts = ", ".join(f"{part} is {side}" for part, side in sides.items())
+            problem = f"is {self.side!r}, but each part has its own side: {parts}"
+            raise TableFault(("side",), problem, "no side")
         self._check_wheel("", self.side)
         for part, side in sides.items():
             self._check_wheel(f"{part}.", side)
@@ -225,8 +233,8 @@ class MechanismPart(Part):
                 raise ValueError(
                     f"{wheel} lies {inboard:.6g} mm inboard of {inner} for side = {side!r}; allowed: "
                     f"{wheel} outboard of {inner}, here towards {'-' if side == 'left' else '+'}right "
-                    f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, "
-                    f"0.0]; if it is a wheel of the other side, {advice}"
+                    f"{self.right}; if this points to the left in your axes, say so with right = "
+                    f"{[0.0 - number for number in self.right]}; if it is a wheel of the other side, {advice}"
                 )
         if self.points[axis[0]] == self.points[wheel]:
             own = self._whole.roles[f"{prefix}wheel_axis"][0]
@@ -375,17 +383,23 @@ class MechanismPart(Part):
 def _of_every_part(
     points: dict[str, Vector], file: MechanismFile, structure: Structure, right: Vector
 ) -> dict[str, Vector]:
-    """Points by their full names: a name without a prefix is expanded to every part that has the point."""
+    """Points by their full names: a name is expanded to every part, or part of its part, that has the point.
+
+    The place given with the longest prefix holds.
+    """
     found: dict[str, Vector] = {}
-    for name, place in points.items():
+    for name, place in sorted(points.items(), key=lambda item: item[0].count(".")):
+        head, dot, own = name.rpartition(".")
         of_parts = {
-            f"{prefix}{name}": _mirrored(place, right) if mirrored else place
+            f"{prefix}{own}": _mirrored(place, right)
+            if mirrored != file.mirrored.get(head + dot, False)
+            else place
             for prefix, mirrored in file.mirrored.items()
-            if name not in structure.points and f"{prefix}{name}" in structure.points
+            if name not in structure.points
+            and prefix.startswith(head + dot)
+            and prefix + own in structure.points
         }
-        for own, where in (of_parts or {name: place}).items():
-            if own not in points or own == name:
-                found[own] = where
+        found |= of_parts or {name: place}
     return found
 
 

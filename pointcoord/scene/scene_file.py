@@ -216,7 +216,10 @@ class Scene(Part):
         more = freedoms - len(given)
         if more < 0:
             raise TableFault(("inputs",), words, f"as many inputs as freedoms: leave out {-more}")
-        others = ", ".join(name for name in names if name not in given) or "new ones in [mechanism.inputs]"
+        others = (
+            ", ".join(name for name in names if name not in given)
+            or "your own, to be written in [mechanism.inputs]"
+        )
         try:
             found = Freedoms.of(topology, part.points, part.directions)
             free, lost = ", ".join(found.free), ", ".join(found.redundant)

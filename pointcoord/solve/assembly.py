@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pointcoord.errors import AssemblyError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
+from pointcoord.numerics.linear import Factors, factorise, smallest_singular_vectors
 from pointcoord.solve.follower import Law, follow
 from pointcoord.solve.path import Path
 
@@ -219,9 +219,6 @@ def blocked(
 ) -> AssemblyError:
     """The error of the first unfinished path of a batch: where it stops, and what stops it.
 
-    Where a path stops, C_u loses rank. Its left null vector is a set of forces in the links that are in
-    balance with each other: the links of its rows limit the motion.
-
     Args:
         problem: what could not be done, in words.
         y: poses at which the paths stop, shape (..., size).
@@ -238,18 +235,38 @@ def blocked(
         values = mechanism.input_values(np.broadcast_to(coordinates, known.shape))
         return {name: float(value[member]) for name, value in values.items()}
 
-    balance = smallest_left_singular_vector(factors.matrix[member])
+    forces, limits = limiting(mechanism, y[member], factors.matrix[member], factors.row_scale[member])
     left = np.broadcast_to(goal - known if change is None else change, known.shape)[member]
-    pushes = _pushes(mechanism, y[member], balance * factors.row_scale[member], left)
+    pushes = _pushes(mechanism, y[member], forces, left)
     return AssemblyError(
         problem,
         reached=inputs_at(known),
         wanted=inputs_at(goal),
         condition=float(factors.condition[member]),
         reduce=max(pushes, key=pushes.__getitem__) if any(pushes.values()) else "",
-        limits=mechanism.topology.strongest(balance),
+        limits=limits,
         instant=instant,
     )
+
+
+def limiting(
+    mechanism: Mechanism, y: Array, matrix: Array, row_scale: Array
+) -> tuple[Array, tuple[str, ...]]:
+    r"""The balanced forces at the end of a path, and the constraints that stop the motion there.
+
+    Where a path stops, C_u loses rank: forces l are in balance, l C_u = 0, and a motion v changes no row to
+    first order, C_u v = 0. To second order the inputs must do the work l . B(v, v). A constraint counts by
+    its part of this sum, which is zero if v only displaces its points, as in a link that transmits the force.
+
+    Args:
+        y: one pose. matrix, row_scale: C_u there, its rows scaled, and their scales.
+    Returns:
+        l, one for each unscaled row, and the names of the constraints.
+    """
+    balance, motion = smallest_singular_vectors(matrix)
+    forces, along = balance * row_scale, np.zeros_like(y)
+    along[: mechanism.map.unknowns] = motion
+    return forces, mechanism.topology.largest(forces * mechanism.map.polar(along, along))
 
 
 def _pushes(mechanism: Mechanism, y: Array, forces: Array, left: Array) -> dict[str, float]:

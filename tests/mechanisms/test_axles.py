@@ -10,7 +10,7 @@ import pytest
 from mpmath import acot, asin, atan, cos, cot, mpf, pi, sin, workdps
 from three_mechanics import DIGITS, assert_exact, assert_none, by_each, scene_of, solved_by
 
-from pointcoord import Scene
+from pointcoord import Scene, SceneError
 
 RADIUS, WHEELBASE, HALF_TRACK = 300.0, 2500.0, 760.0
 SIDES = {"left": -1, "right": 1}
@@ -212,3 +212,107 @@ def test_each_wheel_of_an_axle_has_the_numbers_of_the_wheel_alone(who: str) -> N
                 there = f"{side}.{name}"
                 off = np.abs(both.numbers[quantity][there] - number)
                 assert (off <= claims[0][name] + claims[1][there]).all(), (quantity, name)
+
+
+def beam(effects: list[str], **changes: Any) -> dict[str, Any]:
+    """A beam that carries two wheels and turns about a hinge along the car at half height."""
+    mechanism = {
+        "parts": {side: {"side": side, "mirrored": side == "left"} for side in SIDES},
+        "bodies": {
+            "chassis": ["a", "b"],
+            "beam": ["a", "b", *(f"{side}.{end}" for side in SIDES for end in ("inner", "centre"))],
+        },
+        "roles": {
+            **{f"{side}.knuckle": "beam" for side in SIDES},
+            **{f"{side}.wheel_axis": [f"{side}.inner", f"{side}.centre"] for side in SIDES},
+        },
+        "inputs": {"turn": {"angle": "beam", "from": "drawing"}},
+        "points": {**lengthwise(0.0, 300.0), **WHEEL},
+        "wheel_radius": RADIUS,
+    }
+    inputs = {"turn": {"polynomial": [0.0625, 0.125]}}
+    time = {"start": 0.0, "stop": 1.0, "samples": 3}
+    return {"effects": effects, "mechanism": mechanism | changes, "inputs": inputs, "time": time}
+
+
+@by_each
+def test_both_wheels_of_a_beam_have_numbers(who: str) -> None:
+    solution = solved_by(who, Scene.from_mapping(beam(["camber", "wheel_travel"])))
+    exact: dict[str, list[mpf]] = {}
+    with workdps(DIGITS):
+        for time in TIMES:
+            turn = at([0.0625, 0.125], time)  # about rearward: y to z, so that the right wheel rises
+            for side, sign in SIDES.items():
+                exact.setdefault(f"{side}.camber", []).append(-sign * turn)
+                exact.setdefault(f"{side}.travel", []).append(sign * mpf(HALF_TRACK) * sin(turn))
+                # The contact point lies square to the beam.
+                out = mpf(HALF_TRACK) * (cos(turn) - 1) + sign * mpf(RADIUS) * sin(turn)
+                exact.setdefault(f"{side}.half_track_change", []).append(out)
+    assert_exact(solution, exact)
+
+
+@pytest.mark.parametrize("effect", ["roll_centre", "axle"])
+def test_the_travel_of_one_wheel_gives_a_beam_no_roll_centre(effect: str) -> None:
+    with pytest.raises(SceneError, match=f"effects: '{effect}' needs each wheel on a body of its own"):
+        Scene.from_mapping(beam([effect]))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"parts": {"right": {"side": "right"}}},
+            "roles.left.knuckle: is a role of 'left', which is no part",
+        ),
+        ({"parts": {"left": {}, "right": {}, "middle": {}}}, "parts.middle: has no mechanism and no role"),
+        ({"stand_ins": {"a": "a"}}, "stand_ins.a: is 'a', the omitted point itself; allowed: another point"),
+        ({"side": "right"}, "side: is 'right', but each part has its own side: left is left, right is right"),
+    ],
+)
+def test_a_wheel_is_a_part_with_roles(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(SceneError, match=words):
+        Scene.from_mapping(beam([], **changes))
+
+
+@by_each
+def test_a_car_of_two_axles_has_four_wheels(who: str) -> None:
+    """Points of a part of a part, too: the rear axle's own, and the mirror images of both."""
+    one = {"parts": {side: {"mechanism": CORNER, "side": side, "mirrored": side == "left"} for side in SIDES}}
+    turns = {"left": 0.0625, "right": 0.03125}
+    laws = {f"{end}.{side}.turn": turn for end in ("front", "rear") for side, turn in turns.items()}
+    points = {**UPRIGHT, **WHEEL, **{f"rear.{n}": (2500.0, *p[1:]) for n, p in {**UPRIGHT, **WHEEL}.items()}}
+    parts = {"front": {"mechanism": one}, "rear": {"mechanism": one}}
+    mechanism = {"parts": parts, "points": points, "wheel_radius": RADIUS}
+    scene = scene_of(mechanism, ["steer_angle"], **laws)
+    assert scene.mechanism.points["rear.left.centre"] == (2500.0, -HALF_TRACK, 300.0)
+    assert scene.mechanism.points["front.left.centre"] == (0.0, -HALF_TRACK, 300.0)
+    exact = {f"{name.rpartition('.')[0]}.steer_angle": [mpf(turn)] * 3 for name, turn in laws.items()}
+    assert_exact(solved_by(who, scene), exact)
+
+
+def test_two_travels_are_said_to_be_of_two_wheels() -> None:
+    inputs = {side: {"height": f"{side}.centre"} for side in SIDES}
+    # A beam on a ball joint, held from swivelling by a rod.
+    joints = {
+        "bodies": {
+            "chassis": ["a", "front"],
+            "beam": ["a", "end", *(f"{side}.{end}" for side in SIDES for end in ("inner", "centre"))],
+        },
+        "rods": {"drag": ["front", "end"]},
+        "points": {
+            "a": (0.0, 0.0, 300.0),
+            "end": (0.0, 500.0, 400.0),
+            "front": (-800.0, 500.0, 400.0),
+            **WHEEL,
+        },
+    }
+    content = beam(["toe_by_travel"], **joints, inputs=inputs)
+    content["inputs"] = {side: {"constant": 0.0} for side in SIDES}
+    with pytest.raises(
+        SceneError, match=r"there is left, right; drive one for each wheel; .* left\.wheel_travel"
+    ):
+        Scene.from_mapping(content)
+    for name in SIDES:
+        for table in (inputs, content["inputs"]):
+            table[f"{name}.wheel_travel"] = table.pop(name)
+    assert Scene.from_mapping(content).effects == ("toe_by_travel",)

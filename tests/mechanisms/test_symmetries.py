@@ -110,7 +110,7 @@ class Change:
         right = matrix @ part["right"] * (-1.0 if self.mirrored else 1.0)
         axes = {"up": (matrix @ part["up"]).tolist(), "right": right.tolist()}
         mechanism = {**part, "points": changed, **axes}
-        if self.mirrored:
+        if self.mirrored and "left.wheel_centre" not in changed:  # parts have their own sides
             mechanism["side"] = SIDES[part["side"]]
         if "wheel_radius" in part:
             mechanism["wheel_radius"] = scale * part["wheel_radius"]

@@ -32,7 +32,45 @@ def test_an_input_reaches_as_far_as_a_closed_form_says(name: str, input: str) ->
     assert [np.rad2deg(end.value) for end in ends] == pytest.approx([low, high], abs=within)
     for end in ends:
         assert bool(end.limits) == np.isfinite(end.value)
-        assert name != "bounce" or "rise of lower_ball_joint over lower_arm_front" in end.limits
+        arm = {f"link lower_ball_joint - lower_arm_{end}" for end in ("front", "rear")}
+        assert name != "bounce" or {*end.limits} == arm
+
+
+def test_the_rod_that_comes_into_line_stops_a_wide_link() -> None:
+    # A centre link of 600 mm hangs on a stub of 25 mm. The rod pulls the knuckle's arm into line with itself.
+    # Forces in the stub are far larger than in the rod, but only rod and arm cannot go on.
+    bodies = {
+        "chassis": ["pitman_low", "pitman_high", "idler_low", "idler_high", "king_low", "king_high"],
+        "pitman": ["pitman_low", "pitman_high", "pitman_ball"],
+        "idler": ["idler_low", "idler_high", "idler_ball", "idler_tip"],
+        "centre_link": ["pitman_ball", "idler_ball", "idler_tip", "tie_inner"],
+        "knuckle": ["king_low", "king_high", "tie_outer"],
+    }
+    points = {
+        "pitman_low": [0, -300, 300],
+        "pitman_high": [0, -300, 400],
+        "pitman_ball": [150, -300, 300],
+        "idler_low": [0, 300, 300],
+        "idler_high": [0, 300, 400],
+        "idler_ball": [150, 300, 300],
+        "idler_tip": [150, 300, 325],
+        "tie_inner": [150, 250, 300],
+        "king_low": [0, 600, 300],
+        "king_high": [0, 600, 400],
+        "tie_outer": [150, 550, 300],
+    }
+    mechanism = {
+        "bodies": bodies,
+        "rods": {"tie": ["tie_inner", "tie_outer"]},
+        "inputs": {"pitman": {"angle": "pitman", "from": "drawing"}},
+        "points": points,
+    }
+    scene = Scene.from_mapping({"mechanism": mechanism, "inputs": {"pitman": {"constant": 0.0}}})
+    low = standing(scene).reach["pitman"][0]
+    inner = np.array([150.0 * np.cos(low.value), 250.0 + 150.0 * np.sin(low.value)])
+    # In plan: the rod of 300 mm and the arm of the knuckle in one line.
+    assert np.hypot(*(inner - [0.0, 600.0])) == pytest.approx(300.0 + np.hypot(150.0, 50.0), abs=1e-9)
+    assert {*low.limits} == {"link tie_inner - tie_outer", "link tie_outer - king_low"}
 
 
 def drawn_inputs(scene: Scene) -> dict[str, float]:

@@ -107,8 +107,6 @@ class Constraint:
             drawn off the line.
         segments: pairs of points to be joined in a picture of the linkage.
         pivots: points that it reads only as centres of rotation of the chassis, without joining them.
-        may_lock: whether a motion can end at this constraint.
-        holds_a_body: whether it only holds a body together.
         slide: the slide whose line it puts a point on. In the drawing, its rows are the components of the
             point's distance from the line, the slide's closure error.
     """
@@ -123,8 +121,6 @@ class Constraint:
     aligned: tuple[()] | tuple[str, str, str] = ()
     segments: tuple[Edge, ...] = ()
     pivots: Names = ()
-    may_lock: bool = False
-    holds_a_body: bool = False
     slide: str = ""
 
     @property

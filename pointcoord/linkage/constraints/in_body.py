@@ -64,7 +64,7 @@ def normal_of(body: str, triangle: Triangle) -> Constraint:
     (base, first, second), name = triangle, normal_name(body)
     terms = Term(1.0, (name, ""), ONE), Term(-1.0, (first, base), (second, base), cross=True)
     read = partial(_normal, name, triangle)
-    return Constraint(name, (Equation(name, terms),), read, vectors=(name,), holds_a_body=True)
+    return Constraint(name, (Equation(name, terms),), read, vectors=(name,))
 
 
 def axis_in_body(axis: Axis, triangle: Triangle) -> Constraint:
@@ -72,7 +72,7 @@ def axis_in_body(axis: Axis, triangle: Triangle) -> Constraint:
     name = axis.name
     equation, constants = held_in_body(name, (name, ""), axis.body, triangle)
     read = partial(_axis, axis, triangle, constants)
-    return Constraint(name, (equation,), read, vectors=(name,), constants=constants, holds_a_body=True)
+    return Constraint(name, (equation,), read, vectors=(name,), constants=constants)
 
 
 def point_in_body(point: str, body: str, triangle: Triangle) -> Constraint:
@@ -80,7 +80,7 @@ def point_in_body(point: str, body: str, triangle: Triangle) -> Constraint:
     name, edge = f"{point} in {body}", (point, triangle[0])
     equation, constants = held_in_body(name, edge, body, triangle)
     read, segment = partial(_point, point, triangle, constants), (triangle[0], point)
-    return Constraint(name, (equation,), read, constants=constants, segments=(segment,), holds_a_body=True)
+    return Constraint(name, (equation,), read, constants=constants, segments=(segment,))
 
 
 def held_in_body(label: str, vector: Edge, body: str, triangle: Triangle) -> tuple[Equation, Names]:

@@ -91,8 +91,6 @@ def on_line(point: str, line: Line, place: str, at: Literal["free", "driven", "h
         constants=(place,) if at == "held" else (),
         aligned=(line.origin, line.head, point) if line.between else (),
         segments=((line.origin, point),) if line.between or line.axis else (),
-        # A motion ends where what the point holds lies normal to the line and nothing drives the point.
-        may_lock=at == "free" and not line.between,
         slide=line.slide,
     )
 

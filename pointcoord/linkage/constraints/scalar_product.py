@@ -85,7 +85,6 @@ def _kept(name: str, one: Edge, other: Edge, drawn: str, driven: str, read: Read
         constants=(drawn,) if drawn else (),
         squared_lengths=lengths,
         segments=same,
-        may_lock=bool(lengths),  # where it lies in line with another
     )
 
 

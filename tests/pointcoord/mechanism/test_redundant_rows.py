@@ -12,7 +12,9 @@ from pointcoord import (
     Scene,
     SceneError,
     kinematic_map,
+    simulate,
     solve_poses,
+    standing,
     sweep,
 )
 from pointcoord.mechanism.file import MECHANISMS
@@ -45,6 +47,40 @@ def test_hinges_that_are_not_parallel_lock_a_four_bar(tilt: float) -> None:
     hinges = "a - a_far, d - d_far, b - b_far, c - c_far"
     with pytest.raises(SceneError, match=f"is locked.*the hinges {hinges} are meant to be parallel"):
         four_bar(tilt)
+
+
+def test_one_of_two_rods_side_by_side_is_left_out() -> None:
+    # A motorcycle's swing arm pulls a rocker by two dogbones. At 385.6 mm below the drawing they lie level.
+    # The rocker stops the arm only where it comes into line with them.
+    bodies = {
+        "chassis": ["pivot_left", "pivot_right", "rocker_left", "rocker_right"],
+        "swing_arm": ["pivot_left", "pivot_right", "arm_left", "arm_right", "wheel"],
+        "rocker": ["rocker_left", "rocker_right", "bone_left", "bone_right"],
+    }
+    sides = {"pivot": (0, 120, 450), "arm": (190, 40, 400), "rocker": (60, 30, 300), "bone": (150, 40, 270)}
+    points = {
+        f"{name}_{side}": [x, sign * y, z]
+        for name, (x, y, z) in sides.items()
+        for side, sign in (("left", -1), ("right", 1))
+    }
+    mechanism = {
+        "bodies": bodies,
+        "rods": {side: [f"arm_{side}", f"bone_{side}"] for side in ("left", "right")},
+        "inputs": {"wheel_travel": {"height": "wheel"}},
+        "points": points | {"wheel": [590, 0, 370]},
+    }
+    scene = Scene.from_mapping({"mechanism": mechanism, "inputs": {"wheel_travel": {"sweep": [0.0, -402.0]}}})
+    last = simulate(scene).position
+    assert last["wheel"][-1, 2] == pytest.approx(370.0 - 402.0, abs=1e-9)
+    # In line, the dogbone less the rocker's arm spans from the swing arm's end to the rocker's hinge.
+    low = standing(scene).reach["wheel_travel"][0].value
+    arm, wheel = np.subtract([190, 400], [0, 450]), np.subtract([590, 370], [0, 450])
+    drawn = np.arctan2(wheel[1], wheel[0])
+    turn = np.arcsin((wheel[1] + low) / np.hypot(*wheel)) - drawn
+    cosine, sine = np.cos(turn), np.sin(turn)
+    end = [cosine * arm[0] - sine * arm[1], 450 + sine * arm[0] + cosine * arm[1]]
+    span = np.hypot(*np.subtract(end, [60, 300]))
+    assert span == pytest.approx(np.hypot(40, 130) - np.hypot(90, 30), abs=1e-6)
 
 
 def bent_bricard() -> Scene:

@@ -151,7 +151,7 @@ def test_numbers_that_are_none_are_written_so_that_they_can_be_read() -> None:
             "double-wishbone",
             "",
             [
-                "to   127.45 mm, stopped by link tie_rod_inner - tie_rod_outer, link ",
+                "to   127.45 mm, stopped by link tie_rod_outer - upper_ball_joint, link ",
                 "kingpin is 6.997 deg",
                 "from wheel_axis_inner to wheel_centre",
                 "closes",
