@@ -75,13 +75,21 @@ class SceneError(PointcoordError):
         key: the key at fault, dotted from the top of the file.
         problem: what is wrong, with the value.
         allowed: what would be right.
+        reason: the kind of fault, in words without numbers.
     """
 
-    def __init__(self, source: str, key: str, problem: str, allowed: str = "") -> None:
+    def __init__(
+        self, source: str, key: str, problem: str, allowed: str = "", reason: str = "the drawing is refused"
+    ) -> None:
         self.source = source
         self.key = key
         self.problem = problem
+        self.reason = reason
         super().__init__(f"{source}: {key}: {problem}" if key else f"{source}: {problem}", allowed)
+
+    def of(self, source: str) -> SceneError:
+        """This error with another name of the scene."""
+        return SceneError(source, self.key, self.problem, self.allowed, self.reason)
 
 
 class UnknownName(PointcoordError, LookupError):

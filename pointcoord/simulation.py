@@ -26,7 +26,7 @@ from pointcoord.method import AUTO, MAP, SERIES, Method, method_of
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.by_series import AtInstants, ByChain
-from pointcoord.results.closing import ALLOWED, Closing, closing
+from pointcoord.results.closing import ALLOWED, ANOTHER_CAR, Closing, closing
 from pointcoord.results.motion import Motion, read
 from pointcoord.results.readout import Readout
 from pointcoord.results.samples import Samples
@@ -349,6 +349,7 @@ def require_the_drawn_car(scene: Scene, moved: Closing) -> None:
             f"{moved.words}: that is another car",
             f"at most {ALLOWED:.0%} of the car's size, {ALLOWED * moved.size:.3g} mm; draw the points that "
             "miss where they belong",
+            ANOTHER_CAR,
         )
 
 

@@ -10,16 +10,12 @@ from importlib import import_module
 from typing import NoReturn
 
 from pointcoord.wording import meant, shown
-from validate.commands.pages import summary
+from validate.commands.pages import filled, summary
 from validate.errors import NotFinished, UsageError
 from validate.exit_status import HELP, ExitStatus, of_interruption
+from validate.extras import needing
 from validate.output.console import Console
 from validate.output.document import program_version, schema_text
-
-DESCRIPTION = """\
-Cross-validation of suspension kinematics: one mechanism is solved by two formulations that
-share no code, and all their results are compared. A scene is a mechanism and its motion:
-`pointcoord scenes` lists the built-in scenes, and a file of your own has the same format."""
 
 COMMANDS: Mapping[str, str] = {
     "validate": "comparison",
@@ -102,7 +98,8 @@ def _run(words: list[str], console: Console) -> ExitStatus:
         console.say(str(answer).rstrip())
         return ExitStatus.AGREE
     options.command = ("pointcoord", *words)
-    return ExitStatus(options.run(options, console))
+    with needing(words[0]):
+        return ExitStatus(options.run(options, console))
 
 
 class Answer(Exception):
@@ -121,19 +118,8 @@ class Parser(argparse.ArgumentParser):
 
 def _overview() -> str:
     width = max(map(len, COMMANDS))
-    return "\n".join(
-        (
-            "usage: pointcoord COMMAND ...\n",
-            DESCRIPTION,
-            "\ncommands, each with --help:",
-            *(f"  {name.ljust(width)}  {summary(name)}" for name in COMMANDS),
-            "\noptions:",
-            "  -h, --help  print this",
-            "  --version   print the version",
-            "  --schema    print the JSON Schema of what --json writes\n",
-            HELP,
-        )
-    )
+    listed = "\n".join(f"  {name.ljust(width)}  {summary(name)}" for name in COMMANDS)
+    return filled("overview", {"commands": listed, "exit_status": HELP})
 
 
 ANSWERS: Mapping[str, Callable[[], str]] = {

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import TypeVar
 
 from pointcoord.errors import visible
+
+Key = TypeVar("Key")
+One = TypeVar("One")
 
 
 def shown(text: str) -> str:
@@ -18,11 +22,11 @@ def some_of(words: Sequence[str], most: int) -> str:
     return ", ".join(words[:most]) + more
 
 
-def gathered(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
-    """Group pairs by their first word; keys and values keep their order."""
-    found: dict[str, list[str]] = {}
-    for key, word in pairs:
-        found.setdefault(key, []).append(word)
+def gathered(pairs: Iterable[tuple[Key, One]]) -> dict[Key, list[One]]:
+    """Group the second parts of pairs by the first; both keep their order."""
+    found: dict[Key, list[One]] = {}
+    for key, one in pairs:
+        found.setdefault(key, []).append(one)
     return found
 
 

@@ -52,14 +52,12 @@ from validate.cars.random_cars import (
     sliding,
     with_every_point,
 )
-from validate.extras import not_there
+from validate.extras import needing
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import FormulationError
 
-try:
+with needing("validate.strategies"):
     from hypothesis import strategies as st
-except ModuleNotFoundError as error:
-    raise not_there("validate.strategies", error, "strategies") from None
 
 __all__ = ["inputs", "mechanisms", "near_singular", "scenes"]
 

@@ -25,6 +25,7 @@ NOTICED = 0.1  # mm: hardpoints are drawn to a tenth of a millimetre, so a large
 NOTICED_SHARE = 2e-4  # of the size: that tenth for a size of half a metre, for cars in other units than mm
 ROUNDING = 1e-11  # of the size: a hundred roundings, enlarged 500 times where the pose is badly conditioned
 ALLOWED = 0.01  # of the car's size: beyond this the closed drawing is another car
+ANOTHER_CAR = "closing the drawing makes another car of it"
 
 
 @dataclass(frozen=True)

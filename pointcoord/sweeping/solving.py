@@ -281,8 +281,7 @@ class _Block:
             try:
                 require_the_drawn_car(self.course.scene, closing(mechanism.taken(place), closed[place]))
             except SceneError as error:
-                refused = SceneError(f"design {members[place]}", error.key, error.problem, error.allowed)
-                self.fail([members[place]], refused)
+                self.fail([members[place]], error.of(f"design {members[place]}"))
         with np.errstate(invalid="ignore"):
             noticed = (moved > np.minimum(NOTICED, NOTICED_SHARE * size)) & self.alive(members)
 
@@ -378,19 +377,12 @@ def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
     return found
 
 
-REASONS: tuple[tuple[type[PointcoordError], str], ...] = (
-    (SceneError, "the drawing is refused"),
-    (MechanismError, "the mechanism locks"),
-)
-
-
 def reason_of(error: PointcoordError) -> str:
     """The reason for a failure, in words without numbers."""
     if isinstance(error, AssemblyError | NotFollowed):
         return error.problem
-    if isinstance(error, SceneError) and "that is another car" in error.problem:
-        return "closing the drawing makes another car of it"
-    for kind, words in REASONS:
-        if isinstance(error, kind):
-            return words
+    if isinstance(error, SceneError):
+        return error.reason
+    if isinstance(error, MechanismError):
+        return "the mechanism locks"
     return f"an input is refused ({type(error).__name__})"

@@ -23,16 +23,14 @@ from numpy.typing import NDArray
 
 from validate.assemblies.homotopy import solve_quadratic
 from validate.assemblies.legs import forms
-from validate.extras import not_there
+from validate.extras import needing
 
-try:
+with needing("validate.assemblies"):
     from flint import acb, acb_mat, arb, ctx
 
     from validate.reference import krawczyk
     from validate.reference.errors import NotDecidedError
     from validate.reference.vectors import Scalar
-except ImportError as error:
-    raise not_there("validate.assemblies", error) from None
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -31,7 +31,6 @@ class Record:
         baseline: the baseline that the scenes are compared with, if any.
         examined: the results of each scene, in order.
         since: the comparison of each scene with the baseline.
-        scenes: the scenes that could be read, by name.
         files: files of results, by the name of the scene that each is compared with.
         paper: the paper's printed tables compared with computed numbers.
         kept: the content of a baseline of this run, by scene name; None if no baseline is asked for.
@@ -43,7 +42,6 @@ class Record:
     baseline: Baseline | None = None
     examined: list[Examined] = field(default_factory=list)
     since: list[Since] = field(default_factory=list)
-    scenes: dict[str, Scene] = field(default_factory=dict)
     files: dict[str, DataOutcome] = field(default_factory=dict)
     paper: Sequence[PaperRow] = ()
     kept: dict[str, Kept] | None = None
@@ -56,8 +54,6 @@ class Record:
         printed = None if examined.printed is None else _emptied(examined.printed)
         outcomes = tuple(map(_emptied, examined.outcomes))
         self.examined.append(replace(examined, outcomes=outcomes, printed=printed))
-        if scene is not None:
-            self.scenes[examined.name] = scene
         if since is not None:
             self.since.append(since)
 

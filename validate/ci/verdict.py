@@ -8,12 +8,11 @@ from typing import get_args
 
 from validate.ci.baseline import WHY, Move, MoveVerdict, Since
 from validate.ci.record import Record
-from validate.comparison.compare import Verdict
+from validate.comparison.compare import Outcome, Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.output.report import (
     about,
-    agreeing,
     counted_as,
     explained_lines,
     held_to,
@@ -69,7 +68,7 @@ def sentence(record: Record) -> str:
 def _of_files(record: Record) -> Iterator[str]:
     for name, file in record.files.items():
         rows, source = file.outcome.rows, file.outcome.solutions[0].formulation
-        by_verdict = gathered((row.verdict, about(row.quantity, row.name)) for row in rows)
+        by_verdict = gathered((str(row.verdict), about(row.quantity, row.name)) for row in rows)
         agree = len(by_verdict.pop("agrees", ()))
         yield f"{source} and the car of {name}: {agree} of {len(rows)} agree"
         yield from _by_verdict(by_verdict)
@@ -82,17 +81,18 @@ def _by_verdict(names: Mapping[str, Sequence[str]]) -> Iterator[str]:
 def _of_scenes(record: Record) -> Iterator[str]:
     verdicts = ((*standing(one), one.name) for one in record.examined)
     by_verdict = gathered((f"{verdict} ({why})" if why else verdict, name) for verdict, why, name in verdicts)
-    yield agreeing(len(by_verdict.pop("agrees", ())), len(record.names))
+    agree, count = len(by_verdict.pop("agrees", ())), len(record.names)
+    yield f"{agree} of {count} {'scene agrees' if count == 1 else 'scenes agree'}"
     yield from _by_verdict(by_verdict)
     if record.not_run:
         yield f"not run ({record.stopped}): {some_of(record.not_run, NAMED)}"
     # How many of the requested numbers were compared, for a solver that may give only some of them.
     stated = [outcome.counts for outcome in record.outcomes if outcome.stated]
     counts = {key: sum(one[key] for one in stated) for key in (*get_args(Verdict), "given back")}
-    if count := sum(counts[verdict] for verdict in get_args(Verdict)):
+    if every := sum(counts[verdict] for verdict in get_args(Verdict)):
         rest = "".join(f", {counts[v]} {v}" for v in ("not given", NOT_TESTED) if counts[v])
         back = f", {counts['given back']} of them input data of the solver" if counts["given back"] else ""
-        yield f"{counts['agrees'] + counts['disagrees']} of {count} numbers compared{back}{rest}"
+        yield f"{counts['agrees'] + counts['disagrees']} of {every} numbers compared{back}{rest}"
 
 
 def _since(record: Record) -> Iterator[str]:
@@ -152,7 +152,7 @@ def scene_notes(examined: Examined) -> Iterator[str]:
     for outcome in examined.outcomes:
         if not outcome.passed:
             yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
-            yield from explained_lines(outcome)
+            yield from (f"  {line}" for line in explained_lines(outcome))
 
 
 def next_step(record: Record, verbose: bool = False) -> str:
@@ -183,7 +183,7 @@ def disagreements(examined: Examined) -> Iterator[str]:
     for outcome in examined.outcomes:
         for row in sorted(outcome.disagreements, key=lambda row: -row.share):
             yield f"{pair_of(outcome)}: {told_row(row)}"
-        yield from (line.strip() for line in explained_lines(outcome))
+        yield from explained_lines(outcome)
 
 
 def complaints(examined: Examined) -> Iterator[str]:
@@ -196,15 +196,19 @@ def complaints(examined: Examined) -> Iterator[str]:
 def undecided(examined: Examined) -> Iterator[str]:
     """The numbers without a verdict, grouped by the reason."""
     for outcome in examined.outcomes:
-        yield from (f"{pair_of(outcome)}: {line.strip()}" for line in silent_lines(outcome))
-        rows = sorted(outcome.undecided, key=lambda row: row.verdict == "not given")
-        reasons = gathered((f"{row.verdict}: {row.why}", about(row.quantity, row.name)) for row in rows)
-        yield from (f"{pair_of(outcome)}: {some_of(w, NUMBERS)}: {reason}" for reason, w in reasons.items())
+        yield from (f"{pair_of(outcome)}: {line}" for line in _undecided(outcome))
+
+
+def _undecided(outcome: Outcome) -> Iterator[str]:
+    yield from silent_lines(outcome)
+    rows = sorted(outcome.undecided, key=lambda row: row.verdict == "not given")
+    reasons = gathered((f"{row.verdict}: {row.why}", about(row.quantity, row.name)) for row in rows)
+    yield from (f"{some_of(words, NUMBERS)}: {reason}" for reason, words in reasons.items())
 
 
 def silence(examined: Examined) -> str:
     """Why a solved scene has no verdict, in one line."""
-    whys = dict.fromkeys(line.partition(": ")[2] for line in undecided(examined))
+    whys = dict.fromkeys(line for outcome in examined.outcomes for line in _undecided(outcome))
     return "; ".join(islice(whys, 2))
 
 

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from pointcoord import Scene
@@ -17,7 +18,7 @@ from validate.errors import NotFinished, UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
-from validate.output.document import Ending, Head, Journal, at_the_end
+from validate.output.document import Ending, Journal, at_the_end
 from validate.output.report import share_of_all
 from validate.plain_text import shown
 
@@ -36,17 +37,21 @@ class Page:
 
     Attributes:
         folder: where it is written.
+        drawings: the curves and pictures of the scenes.
         with_more: for `pointcoord report`: adds further results to the run for its page. Such a run prints
             only a sentence with the verdict, and the path of the page.
     """
 
     folder: str
+    drawings: Drawings
     with_more: Callable[[Run], Run] | None = None
 
     @classmethod
-    def of(cls, options: argparse.Namespace) -> Page | None:
+    def of(cls, options: argparse.Namespace, scenes: int = 0) -> Page | None:
         """The page that `--report` asks for, or None. Checked before anything is solved.
 
+        Args:
+            scenes: number of scenes of the run.
         Raises:
             MissingLibrary: the extra `report`, which a page needs, is not installed.
             UsageError: the folder has no name, or cannot be used for a report.
@@ -55,6 +60,7 @@ class Page:
         if options.report is None:
             return None
         from validate.html.page import require_folder
+        from validate.html.run import Drawings
 
         if not options.report.strip():
             option = "" if "folder" in options else "--report "
@@ -62,9 +68,9 @@ class Page:
                 f"{option}{options.report!r} names no folder; give the path of a folder; it is made if needed"
             )
         for package in ("jinja2", "plotly.offline"):
-            needed("report", package, "report")
+            needed("report", package)
         require_folder(options.report)
-        return cls(options.report, getattr(options, "with_more", None))
+        return cls(options.report, Drawings(scenes), getattr(options, "with_more", None))
 
     @property
     def place(self) -> str:
@@ -83,23 +89,19 @@ class Page:
 
 @dataclass(frozen=True)
 class Comparing:
-    """A run of comparisons in progress; `ending.status` is its exit status.
-
-    Attributes:
-        drawings: the curves and pictures for the page; None if no page is asked for.
-    """
+    """A run of comparisons in progress; `ending.status` is its exit status."""
 
     record: Record
     journal: Journal
-    drawings: Drawings | None
+    page: Page | None
     ending: Ending
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
         """Add the results of a scene, and write all results so far."""
         self.record.add(examined, since, scene)
         # With --data no motion of the scene is solved.
-        if self.drawings is not None and examined.name not in self.record.files:
-            self.drawings.add(examined, scene)
+        if self.page is not None and examined.name not in self.record.files:
+            self.page.drawings.add(examined, scene)
         self.journal.keep()
 
 
@@ -112,34 +114,30 @@ def comparing(
     Raises:
         MissingLibrary, UsageError: the page cannot be made. NotFinished: a result cannot be written.
     """
-    drawings, page = None, Page.of(options)
-    if page is not None:
-        from validate.html.run import Drawings, Run
-
-        drawings = Drawings(len(record.names))
-    head = Head.of("validate", options.command, options.timings)
+    page = Page.of(options, len(record.names))
     record.kept = None if options.save_baseline is None else {}
-    journal = Journal(
-        options.json, head, console, record.data, lambda: share_of_all(record.examined, record.names, noun)
-    )
 
-    def leave(end: Ending) -> None:
-        _leave_files(options, record, end, console)
+    def what() -> str:
+        return share_of_all(record.examined, record.names, noun)
+
+    journal = Journal.of(options, console, "validate", record.data, what)
 
     mute, brief = console.mute, page is not None and page.with_more is not None
     console.mute = mute or brief
-    with journal.closing() as ending, at_the_end(leave):
-        yield Comparing(record, journal, drawings, ending)
+    with journal.closing() as ending, at_the_end(partial(_leave_files, options, record, console)):
+        yield Comparing(record, journal, page, ending)
         ending.status = record.status
-        if page is not None and drawings is not None:
-            made = page.write(Run(head, record, drawings.kept), console)
+        if page is not None:
+            from validate.html.run import Run
+
+            made = page.write(Run(journal.head, record, page.drawings.kept), console)
             ending.status = made.status
             console.mute = mute
             if brief:
                 console.say(f"{made.sentence}\n{page.place}")
 
 
-def _leave_files(options: argparse.Namespace, record: Record, ending: Ending, console: Console) -> None:
+def _leave_files(options: argparse.Namespace, record: Record, console: Console, ending: Ending) -> None:
     """Write JUnit, summary and baseline if any scene was examined; the baseline only after a whole run.
 
     Raises:

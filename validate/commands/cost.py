@@ -16,9 +16,9 @@ from validate.commands.usage import (
     given,
     load_scene,
     name_of,
+    named_scene,
     require_input_once,
     require_results,
-    told_as,
 )
 from validate.cost.report import Report
 from validate.cost.table import frame, measured_here
@@ -47,25 +47,26 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     else:
         require_results(options, console, ("--json", "--csv", "--rows"), options.scenes)
     if options.report is not None:
-        needed("--report", "matplotlib", "plot")
+        needed("--report", "matplotlib")
+    for package in ("pandas", "pyarrow"):
+        needed("cost", package)
     page = Page.of(options)
-    needed("cost", "pyarrow")
     command = shlex.join(options.command)
     if options.from_rows:
         study, report = None, Report.of_file(options.rows, command)
     else:
         study, report = _study(options, command), Report(options.rows, command, ())
-    journal = Journal(
-        options.json,
-        Head.of("cost", options.command, timed=True),
-        console,
-        lambda: report.data(),
-        lambda: counted_as(len(report.rows), "row") if report.rows else "",
-    )
+
+    def rows_so_far() -> str:
+        return counted_as(len(report.rows), "row") if report.rows else ""
+
+    journal = Journal.of(options, console, "cost", lambda: report.data(), rows_so_far)
     with journal.closing() as ending:
         if study is not None:
+            from validate.cost.study import measure
+
             with console.progress("cost") as progress:
-                for rows in needed("cost", "validate.cost.study").measure(study, progress):
+                for rows in measure(study, progress):
                     report = replace(report, rows=(*report.rows, *rows))
                     write_content(options.rows, frame(report.rows).to_parquet())
                     console.written[options.rows] = counted_as(len(report.rows), "row")
@@ -75,25 +76,24 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def _study(options: argparse.Namespace, command: str) -> Study:
     """The study to measure. All scenes and methods are loaded before anything is measured."""
-    of_study = needed("cost", "validate.cost.scenes")
-    registry = needed("cost", "validate.cost.ways.registry")
-    ways = registry.WAYS
+    # Imported here: the study of cost needs packages that a report of its rows does not need.
+    from validate.cost.scenes import QUICK_SCENE, STUDY_SCENES, own_scene, with_rates
+    from validate.cost.study import Study
+    from validate.cost.ways.registry import NAMES, WAYS, ways_named
+
+    ways = WAYS
     if options.ways is not None:
         names = [word.strip() for word in options.ways.split(",") if word.strip()]
         if not names:
-            raise UsageError(f"--ways {options.ways!r} names nothing; there are: {', '.join(registry.NAMES)}")
-        ways = registry.ways_named(names)
+            raise UsageError(f"--ways {options.ways!r} names nothing; there are: {', '.join(NAMES)}")
+        ways = ways_named(names)
     scenes = {}
-    usual = (of_study.QUICK_SCENE,) if options.quick else of_study.STUDY_SCENES
+    usual = (QUICK_SCENE,) if options.quick else STUDY_SCENES
     for name in dict.fromkeys(options.scenes or usual):
-        with told_as(name_of(name)):
-            own = name in of_study.STUDY_SCENES or not options.scenes
-            scene = of_study.own_scene(name) if own else load_scene(name)
-            scenes[name_of(name)] = of_study.with_rates(scene)
-    study: Study = needed("cost", "validate.cost.study").Study(
-        scenes, ways, measured_here(command), options.quick
-    )
-    return study
+        own = name in STUDY_SCENES or not options.scenes
+        with named_scene(name, own_scene if own else load_scene) as (scene, _):
+            scenes[name_of(name)] = with_rates(scene)
+    return Study(scenes, ways, measured_here(command), options.quick)
 
 
 def _print_and_write(

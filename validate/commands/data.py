@@ -13,9 +13,9 @@ from validate.commands.usage import (
     STANDARD_INPUT,
     load_scene,
     name_of,
+    named_scene,
     require_results,
     to_be_filled_in,
-    told_as,
 )
 from validate.comparison.examined import Examined
 from validate.errors import UsageError
@@ -42,11 +42,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return to_be_filled_in(options.map, map_to_fill_in(options.data, load_scene(given)), console)
     name = name_of(given)
     record = Record([name], options.tolerance_factor)
-    with comparing(options, console, record) as compared:
-        scene = load_scene(given)
-        with told_as(name):
-            measured = read_results(options.data, options.map, scene)
-            found = compare_results(measured, scene, name, options.accuracy, options.tolerance_factor)
+    with comparing(options, console, record) as compared, named_scene(given) as (scene, _):
+        measured = read_results(options.data, options.map, scene)
+        found = compare_results(measured, scene, name, options.accuracy, options.tolerance_factor)
         moved = closing_of(scene)
         examined = Examined(
             name=name,
@@ -59,8 +57,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
         record.files[name] = found
         compared.add(examined, scene=scene)
-        for warning in examined.warnings:
-            console.warn(f"{name}: {warning}")
+        console.warn(*examined.warnings, of=name)
         console.show(report.file_parts(found))
         if step := next_step(record):
             console.say(step)

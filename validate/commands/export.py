@@ -6,7 +6,7 @@ import argparse
 
 from validate.closed_drawing import closed_drawing, closed_mechanism, warnings_of
 from validate.commands.pages import Command
-from validate.commands.usage import load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import named_scene, require_results
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
@@ -21,17 +21,17 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     Returns:
         NO_VERDICT if the drawing cannot be closed, since the model then has no home pose.
     """
-    target = place_of_result(options, ENDINGS, console, "--mjcf")
-    mjcf = needed("export", "validate.peers.mjcf", "peers")
-    scene, name = load_scene(options.scene), name_of(options.scene)
-    with told_as(name):
+    target = require_results(options, console, ("--mjcf",), (options.scene,), ENDINGS, says=False)
+    needed("export", "mujoco")
+    from validate.peers.mjcf import mjcf_of
+
+    with named_scene(options.scene) as (scene, name):
         drawing = closed_drawing(scene)
     if not drawing.places:
         console.complain(f"{name}: {drawing.words}; nothing is written")
         return ExitStatus.NO_VERDICT
-    for warning in warnings_of(scene, drawing.closing):
-        console.warn(f"{name}: {warning}")
-    console.put(target, mjcf.mjcf_of(closed_mechanism(drawing), scene.title or name), "the model")
+    console.warn(*warnings_of(scene, drawing.closing), of=name)
+    console.put(target, mjcf_of(closed_mechanism(drawing), scene.title or name), "the model")
     console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={shown(target)}")
     return ExitStatus.AGREE
 

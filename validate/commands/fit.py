@@ -10,11 +10,9 @@ from validate.commands.data import require_files
 from validate.commands.pages import Command
 from validate.commands.usage import (
     TOML,
-    load_scene,
-    name_of,
+    named_scene,
     require_results,
     to_be_filled_in,
-    told_as,
 )
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -24,7 +22,7 @@ from validate.fitting.report import corrected_text, report_of_fit, report_of_sus
 from validate.fitting.suspects import suspected
 from validate.measured.mapping import map_to_fill_in, read_results
 from validate.output.console import Console
-from validate.output.document import Head, json_text
+from validate.output.document import Journal
 from validate.plain_text import shown
 
 
@@ -43,22 +41,24 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
     read = options.scene, options.data, options.map
     require_results(options, console, ("-o", "--json", "--csv"), read, TOML)
-    scene, name = load_scene(options.scene), name_of(options.scene)
-    if options.map is not None and not os.path.exists(options.map):
-        return to_be_filled_in(options.map, map_to_fill_in(options.data, scene), console)
     corrected, again = "", ["--data", options.data]
     if options.map is not None:
         again += ["--map", options.map]
     if options.accuracy:
         again += ["--accuracy", f"{options.accuracy:g}"]
-    with told_as(name), console.progress("designs", lines=False) as progress:
+    with (
+        named_scene(options.scene) as (scene, name),
+        console.progress("designs", lines=False) as progress,
+    ):
+        if options.map is not None and not os.path.exists(options.map):
+            return to_be_filled_in(options.map, map_to_fill_in(options.data, scene), console)
         measured = read_results(options.data, options.map, scene)
         limits = options.bounds, options.prior, options.accuracy
         problem = Problem.of(scene, measured, options.free, *limits)
         numbers, source = len(problem.spread), measured.source
         task = "tested as suspects with" if options.suspects else "fitted to"
         many = f"{len(problem.free)} coordinates are {task} {numbers} numbers"
-        console.note(f"{name}: {many}; this may take a while")
+        console.note(f"{many}; this may take a while", of=name)
         if options.suspects:
             suspects = suspected(problem, progress)
             report = report_of_suspects(suspects, name, source)
@@ -66,17 +66,13 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             fit = fit_hardpoints(problem, told=progress)
             report, corrected = report_of_fit(fit, name, source), corrected_text(fit, name, source)
     console.say(report.text)
-    for note in (*measured.notes, *report.notes):
-        console.note(f"{name}: {note}")
-    for warning in report.warnings:
-        console.warn(f"{name}: {warning}")
+    console.note(*measured.notes, *report.notes, of=name)
+    console.warn(*report.warnings, of=name)
     if options.output is not None:
         console.put(options.output, corrected, "the corrected scene")
-    if options.json is not None:
-        document = Head.of(report.kind, options.command).document(
-            report.data(name, source), report.status, True
-        )
-        console.put(options.json, json_text(document), report.what)
+    Journal.of(options, console, report.kind, lambda: report.data(name, source), lambda: report.what).write(
+        report.status
+    )
     if options.csv is not None:
         console.put(options.csv, report.table, report.what)
     if options.output not in (None, "-"):

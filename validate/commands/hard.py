@@ -11,7 +11,7 @@ from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.registry import missing
 from validate.output.console import Console
-from validate.output.document import Head, Journal
+from validate.output.document import Journal
 from validate.output.report import counted_as, share_of_all
 
 
@@ -20,39 +20,35 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.assemblies:
         return count(options, console)
     # Imported here: the reference needs packages that the solvers do not need.
-    from validate.hard import catalogue
-    from validate.hard import report as hard_report
+    from validate.hard import catalogue, report
 
     cases = catalogue.chosen(options.cases)
     if options.list and options.report is not None:
         raise UsageError("--report needs solved cases, and --list solves none; leave one of them out")
     require_results(options, console, ("--json",))
-    head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
     if options.list:
-        console.say(hard_report.listing(cases))
-        with Journal(
-            options.json, head, console, lambda: hard_report.listing_data(cases), lambda: "the list"
-        ).closing():
-            return ExitStatus.AGREE
+        console.say(report.listing(cases))
+        listed = Journal.of(
+            options, console, "hard-list", lambda: report.listing_data(cases), lambda: "the list"
+        )
+        listed.write(ExitStatus.AGREE)
+        return ExitStatus.AGREE
     page = Page.of(options)
     lacking = missing(name for case in cases for name in case.expected)
-    for name, why in lacking.items():
-        console.warn(f"{name} is left out: {why}")
+    console.warn(*(f"{name} is left out: {why}" for name, why in lacking.items()))
     cases = tuple(one for one in (case.without(lacking) for case in cases) if one.expected)
-    results: list[hard_report.Examined] = []
-    journal = Journal(
-        options.json,
-        head,
-        console,
-        lambda: hard_report.results_data(results),
+    results: list[report.Examined] = []
+    journal = Journal.of(
+        *(options, console, "hard"),
+        lambda: report.results_data(results),
         lambda: share_of_all(results, cases, "case"),
     )
 
-    def tell(result: hard_report.Examined) -> None:
+    def tell(result: report.Examined) -> None:
         if result.case.group not in {one.case.group for one in results}:
             console.say(f"== {result.case.group}\n")
         results.append(result)
-        console.show((*hard_report.case_parts(result, bool(options.cases)), ""))
+        console.show((*report.case_parts(result, bool(options.cases)), ""))
         journal.keep()
         working(f"cases, {result.case.name} done", len(results))
 
@@ -61,16 +57,16 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.progress("cases", total=len(cases), lines=False) as working,
     ):
         for case in cases:
-            tell(hard_report.examine(case))
-        console.show(hard_report.summary_parts(results))
-        if not hard_report.as_expected(results):
+            tell(report.examine(case))
+        console.show(report.summary_parts(results))
+        if not report.as_expected(results):
             ending.status = ExitStatus.DISAGREE
         if page is not None:
             from validate.html.hard_cases import HardCases
             from validate.html.run import Run
 
-            document = head.document(hard_report.results_data(results), ending.status, complete=True)
-            ending.status = page.write(Run(head, hard=HardCases.of(document)), console).status
+            document = journal.head.document(report.results_data(results), ending.status, complete=True)
+            ending.status = page.write(Run(journal.head, hard=HardCases.of(document)), console).status
     return ending.status
 
 
@@ -82,11 +78,9 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
         raise UsageError(f"{others[0]} goes with cases only; leave it out with --assemblies")
     require_results(options, console, ("--json",))
     found: list[scenes.Count] = []
-    head, names = Head.of("assemblies", options.command), options.cases or scenes.SHIPPED
-    journal = Journal(
-        options.json,
-        head,
-        console,
+    names = options.cases or scenes.SHIPPED
+    journal = Journal.of(
+        *(options, console, "assemblies"),
         lambda: {"counts": found},
         lambda: counted_as(len(found), "count") if found else "",
     )

@@ -9,7 +9,7 @@ from dataclasses import fields
 
 from validate.closed_drawing import warnings_of
 from validate.commands.pages import Command
-from validate.commands.usage import TOML, place_of_result, to_be_filled_in
+from validate.commands.usage import TOML, require_results, to_be_filled_in
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.contents import DIRECTIONS
 from validate.hardpoint_files.format import formats
@@ -27,7 +27,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         DISAGREE if a static angle printed in the file differs from the angle of its points. The scene is
         written in this case too.
     """
-    target = place_of_result(options, TOML, console, read="file")
+    target = require_results(options, console, ("-o",), (options.file,), TOML, says=False)
     if options.names is not None and not os.path.exists(options.names):
         text = names_of(options.file, options.format, options.suspension)
         return to_be_filled_in(options.names, text, console)
@@ -37,11 +37,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.put(target, found.text, "the scene")
     console.say("\n".join(_report(name, found)))
     console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
-    for warning in warnings_of(found.scene, found.stands.closing):
-        console.warn(f"{name}: {warning}")
+    console.warn(*warnings_of(found.scene, found.stands.closing), of=name)
     if found.drawing.others:
         others = some_of([shown(point.source) for point in found.drawing.others], NAMED)
-        console.note(f"{name}: points not recognised: {others}")
+        console.note(f"points not recognised: {others}", of=name)
     wrong = [check for check in found.angles if check.verdict == "disagrees"]
     for check in wrong:
         console.complain(

@@ -24,20 +24,18 @@ def summary(name: str) -> str:
     return _read(name).partition("\n")[0]
 
 
-def page(name: str, words: Mapping[str, object]) -> tuple[str, str]:
-    """The description and the options of a command.
-
-    Args:
-        words: replacements of `$name` in the page, in addition to the parts of `shared.txt`; a part may
-            contain further `$name`.
-    """
-    names_and_parts = re.split(r"\s*^\[(\w+)\]\n", _read("shared").rstrip(), flags=re.M)[1:]
-    parts = {**dict(zip(names_and_parts[::2], names_and_parts[1::2], strict=True)), **words}
-    text = _read(name)
+def filled(name: str, words: Mapping[str, object]) -> str:
+    """A page with each `$name` replaced by a word or a part of `shared.txt`, which may have further ones."""
+    text, found = _read(name), {**parts("shared"), **words}
     while re.search(r"\$\w", text):
-        text = re.sub(r"\$(\w+)", lambda found: str(parts[found[1]]), text)
-    head, _, options = text.partition("\noptions:\n")
-    return head.partition("\n")[2].strip(), options.strip()
+        text = re.sub(r"\$(\w+)", lambda one: str(found[one[1]]), text)
+    return text
+
+
+def parts(name: str) -> dict[str, str]:
+    """The parts of a page by the names above them."""
+    _, *found = re.split(r"\s*^\[(\w+)\]\n", _read(name).rstrip(), flags=re.M)
+    return dict(zip(found[::2], found[1::2], strict=True))
 
 
 def _read(name: str) -> str:
@@ -95,10 +93,10 @@ class Command:
 
     def declare(self, parser: ArgumentParser, name: str) -> None:
         """Add the description and the options of the command to a parser."""
-        description, options = page(name, self.words)
-        parser.description, parser.epilog = description, HELP
+        head, _, options = filled(name, self.words).partition("\noptions:\n")
+        parser.description, parser.epilog = head.partition("\n")[2].strip(), HELP
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
-        for entry in re.split(r"\n(?=\S)", options) if options else ():
+        for entry in re.split(r"\n(?=\S)", options.strip()) if options else ():
             names, about = _argument(entry)
             parser.add_argument(*names, **{**about, **self.more.get(names[-1], {})})
         if self.inner:

@@ -16,7 +16,7 @@ from pointcoord.results.closing import ALLOWED
 from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
 from validate.commands.pages import Command
-from validate.commands.usage import load_scene, name_of, place_of_picture, told_as
+from validate.commands.usage import named_scene, place_of_picture
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.picture import svg
@@ -42,28 +42,24 @@ def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
 def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw a scene's hardpoints."""
     target = place_of_picture(options, PICTURES, console)
-    scene, name = load_scene(options.scene), name_of(options.scene)
-    with told_as(name):
+    with named_scene(options.scene) as (scene, name):
         drawing = closed_drawing(scene)
-    for warning in warnings_of(scene, drawing.closing):
-        console.warn(f"{name}: {warning}")
+    console.warn(*warnings_of(scene, drawing.closing), of=name)
     console.put(target, svg(drawing), "the picture")
     return ExitStatus.AGREE
 
 
 def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print what a scene computes, its drawn inputs and their ranges."""
-    scene, name = load_scene(options.scene), name_of(options.scene)
-    with told_as(name):
+    with named_scene(options.scene) as (scene, name):
         scene_mechanism(scene)
-    plan = plan_effects(scene.effects, unreported=scene.unreported_points)
-    console.say("\n".join([*_mechanism(scene, name), *_computed(scene, plan), *_effort(scene, plan)]))
-    try:
-        with told_as(name):
+        plan = plan_effects(scene.effects, unreported=scene.unreported_points)
+        console.say("\n".join([*_mechanism(scene, name), *_computed(scene, plan), *_effort(scene, plan)]))
+        try:
             stands = standing(scene)
-    except AssemblyError as error:
-        console.complain(f"{name}: {error}")
-        return ExitStatus.NO_VERDICT
+        except AssemblyError as error:
+            console.complain(f"{name}: {error}")
+            return ExitStatus.NO_VERDICT
     console.say("\n".join(_where_it_stands(scene, stands)))
     if stands.closing.changes_the_car and not scene.mechanism.topology.puts_in_place:
         limit = f"{ALLOWED:.0%} of the car's size, {ALLOWED * stands.closing.size:.3g} mm"
@@ -72,8 +68,7 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
             f"refused; allowed: {limit}; correct the points that miss"
         )
         return ExitStatus.WRONG_INPUT
-    for warning in (*warnings_of(scene, stands.closing), *_out_of_reach(scene, stands)):
-        console.warn(f"{name}: {warning}")
+    console.warn(*warnings_of(scene, stands.closing), *_out_of_reach(scene, stands), of=name)
     return ExitStatus.AGREE
 
 

@@ -15,7 +15,7 @@ from pointcoord import sensitivity, sweep
 from pointcoord.effects.numbers import RANKED_FIRST
 from pointcoord.sweeping.sensitivity import numbers_named
 from validate.commands.pages import Command
-from validate.commands.usage import load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import named_scene, require_results
 from validate.curves.numbers import asking_for, numbers_asked
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -51,31 +51,29 @@ class Column:
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print or write the derivatives and the spreads."""
-    target = place_of_result(options, ENDINGS, console)
+    target = require_results(options, console, ("-o",), (options.scene,), ENDINGS, says=False)
     ending = Path(target).suffix
     if ending in PICTURES:
-        needed("sensitivity", "matplotlib", "plot")
-    name = name_of(options.scene)
-    scene = load_scene(options.scene).model_copy(update={"effects": ()})
-    numbers = numbers_asked(scene, name, options.number, RANKED_FIRST)
-    numbers = numbers or numbers_asked(scene, name, None, None)
-    called = [number.called for number in numbers]
-    time = {"start": scene.time.start, "stop": scene.time.stop, "samples": min(SAMPLES, scene.time.samples)}
+        needed("sensitivity", "matplotlib")
     random = np.random.default_rng(options.seed)
-    with told_as(name), console.progress(f"solving {name}", lines=False):
-        scene = asking_for(scene, numbers).model_copy(update={"time": time})
+    with named_scene(options.scene) as (scene, name), console.progress(f"solving {name}", lines=False):
+        time = {**scene.time.model_dump(), "samples": min(SAMPLES, scene.time.samples)}
+        scene = scene.model_copy(update={"effects": (), "time": time})
+        numbers = numbers_asked(scene, name, options.number, RANKED_FIRST)
+        numbers = numbers or numbers_asked(scene, name, None, None)
+        called = [number.called for number in numbers]
+        scene = asking_for(scene, numbers)
         found = sensitivity(scene, called, options.point)
         offsets = {one: random.normal(0.0, options.tolerance, DESIGNS) for one in found.coordinates}
         designs = sweep(scene, offsets=offsets)
-    for coordinate, why in found.failures.items():
-        console.warn(f"{name}: {coordinate} has no derivative: {why}")
+    console.warn(*(f"{one} has no derivative: {why}" for one, why in found.failures.items()), of=name)
     order = np.argsort(-np.abs(found.largest(called[0])), kind="stable")
     columns = []
     for number, array in zip(numbers, numbers_named(designs.numbers, called).values(), strict=True):
         deviation, worst = found.spread(number.called, options.tolerance)
         drawn = float(np.nanstd(array[designs.solved], axis=0).max())  # at the instant where it is largest
-        spreads = tuple(number.in_degrees * spread for spread in (deviation, drawn, worst))
-        changes = (-1 if number.minus else 1) * number.in_degrees * found.largest(number.called)[order]
+        spreads = tuple(abs(number.factor) * spread for spread in (deviation, drawn, worst))
+        changes = number.factor * found.largest(number.called)[order]
         columns.append(
             Column(f"{'-' if number.minus else ''}{number.called}", number.unit_shown, changes, spreads)
         )
@@ -118,7 +116,7 @@ def _picture(coordinates: Sequence[str], columns: Sequence[Column], name: str, e
         for axes, one in zip(grid, columns, strict=True):
             axes.barh(first, one.changes[:ROWS][::-1], color=BLUE)
             axes.set_xlabel(f"{one.name}, {one.unit}/mm")
-        return drawn(page, ending.removeprefix("."))
+        return drawn(page, ending)
 
 
 WORDS = {"samples": SAMPLES, "designs": DESIGNS, "rows": ROWS, "ranked": ", ".join(RANKED_FIRST)}

@@ -12,13 +12,14 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
 from validate.commands.pages import Command
-from validate.commands.usage import load_scene, name_of, place_of_picture, place_of_result, told_as
+from validate.commands.usage import name_of, named_scene, place_of_picture, require_results
 from validate.curves.numbers import TIME, TRAVEL, Curves, Number, angles_of, asking_for, numbers_called, usual
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
-from validate.output.columns import ENDINGS, GROUP, csv_lines, require_table, rows_of_motion, write_table
+from validate.output.columns import ENDINGS, GROUP, put_table, rows_of_motion
 from validate.output.console import STANDARD_OUTPUT, Console
+from validate.output.report import counted_as
 from validate.paper.printed import PRINTED
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
@@ -28,9 +29,7 @@ SMOOTH = 401  # a curve of fewer instants has corners
 
 def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve a scene and write its motion."""
-    target = place_of_result(options, ENDINGS, console)
-    if target != "-":
-        require_table(target)
+    target = require_results(options, console, ("-o",), (options.scene,), ENDINGS, says=False)
     method, instants = BY_NAME[options.method], options.instants
     if instants is not None and not method.dense:
         raise UsageError(
@@ -39,45 +38,38 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
 
     def write(motion: Motion) -> str:
-        rows = rows_of_motion(motion, instants)
-        if target == "-":
-            console.write_lines(csv_lines(rows))
-        else:
-            write_table(target, rows, GROUP)
-            console.written[target] = "the motion"
-        count = instants or len(motion.times)
-        return f"{count} instant{'' if count == 1 else 's'}"
+        put_table(target, rows_of_motion(motion, instants), "the motion", console, GROUP)
+        return counted_as(instants or len(motion.times), "instant")
 
-    return solved(load_scene(options.scene), target, options, console, write, method)
+    with named_scene(options.scene) as (scene, name):
+        return solved(scene, name, target, console, write, method)
 
 
 def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw curves of a scene's motion, or of a file."""
     target = place_of_picture(options, PICTURES, console)
-    needed("plot", "matplotlib", "plot")
+    needed("plot", "matplotlib")
+    # Imported here: matplotlib takes a second.
+    from validate.curves.picture import figure
+    from validate.output.figure import drawn
+
     if Path(options.scene).suffix in ENDINGS:
-        needed("plot", "pandas")
         return _plot_sweep(options, target, console)
-    scene, name = load_scene(options.scene), name_of(options.scene)
-    angles = tuple(n for one in angles_of(scene) for n in numbers_called(one.path[1], scene))
-    chosen = _curves(options, scene, name)
-    with told_as(name):
+    with named_scene(options.scene) as (scene, name):
+        angles = tuple(n for one in angles_of(scene) for n in numbers_called(one.path[1], scene))
+        chosen = _curves(options, scene, name)
         scene = asking_for(scene, (*chosen.across, *chosen.up) if chosen else angles)
 
-    def write(motion: Motion) -> str:
-        # Imported here: matplotlib takes a second.
-        from validate.curves.picture import figure
-        from validate.output.figure import drawn
+        def write(motion: Motion) -> str:
+            count = options.instants or max(len(motion.times), SMOOTH)
+            own = options.instants is None and count == len(motion.times)
+            samples = motion if own or len(motion.times) == 1 else next(motion.blocks(count, count))
+            curves = chosen or usual(scene, motion, angles)
+            picture = figure(curves, lambda n: n.shown(motion, samples), scene.title or name)
+            console.put(target, drawn(picture, target), "the picture")
+            return "the picture"
 
-        count = options.instants or max(len(motion.times), SMOOTH)
-        own = options.instants is None and count == len(motion.times)
-        samples = motion if own or len(motion.times) == 1 else next(motion.blocks(count, count))
-        curves = chosen or usual(scene, motion, angles)
-        picture = figure(curves, lambda n: n.shown(motion, samples), scene.title or name)
-        console.put(target, drawn(picture, _ending(target)), "the picture")
-        return "the picture"
-
-    return solved(scene, target, options, console, write)
+        return solved(scene, name, target, console, write)
 
 
 def _plot_sweep(options: argparse.Namespace, target: str, console: Console) -> ExitStatus:
@@ -94,18 +86,14 @@ def _plot_sweep(options: argparse.Namespace, target: str, console: Console) -> E
         columns_called(table, words) for words in (options.x or (TIME,), options.y or (WHEEL.name,))
     )
     picture = figure_of(table, across[0], up, name_of(options.scene))
-    console.put(target, drawn(picture, _ending(target)), "the picture")
+    console.put(target, drawn(picture, target), "the picture")
     return ExitStatus.AGREE
-
-
-def _ending(target: str) -> str:
-    return Path(target).suffix.removeprefix(".") or "svg"
 
 
 def solved(
     scene: Scene,
+    name: str,
     target: str,
-    options: argparse.Namespace,
     console: Console,
     write: Callable[[Motion], str],
     method: Method = BY_NAME["auto"],
@@ -113,14 +101,14 @@ def solved(
     """Solve a scene, and write its motion or the part of it that could be solved.
 
     Args:
+        name: name of the scene in messages.
         write: writes a motion; returns what was written, in words.
     Raises:
         SceneError: the scene is wrong. NotFinished: the result cannot be written.
     """
-    name = name_of(options.scene)
     problem: PointcoordError | None = None
     try:
-        with told_as(name), console.progress(f"solving {name}", lines=False):
+        with console.progress(f"solving {name}", lines=False):
             motion = simulate(scene, method)
     except SceneError:
         raise
@@ -144,15 +132,13 @@ def solved(
 def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
     """Print warnings about the drawing, and notes on defaults that were used."""
     warnings = warnings_of(scene, motion.closing)
-    for warning in warnings:
-        console.warn(f"{name}: {warning}")
+    console.warn(*warnings, of=name)
     notes = [note for note in motion.notes if note not in warnings]
     if motion.closing.moves and not motion.closing.noticeable:
         notes.append(motion.closing.words)
     if any("wheel_axis" in EFFECTS[effect].lines for effect in scene.effects):
         notes += scene.mechanism.defaults_taken
-    for note in notes:
-        console.note(f"{name}: {note}")
+    console.note(*notes, of=name)
 
 
 def _curves(options: argparse.Namespace, scene: Scene, name: str) -> Curves | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from contextlib import ExitStack
+from importlib import import_module
 from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,7 +16,7 @@ from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.formulations.registry import NAMES
 from validate.output.console import Console
-from validate.output.document import Head, Journal
+from validate.output.document import Journal
 from validate.output.report import counted_as
 from validate.plain_text import shown
 
@@ -26,12 +27,12 @@ LOCAL = "local"
 SOON = 2.0  # seconds to the first line of progress, since a study may wait for other processes
 
 
-# Module in `validate.studies` and function that make each study; its arguments are command-line options.
+# The function in `validate.studies` that makes each study; its arguments are command-line options.
 STUDIES = {
-    "random": ("random_cars", "random_cars"),
-    "bounds": ("bounds", "bounds"),
-    "claims": ("claims", "claims"),
-    "hard": ("hard_cases", "hard"),
+    "random": "random_cars.random_cars",
+    "bounds": "bounds.bounds",
+    "claims": "claims.claims",
+    "hard": "hard_cases.hard",
 }
 
 
@@ -50,8 +51,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     require_results(options, console, ("--json",))
     for package in ("mpmath", "flint", "pinocchio"):
         needed("study", package)
-    module, function = STUDIES[options.study]
-    make = getattr(needed("study", f"validate.studies.{module}"), function)
+    module, _, function = STUDIES[options.study].partition(".")
+    make = getattr(import_module(f"validate.studies.{module}"), function)
     values = {name: getattr(options, name, None) for name in signature(make).parameters}
     study: Study = make(**{name: value for name, value in values.items() if value is not None})
     if not study.tasks:
@@ -61,13 +62,17 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def _run_study(study: Study, folder: Path, options: argparse.Namespace, console: Console) -> ExitStatus:
     """Run the missing tasks, and print the findings of all tasks of the study."""
-    cluster, where = needed("study", "validate.studies.cluster"), shown(str(folder))
+    # Imported here: Dask may be missing, and is missed before the folder is made.
+    from validate.studies.cluster import opened, quiet_dask
+    from validate.studies.cluster import run as run_tasks
+    from validate.studies.store import records
+
+    quiet_dask()
+    where = shown(str(folder))
     local = options.scheduler == LOCAL
     who = "processes of this machine" if local else f"the scheduler {shown(options.scheduler)}"
-    # Before the folder is made: Dask may be missing.
-    cluster.quiet_dask()
     with ExitStack() as stack:
-        store = needed("study", "validate.studies.store").records(folder, study)
+        store = records(folder, study)
         recorded = store.rows()
         missing = [task for task in study.tasks if task not in recorded]
         before = there = len(study.tasks) - len(missing)
@@ -89,14 +94,14 @@ def _run_study(study: Study, folder: Path, options: argparse.Namespace, console:
         if missing:
             starting = f"{who} start" if local else f"connecting to {who}"
             progress = stack.enter_context(console.progress(starting, SOON))
-            client = stack.enter_context(cluster.opened(options.scheduler, options.workers))
+            client = stack.enter_context(opened(options.scheduler, options.workers))
         console.note(f"{where} holds {held()}; to continue a stopped study, give the same command again")
-        head = Head.of(options.study, options.command, timed=True)
-        journal = Journal(options.json, head, console, lambda: found().data, lambda: held() if there else "")
+        results, what = (lambda: found().data), (lambda: held() if there else "")
+        journal = Journal.of(options, console, options.study, results, what)
         with journal.closing() as ending:
             if missing:
                 tell(0)
-                cluster.run(study, missing, store, client, tell)
+                run_tasks(study, missing, store, client, tell)
             findings = found()
             ending.status = findings.status
     console.show(findings.parts)

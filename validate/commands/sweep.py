@@ -26,11 +26,11 @@ from pointcoord.sweeping.designs import coordinates_named
 from pointcoord.sweeping.swept import Failure, Noted, merged
 from pointcoord.toml_text import read_file
 from validate.commands.pages import Command
-from validate.commands.usage import load_scene, name_of, require_results, told_as
+from validate.commands.usage import named_scene, require_results
 from validate.commands.values import finite, values_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.output.columns import ENDINGS, csv_lines, require_table, rows_of_sweep, write_table
+from validate.output.columns import ENDINGS, put_table, rows_of_sweep
 from validate.output.console import Console
 from validate.output.progress import Told
 from validate.output.report import counted_as
@@ -102,25 +102,17 @@ class Summary:
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the designs, write each block as it is solved, and print a summary."""
-    target = options.output
-    require_results(options, console, ("-o",), (options.scene, options.designs), ENDINGS)
-    if target not in (None, "-"):
-        require_table(target)
-    name = name_of(options.scene)
-    with told_as(name):
-        scene = load_scene(options.scene)
+    target = require_results(options, console, ("-o",), (options.scene, options.designs), ENDINGS)
+    with named_scene(options.scene) as (scene, name):
         if options.instants is not None:
-            time = {"start": scene.time.start, "stop": scene.time.stop, "samples": options.instants}
+            time = {**scene.time.model_dump(), "samples": options.instants}
             scene = scene.model_copy(update={"time": time})
     designs, summary = _designs(scene, options), Summary()
     try:
         with console.progress("designs", total=designs.count, lines=False) as progress:
             blocks = _seen(sweep_blocks(designs), summary, progress)
-            if target == "-":
-                console.write_lines(csv_lines(rows_of_sweep(blocks)))
-            elif target is not None:
-                write_table(target, rows_of_sweep(blocks))
-                console.written[target] = "the designs"
+            if target is not None:
+                put_table(target, rows_of_sweep(blocks), "the designs", console)
             else:
                 for _ in blocks:
                     pass

@@ -9,13 +9,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, PointcoordError, Scene, UnknownName, WrongArgument, solve_poses
+from pointcoord import Motion, PointcoordError, Scene, SceneError, UnknownName, WrongArgument, solve_poses
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.numbers import CONVENTIONS, READ_FIRST
 from pointcoord.wording import meant
 from validate.commands.pages import Command
 from validate.commands.solved import solved
-from validate.commands.usage import load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import named_scene, require_results
 from validate.commands.values import values_of
 from validate.curves.numbers import Number, asking_for, numbers_asked, numbers_of
 from validate.errors import UsageError
@@ -38,10 +38,9 @@ EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print a table."""
-    target = place_of_result(options, ENDINGS, console)
+    target = require_results(options, console, ("-o",), (options.scene,), ENDINGS, says=False)
     if options.grid and options.rows:
         raise UsageError("--rows divides the scene's time, and a grid has none; leave --rows or --grid out")
-    scene, name = load_scene(options.scene), name_of(options.scene)
     if options.convention:
         if options.convention not in CONVENTIONS:
             raise UnknownName("convention", options.convention, CONVENTIONS)
@@ -49,12 +48,20 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             raise UsageError(
                 "--all prints every number by pointcoord's own definitions; leave --convention out with it"
             )
-        scene = scene.model_copy(update={"convention": options.convention})
+    with named_scene(options.scene) as (scene, name):
+        if options.convention:
+            scene = scene.model_copy(update={"convention": options.convention})
+        return _of_scene(scene, name, target, options, console)
+
+
+def _of_scene(
+    scene: Scene, name: str, target: str, options: argparse.Namespace, console: Console
+) -> ExitStatus:
+    """Print the table of a scene's motion, or of a grid of its inputs."""
     read = numbers_asked(scene, name, options.number, None if options.all else READ_FIRST)
     if not options.number:
         read += tuple(one for one in numbers_of(scene) if one.is_force and one.missing is None)
-    with told_as(name):
-        scene = asking_for(scene, read)
+    scene = asking_for(scene, read)
     inputs = {number.path[0]: number for number in numbers_of(scene) if number.path[0] in scene.functions}
     if options.grid:
         if moving := [n.called for n in read if len(n.path) == 1 or per_second(n.path[0])]:
@@ -74,7 +81,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.put(target, _text(columns, target), "the table")
         return "the table"
 
-    return solved(scene, target, options, console, write)
+    return solved(scene, name, target, console, write)
 
 
 def _on_grid(
@@ -90,12 +97,13 @@ def _on_grid(
     at = {number.path[0]: values for number, values in grid.items()}
     held = {n: law.series(scene.time.start, 0)[0] for n, law in scene.functions.items() if n not in at}
     try:
-        with told_as(name):
-            poses = solve_poses(scene, held | at)
+        poses = solve_poses(scene, held | at)
+    except SceneError:
+        raise
     except PointcoordError as error:
         console.complain(f"{name}: {error}; nothing is written")
         return ExitStatus.NO_VERDICT
-    columns = [(number, number.in_degrees * values) for number, values in grid.items()]
+    columns = [(number, number.factor * values) for number, values in grid.items()]
     rows = np.arange(float(len(poses.bound)))
     there = Solution("pointcoord", rows, poses.numbers, Accuracy(np.ones(len(rows))))
     columns += [(number, number.shown(None, there)) for number in read]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any
 from pointcoord import Scene, SceneError
 from validate.errors import NotFinished, UsageError
 from validate.exit_status import ExitStatus
+from validate.extras import needed
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.files import require_known_ending, require_writable, write_content
 from validate.plain_text import one_line, shown
@@ -42,10 +43,11 @@ def require_results(
     read: Sequence[str | None] = (),
     endings: Collection[str] = (),
     says: bool = True,
-) -> None:
+) -> Any:
     """Check, before anything is solved, that every result has a place of its own that can be written.
 
-    If a result goes to standard output, the console prints nothing else there.
+    If a result goes to standard output, the console prints nothing else there. Returns the place of the first
+    result, - for standard output; None if it is not given.
 
     Args:
         results: options that name a result file, or - for standard output; options not given are skipped.
@@ -55,6 +57,7 @@ def require_results(
     Raises:
         UsageError: a result names no file or a file that is read, two results are the same file, or an
             ending is unknown.
+        MissingLibrary: Parquet needs pyarrow.
         NotFinished: a result cannot be written, or standard output is needed and closed.
     """
     found = {option: value_of(options, option) for option in results}
@@ -81,27 +84,10 @@ def require_results(
         if target != "-":
             if endings and option == results[0]:
                 require_known_ending(target, endings)
+                if target.endswith(".parquet"):
+                    needed(".parquet", "pyarrow.parquet")
             require_writable(target)
-
-
-def place_of_result(
-    options: argparse.Namespace,
-    endings: Collection[str],
-    console: Console,
-    option: str = "-o",
-    read: str = "scene",
-) -> str:
-    """The file of a command with one result, - for standard output; checked to be writable.
-
-    Args:
-        option: the option that names the result.
-        read: the argument that names the file or scene that is read.
-    Raises:
-        UsageError, NotFinished: see `require_results`.
-    """
-    require_results(options, console, (option,), (value_of(options, read),), endings, says=False)
-    target: str = value_of(options, option)
-    return target
+    return found[results[0]]
 
 
 def place_of_picture(options: argparse.Namespace, endings: Collection[str], console: Console) -> str:
@@ -120,7 +106,8 @@ def place_of_picture(options: argparse.Namespace, endings: Collection[str], cons
             names = (f"{stem}.svg" if number == 1 else f"{stem}-{number}.svg" for number in count(1))
             options.output = next(name for name in names if not os.path.lexists(name))
             console.note(f"the picture goes to {shown(options.output)}; -o FILE names another file")
-    return place_of_result(options, endings, console)
+    target: str = require_results(options, console, ("-o",), (options.scene,), endings, says=False)
+    return target
 
 
 def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
@@ -156,16 +143,21 @@ def require_input_once(names: Sequence[str]) -> None:
 
 
 @contextmanager
-def told_as(name: str) -> Iterator[None]:
-    """Within this context an error of a scene names the scene as the command line does, not by its title.
+def named_scene(given: str, read: Callable[[str], Scene] | None = None) -> Iterator[tuple[Scene, str]]:
+    """A scene that the command line names, and its name in messages.
 
+    Within this context, an error of the scene names it as the command line does, not by its title.
+
+    Args:
+        read: reads the scene; `load_scene` if not given.
     Raises:
-        SceneError: the scene is wrong.
+        SceneError: there is no such scene, or it is wrong.
     """
+    scene, name = (read or load_scene)(given), name_of(given)
     try:
-        yield
+        yield scene, name
     except SceneError as error:
-        raise SceneError(name, error.key, error.problem, error.allowed) from error
+        raise error.of(name) from error
 
 
 def load_scene(name: str) -> Scene:

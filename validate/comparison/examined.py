@@ -192,7 +192,7 @@ def _compared(
 
 def _refusal(who: str, answer: Solution | Exception, name: str, scene: Scene) -> Refusal | None:
     if isinstance(answer, SceneError):
-        answer = SceneError(shown(name), answer.key, answer.problem, answer.allowed)
+        answer = answer.of(shown(name))
     return refusal_of(who, answer, scene) if isinstance(answer, SceneError | FormulationError) else None
 
 

@@ -7,14 +7,12 @@ import pandas as pd
 from validate.cost.findings import ACCURACIES, heights, timed, unit_of, words_of
 from validate.cost.looks import KEY, looks
 from validate.cost.way import power
-from validate.extras import not_there
+from validate.extras import needing
 from validate.output.figure import GREY, SETTINGS, plain
 
-try:
+with needing("a picture"):
     import matplotlib as mpl
     from matplotlib.figure import Figure
-except ImportError as error:
-    raise not_there("validate.cost.picture", error, "plot") from None
 
 
 @mpl.rc_context(SETTINGS)

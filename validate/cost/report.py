@@ -126,7 +126,7 @@ class Report:
         from validate.output.figure import drawn
 
         figure = headline(self.table)
-        return None if figure is None else drawn(figure, "svg")
+        return None if figure is None else drawn(figure)
 
 
 def _reached(table: pd.DataFrame) -> Iterator[Table]:

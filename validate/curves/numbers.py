@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +13,14 @@ from numpy.typing import NDArray
 from pointcoord import Motion, NotComputed, Samples, Scene
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.numbers import meant_by
-from pointcoord.effects.registry import ALWAYS, EFFECTS, number_called, words_of
+from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES, number_called, words_of
 from pointcoord.wording import meant as hint
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
 from validate.formulations.asked_numbers import is_force, per_second
+from validate.formulations.asked_numbers import numbers_of as names_of
 from validate.formulations.protocol import Solution
-from validate.plain_text import shown, some_of
+from validate.plain_text import gathered, shown, some_of
 from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
@@ -44,7 +46,7 @@ class Number:
         sign: its positive direction in words; empty if it needs no statement.
         read: returns its values at the N instants of samples, (N,); KeyError if the samples lack it.
         missing: why the scene does not give it; None if the scene asks for it.
-        minus: whether its sign is opposite to that of pointcoord's number with this path.
+        minus: whether it is shown with the opposite sign of pointcoord's number with this path.
     """
 
     path: tuple[str, ...]
@@ -85,17 +87,17 @@ class Number:
         return ".".join(self.path[1:] if self.of_the_car or self.path[0] == PLACE.name else self.path)
 
     def shown(self, motion: Motion | None, samples: Sampled) -> Array:
-        """Its values as shown, (N,); angles in degrees.
+        """Its values as shown, (N,).
 
         Args:
             motion: may be None for a number of the car at poses without a motion.
         """
-        return self.read(motion, samples) * self.in_degrees
+        return self.factor * self.read(motion, samples)
 
     @property
-    def in_degrees(self) -> float:
-        """The factor from its unit to the shown unit: that from rad to degrees, or 1."""
-        return degrees_of(self.unit)[0]
+    def factor(self) -> float:
+        """The factor from its values to those shown: from rad to degrees, with the shown sign."""
+        return (-1.0 if self.minus else 1.0) * degrees_of(self.unit)[0]
 
     @property
     def unit_shown(self) -> str:
@@ -103,27 +105,24 @@ class Number:
         return degrees_of(self.unit)[1]
 
     def negative(self) -> Number:
-        """This number with the opposite sign."""
-
-        def read(motion: Motion | None, samples: Sampled) -> Array:
-            return np.negative(self.read(motion, samples))
-
+        """This number, shown with the opposite sign."""
         sign = f"not {self.sign}" if self.sign else ""
-        return replace(self, words=f"minus {self.words}", sign=sign, read=read, minus=True)
+        return replace(self, words=f"minus {self.words}", sign=sign, minus=True)
 
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:
     """Time, wheel travel and inputs of a scene, and every number that the scene can ask for."""
     time = Number((TIME,), TIME, "s", "", lambda _, samples: samples.times)
-    travel = [_travel(scene)] if scene.mechanism.topology.wheel_centre else []
-    found: dict[tuple[str, ...], Number] = {}
-    had = {*scene.mechanism.effects}
-    for number in (n for effect in (*ALWAYS, *EFFECTS.values()) for n in _of_effect(effect, scene)):
-        before = found.setdefault(number.path, number)
-        # Two effects may give the same number: it is not missing if the scene asks for one of them.
-        if before.missing and not (number.missing and before.missing.effect in had):
-            found[number.path] = number
-    return (time, *travel, *_inputs(scene), *found.values())
+    topology = scene.mechanism.topology
+    givers = gathered(
+        ((quantity, name), effect)
+        for effect in (*ALWAYS, *EFFECTS.values())
+        for quantity, names in names_of([effect], topology, tuple(topology.points)).items()
+        for name in names
+    )
+    travel = [_travel(scene)] if topology.wheel_centre else []
+    others = (number for path, effects in givers.items() for number in _called(*path, effects, scene))
+    return (time, *travel, *_inputs(scene), *others)
 
 
 def numbers_asked(
@@ -204,7 +203,7 @@ def _travel(scene: Scene) -> Number:
         assert motion is not None  # poses without a motion are not asked for it
         return np.asarray(movement(scene, motion, samples) @ up)
 
-    missing = _missing(ALWAYS[0], PLACE, scene.mechanism.topology.wheel_centre, scene)
+    missing = _missing(ALWAYS, PLACE, scene.mechanism.topology.wheel_centre, scene)
     return Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", read, missing)
 
 
@@ -234,42 +233,35 @@ def _inputs(scene: Scene) -> list[Number]:
     ]
 
 
-def _of_effect(effect: Effect, scene: Scene) -> Iterator[Number]:
-    topology = scene.mechanism.topology
-    gives = effect.gives_numbers(topology)
-    for quantity in effect.quantities:
-        every = topology.bodies if quantity.of == "body" else topology.points
-        names = gives[quantity.name]
-        for name in every if names is None else names:
-            path, missing = (quantity.name, name), _missing(effect, quantity, name, scene)
-            if quantity.of == "car":
-                known = number_called(name)
-                sign = known.sign if known else ""
-                yield Number(path, words_of(name), quantity.unit, sign, _reader(quantity, name), missing)
-                continue
-            for i, axis in enumerate(COMPONENTS):
-                along = _along(scene, i)
-                sign = f"about {along}" if along and quantity.of == "body" else along
-                words = f"{quantity.words} of {name.replace('_', ' ')}, {axis}"
-                yield Number((*path, axis), words, quantity.unit, sign, _reader(quantity, name, i), missing)
+def _called(name_of_quantity: str, name: str, effects: Sequence[Effect], scene: Scene) -> Iterator[Number]:
+    """A number of the car, or the three components of a vector, that some effects give."""
+    quantity = QUANTITIES[name_of_quantity]
+    path, missing = (quantity.name, name), _missing(effects, quantity, name, scene)
+    if quantity.of == "car":
+        known = number_called(name)
+        sign = known.sign if known else ""
+        yield Number(path, words_of(name), quantity.unit, sign, _reader(*path), missing)
+        return
+    for i, axis in enumerate(COMPONENTS):
+        along = _along(scene, i)
+        sign = f"about {along}" if along and quantity.of == "body" else along
+        words = f"{quantity.words} of {name.replace('_', ' ')}, {axis}"
+        yield Number((*path, axis), words, quantity.unit, sign, _reader(*path, (..., i)), missing)
 
 
-def _missing(effect: Effect, quantity: Quantity, name: str, scene: Scene) -> NotComputed | None:
-    """Why a scene does not give a number of an effect; None if the scene gives it."""
-    what = f"{quantity.words} of {name}"
-    if effect not in ALWAYS and effect.name not in scene.effects:
-        return NotComputed(what, effect.name)
-    if effect.reports_states and name in scene.unreported_points:
+def _missing(effects: Sequence[Effect], quantity: Quantity, name: str, scene: Scene) -> NotComputed | None:
+    """Why a scene does not give a number that any of some effects gives; None if the scene gives it."""
+    what, had = f"{quantity.words} of {name}", scene.mechanism.effects
+    asked = [effect for effect in effects if effect in ALWAYS or effect.name in scene.effects]
+    if not asked:
+        return NotComputed(what, next((one for one in effects if one.name in had), effects[-1]).name)
+    if asked[0].reports_states and name in scene.unreported_points:
         return NotComputed(what, "", f"add {name!r} to the scene's points")
     return None
 
 
-def _reader(quantity: Quantity, name: str, component: int | None = None) -> Read:
-    def read(_: Motion | None, samples: Sampled) -> Array:
-        values = samples.numbers[quantity.name][name]
-        return values if component is None else values[..., component]
-
-    return read
+def _reader(quantity: str, name: str, at: Any = ...) -> Read:
+    return lambda _, samples: samples.numbers[quantity][name][at]
 
 
 def _along(scene: Scene, i: int) -> str:

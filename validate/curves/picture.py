@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from validate.curves.numbers import TRAVEL, Curves, Number
 from validate.output.columns import DESIGN
 from validate.output.figure import BLUE, FAINT, GREEN, GREY, LOOK, ORANGE, PINK, RED, SHADES, SKY, panels
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -70,10 +70,7 @@ def figure_of(table: pd.DataFrame, across: str, up: Sequence[str], title: str) -
 
 def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
     """Groups of numbers that are drawn on the same axis."""
-    found: dict[tuple[str, ...], list[Number]] = {}
-    for number in numbers:
-        found.setdefault((*number.panel, number.unit), []).append(number)
-    return list(found.values())
+    return [*gathered(((*number.panel, number.unit), number) for number in numbers).values()]
 
 
 def _draw(axes: Axes, curves: Curves, values: Values, size: tuple[float, float]) -> None:

@@ -39,7 +39,7 @@ def why_refused(error: Exception) -> str:
     reason = reason_of(error)
     names = [one.__name__ for one in type(reason).__mro__]
     if isinstance(reason, AssemblyError):
-        if reason.problem.startswith("the drawing"):
+        if not reason.reduce:  # no input has a change left: the drawing itself does not close
             return DRAWING
         return START if reason.partial is None else MOTION
     if isinstance(reason, NoAnswer) and reason.name:

@@ -84,7 +84,7 @@ class _HomePose:
 
     def __init__(self, path: str, axes: Axes) -> None:
         """Read a model, with the files that it includes."""
-        self.path, self.to_scene, self.mujoco = path, axes.matrix.T, needed("import", "mujoco", "peers")
+        self.path, self.to_scene, self.mujoco = path, axes.matrix.T, needed("import", "mujoco")
         try:
             spec = self.mujoco.MjSpec.from_file(path)
             self.model = model = spec.compile()

@@ -23,12 +23,6 @@ GENERATOR = "pointcoord report"
 # The mark is within these first bytes of a page.
 BEGINNING = 4096
 PAGE = "index.html"
-# Nothing is loaded from elsewhere: styles are in the page, pictures are made by plotly from its plots, and
-# only scripts with these hashes run.
-POLICY = (
-    "default-src 'none'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
-    "form-action 'none'; script-src {}"
-)
 
 
 def page(run: Run, files: Mapping[str, str]) -> str:
@@ -39,19 +33,18 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     Raises:
         MissingLibrary: a package of the extra `report` is not installed.
     """
-    jinja2 = needed("report", "jinja2", "report")
+    jinja2 = needed("report", "jinja2")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined
     )
     made = [(section, blocks) for section in SECTIONS if (blocks := tuple(section.blocks(run)))]
     scripts = [_own(name) for name in SCRIPTS]
     if any(isinstance(block, Plots | Spatial) for _, blocks in made for block in blocks):
-        scripts.insert(0, needed("report", "plotly.offline", "report").get_plotlyjs())
-    hashes = (b64encode(sha256(script.encode()).digest()).decode() for script in scripts)
+        scripts.insert(0, needed("report", "plotly.offline").get_plotlyjs())
     text = environment.get_template("page.html").render(
         run=run,
         parts=made,
-        policy=POLICY.format(" ".join(f"'sha256-{one}'" for one in hashes)),
+        hashes=[b64encode(sha256(script.encode()).digest()).decode() for script in scripts],
         generator=GENERATOR,
         style=_own("page.css"),
         scripts=scripts,

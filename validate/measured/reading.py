@@ -88,7 +88,7 @@ def read_columns(path: str) -> Columns:
 
 
 def _parquet(path: str, source: str) -> Columns:
-    parquet = needed(".parquet", "pyarrow.parquet", "parquet")
+    parquet = needed(".parquet", "pyarrow.parquet")
     try:
         table = parquet.read_table(path)
         found = {name_and_unit(name): table.column(i).to_numpy() for i, name in enumerate(table.column_names)}

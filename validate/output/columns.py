@@ -20,8 +20,8 @@ from pydantic_core import to_json
 
 from pointcoord import Motion, Sweep
 from pointcoord.results.named_columns import columns, number_columns
-from validate.extras import needed
-from validate.output.files import require_known_ending, write_whole
+from validate.output.console import Console
+from validate.output.files import write_whole
 
 Array = NDArray[np.float64]
 Block = Mapping[str, NDArray[Any]]
@@ -40,28 +40,25 @@ PIECE = 2**20
 GROUP = 16
 
 
-def require_table(target: str) -> None:
-    """Refuse a file whose ending gives no known format, before anything is solved.
+def put_table(target: str, blocks: Iterator[Block], what: str, console: Console, group: int = 1) -> None:
+    """Write the rows of a motion or of a sweep: as CSV on standard output for `-`, otherwise as a file.
 
+    Args:
+        what: the rows in words, such as `the motion`.
+        group: number of blocks in a row group of Parquet, `GROUP` for a motion.
     Raises:
-        UsageError: the ending is not in `ENDINGS`. MissingLibrary: pyarrow, for Parquet, is not installed.
+        NotFinished: the rows cannot be written; an old file is kept unchanged.
+        PointcoordError: raised by the blocks as they are solved.
     """
-    require_known_ending(target, ENDINGS)
-    if Path(target).suffix == ".parquet":
-        needed(".parquet", "pyarrow.parquet", "parquet")
+    if target == "-":
+        console.write_lines(csv_lines(blocks))
+    else:
+        write_table(target, blocks, group)
+        console.written[target] = what
 
 
 def write_table(target: str, blocks: Iterator[Block], group: int = 1) -> None:
-    """Write the rows of a motion or of a sweep in the format that the target's ending gives.
-
-    Args:
-        group: number of blocks in a row group of Parquet, `GROUP` for a motion.
-    Raises:
-        UsageError, MissingLibrary: see `require_table`.
-        NotFinished: the file cannot be written; an old file is kept unchanged.
-        PointcoordError: raised by the blocks as they are solved.
-    """
-    require_table(target)
+    """Write a file of rows, one of `ENDINGS`; see `put_table`."""
     ending = Path(target).suffix
 
     def write(stream: BinaryIO) -> None:

@@ -115,15 +115,18 @@ class Console:
             with suppress(OSError, ValueError):
                 print(f"pointcoord: {one_line(message)}", file=sys.stderr, flush=True)
 
-    def note(self, message: str) -> None:
-        """One line of information on standard error; nothing if the run is quiet."""
-        if not self.quiet:
-            self.complain(f"note: {message}")
+    def note(self, *messages: str, of: str = "", kind: str = "note") -> None:
+        """Lines of information on standard error; nothing if the run is quiet.
 
-    def warn(self, message: str) -> None:
-        """One line of warning on standard error; it does not change the exit status. Nothing if quiet."""
-        if not self.quiet:
-            self.complain(f"warning: {message}")
+        Args:
+            of: the scene or file that the messages are about, if they do not name it.
+        """
+        for message in () if self.quiet else messages:
+            self.complain(f"{kind}: {of}{': ' if of else ''}{message}")
+
+    def warn(self, *messages: str, of: str = "") -> None:
+        """Lines of warning, see `note`; they do not change the exit status."""
+        self.note(*messages, of=of, kind="warning")
 
     @contextmanager
     def progress(

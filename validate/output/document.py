@@ -10,6 +10,7 @@ import math
 import os
 import shlex
 import time
+from argparse import Namespace
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -28,6 +29,8 @@ PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint", "mujoco", "exudyn
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 # Kinds of runs that compare nothing: their times and numbers are neither right nor wrong.
 COMPARES_NOTHING = ("cost", "fit", "fit-suspects", "hard-list")
+# Kinds of runs whose document has the times of its start and its end; others have them with --timings only.
+TIMED = ("cost", "hard", "hard-list", "random", "bounds", "claims")
 PAUSE = 9.0  # pause after a journal is written, in multiples of the time that writing took
 
 
@@ -200,6 +203,19 @@ class Journal:
     what: Callable[[], str]
     _next: float = 0.0
 
+    @classmethod
+    def of(
+        cls,
+        options: Namespace,
+        console: Console,
+        kind: str,
+        results: Callable[[], Mapping[str, Any]],
+        what: Callable[[], str],
+    ) -> Journal:
+        """The JSON that the option --json of a command asks for, of a run that begins now."""
+        timed = getattr(options, "timings", kind in TIMED)
+        return cls(options.json, Head.of(kind, options.command, timed), console, results, what)
+
     def keep(self) -> None:
         """Write the results so far, unless the last writing was too recent.
 
@@ -207,7 +223,7 @@ class Journal:
             NotFinished: the file cannot be written.
         """
         if self.target not in (None, "-") and (began := time.monotonic()) >= self._next:
-            self._write(None, False)
+            self.write(None, False)
             # Writing takes longer the more results there are; the pause keeps it below a tenth of the run.
             self._next = time.monotonic() + PAUSE * (time.monotonic() - began)
 
@@ -220,11 +236,16 @@ class Journal:
 
         def write(ending: Ending) -> None:
             if ending.complete or self.what():
-                self._write(ending.status, ending.complete)
+                self.write(ending.status, ending.complete)
 
         return at_the_end(write)
 
-    def _write(self, status: ExitStatus | None, complete: bool) -> None:
+    def write(self, status: ExitStatus | None, complete: bool = True) -> None:
+        """Write the document; status None for a run in progress.
+
+        Raises:
+            NotFinished: the file cannot be written.
+        """
         if self.target is not None:
             document = self.head.document(self.results(), status, complete)
             self.console.put(self.target, json_text(document), self.what())

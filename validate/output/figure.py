@@ -7,15 +7,13 @@ from contextlib import ContextDecorator
 from textwrap import fill
 from typing import Any
 
-from validate.extras import not_there
+from validate.extras import needing
 from validate.plain_text import shown
 
-try:
+with needing("a picture"):
     import matplotlib as mpl
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-except ImportError as error:
-    raise not_there("validate.output.figure", error, "plot") from None
 
 # Okabe and Ito, Color Universal Design, 2008, without yellow, which is too light for lines on paper.
 ORANGE, SKY, GREEN = "#e69f00", "#56b4e9", "#009e73"
@@ -72,9 +70,9 @@ def plain(axes: Axes) -> None:
 
 
 @LOOK
-def drawn(figure: Figure, ending: str) -> bytes:
-    """A figure as the bytes of a file, `svg` or `png`; equal figures give equal bytes."""
-    stream = io.BytesIO()
+def drawn(figure: Figure, target: str = "") -> bytes:
+    """A figure as the bytes of a file: PNG if its name ends in .png, else SVG. Equal figures, equal bytes."""
+    ending, stream = "png" if target.endswith(".png") else "svg", io.BytesIO()
     # Without a date and library version, which would change the bytes.
     metadata: dict[str, Any] = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
     figure.savefig(stream, format=ending, dpi=DOTS, metadata=metadata)

@@ -7,6 +7,7 @@ the left and from above. The lines between points come from the topology.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from textwrap import wrap
 from xml.sax.saxutils import escape
 
@@ -32,18 +33,7 @@ KEY = (
     "blue: as drawn; red: as closed, where that differs by a pixel; filled: on the chassis; "
     "dashed: steering axis and spin axis"
 )
-STYLE = """
-text { font: 11px sans-serif; fill: #222 }
-.title { font-size: 13px; font-weight: bold }
-.member { stroke: #3b6ea5; stroke-width: 2.5; stroke-linecap: round }
-.closed { stroke: #c44e2b; stroke-width: 1 }
-.axis { stroke: #888; stroke-width: 1; stroke-dasharray: 7 4 }
-.body { fill: #3b6ea5; fill-opacity: 0.15; stroke: none }
-.chassis { fill: #222 }
-.moving { fill: #fff; stroke: #222; stroke-width: 1.5 }
-.number { text-anchor: middle; paint-order: stroke; stroke: #fff; stroke-width: 3px }
-.frame { fill: none; stroke: #ddd }
-"""
+STYLE = Path(__file__).with_name("picture.css")
 
 
 def svg(drawing: ClosedDrawing) -> str:
@@ -62,7 +52,7 @@ def svg(drawing: ClosedDrawing) -> str:
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
         f'viewBox="0 0 {width:.0f} {height:.0f}">',
-        f'<style>{STYLE}</style><rect width="100%" height="100%" fill="#fff"/>',
+        f'<style>\n{STYLE.read_text(encoding="utf-8")}</style><rect width="100%" height="100%" fill="#fff"/>',
         _text(MARGIN, 1.5 * LINE, drawing.scene.title or "scene", "title"),
     ]
     up, right = np.array(part.up), np.array(part.right)

@@ -14,7 +14,7 @@ from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding
 from validate.output.table import Cell, Part, Table
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown
 from validate.tables.units import degrees_of
 
 if TYPE_CHECKING:  # most runs compare no file
@@ -127,11 +127,6 @@ def share_of_all(done: Sized, every: Sized, noun: str) -> str:
     return f"{len(done)} of {counted_as(len(every), noun)}" if done else ""
 
 
-def agreeing(agreed: int, count: int) -> str:
-    """How many scenes agree: 1 of 1 scene agrees, 2 of 3 scenes agree."""
-    return f"{agreed} of {count} {'scene agrees' if count == 1 else 'scenes agree'}"
-
-
 def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) -> tuple[Part, ...]:
     """A comparison as a table with a heading and notes; angles are in degrees.
 
@@ -144,12 +139,11 @@ def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) 
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
     count = counted_as(len(outcome.solutions[0].times), "row" if over else "instant")
     remarks = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
+    lines = (*silent_lines(outcome), *(f"note: {note}" for note in remarks), *explained_lines(outcome))
     return (
         f"{outcome.scene}: {pair_of(outcome)}, {count}{f' over {shown(over)}' if over else ''}{factor}",
         Table(HEAD, tuple(rows)),
-        *silent_lines(outcome),
-        *(f"  note: {note}" for note in remarks),
-        *explained_lines(outcome),
+        *(f"  {line}" for line in lines),
     )
 
 
@@ -159,9 +153,7 @@ def quantity_rows(outcome: Outcome) -> Iterator[tuple[str | Cell, ...]]:
     A row has the largest difference with its place and tolerance; the largest share of a tolerance, which may
     be that of another number; and the verdict of the row from `worst_rows`.
     """
-    of_one: dict[str, list[Comparison]] = {}
-    for row in outcome.rows:
-        of_one.setdefault(heading(row.quantity, row.name), []).append(row)
+    of_one = gathered((heading(row.quantity, row.name), row) for row in outcome.rows)
     for worst in worst_rows(outcome):
         words = heading(worst.quantity, worst.name)
         given = [row for row in of_one[words] if row.verdict != "not given"]
@@ -197,13 +189,13 @@ def file_parts(found: DataOutcome) -> tuple[Part, ...]:
 def silent_lines(outcome: Outcome) -> Iterator[str]:
     """Why there is no verdict if the rows do not show it, and which given data cannot be used."""
     if outcome.why_no_verdict:
-        yield f"  no verdict: {outcome.why_no_verdict}"
-    yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
+        yield f"no verdict: {outcome.why_no_verdict}"
+    yield from (f"cannot be used: {fault}" for fault in outcome.faults)
 
 
 def explained_lines(outcome: Outcome) -> Iterator[str]:
     """Possible explanations of a disagreement, the likeliest first."""
-    yield from (f"  possible explanation: {one.words}" for one in outcome.explanations[:MOST_EXPLANATIONS])
+    yield from (f"possible explanation: {one.words}" for one in outcome.explanations[:MOST_EXPLANATIONS])
 
 
 def printed_parts(examined: Sequence[Examined], findings: Sequence[Finding]) -> Iterator[Part]:

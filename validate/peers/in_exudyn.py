@@ -17,18 +17,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.extras import not_there
+from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree, axes_along, car_directions
 
 Array = NDArray[np.float64]
 
 # Imported by name, since exudyn's type hints differ from the arguments that its compiled functions take.
-try:
+with needing("exudyn"):
     exudyn: Any = import_module("exudyn")
     items: Any = import_module("exudyn.itemInterface")
-except ImportError as error:
-    raise not_there("exudyn", error, "peers") from error
 
 TURNS = (exudyn.JointType.RevoluteX, exudyn.JointType.RevoluteY, exudyn.JointType.RevoluteZ)
 MOVES = ("Velocity", "Acceleration", "AngularVelocity", "AngularAcceleration")

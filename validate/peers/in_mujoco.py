@@ -13,14 +13,12 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.extras import not_there
+from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Place, SpanningTree
 
-try:
+with needing("mujoco"):
     import mujoco
-except ImportError as error:
-    raise not_there("mujoco", error, "peers") from error
 
 Array = NDArray[np.float64]
 

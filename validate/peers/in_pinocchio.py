@@ -12,14 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.extras import not_there
+from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree
 
-try:
+with needing("relative"):
     import pinocchio
-except ModuleNotFoundError as error:
-    raise not_there("relative", error) from None
 
 Array = NDArray[np.float64]
 

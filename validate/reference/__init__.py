@@ -3,9 +3,9 @@
 It shares no code with the formulations that it judges. "Error" means the difference from its numbers.
 """
 
-from validate.extras import not_there
+from validate.extras import needing
 
-try:
+with needing("validate.reference"):
     from validate.reference.design import Design as Design
     from validate.reference.errors import InfeasibleError as InfeasibleError
     from validate.reference.errors import NoReferenceError as NoReferenceError
@@ -14,5 +14,3 @@ try:
     from validate.reference.instant import Instant as Instant
     from validate.reference.solve import instants_of as instants_of
     from validate.reference.solve import pose_exists as pose_exists
-except ModuleNotFoundError as error:
-    raise not_there("validate.reference", error) from None

@@ -171,8 +171,8 @@ def quiet_dask() -> Any:
     Raises:
         MissingLibrary: the package is not installed.
     """
-    needed("study", "dask", "cluster").config.set({"logging": dict.fromkeys(LOGGERS, "critical")})
-    distributed = needed("study", "distributed", "cluster")
+    needed("study", "dask").config.set({"logging": dict.fromkeys(LOGGERS, "critical")})
+    distributed = needed("study", "distributed")
     for name in LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     return distributed

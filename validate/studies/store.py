@@ -58,7 +58,7 @@ class Store:
             UsageError: a file cannot be read.
         """
         found: dict[Task, list[Row]] = {}
-        parquet, columns = needed("study", "pyarrow.parquet", "cluster"), [*EVERY, *self.study.columns]
+        parquet, columns = needed("study", "pyarrow.parquet"), [*EVERY, *self.study.columns]
         for file in self.files():
             here: dict[Task, list[Row]] = {}
             try:
@@ -80,7 +80,7 @@ class Store:
         Raises:
             NotFinished: the file cannot be written.
         """
-        pa, parquet = (needed("study", name, "cluster") for name in ("pyarrow", "pyarrow.parquet"))
+        pa, parquet = (needed("study", name) for name in ("pyarrow", "pyarrow.parquet"))
         columns = {**EVERY, **self.study.columns}
         schema = pa.schema([(name, getattr(pa, kind)()) for name, kind in columns.items()])
         table = pa.Table.from_pylist(list(rows), schema=schema)
@@ -105,7 +105,7 @@ def records(folder: Path, study: Study) -> Store:
     Raises:
         UsageError: the records are of another study or version, or the folder cannot be used.
     """
-    needed("study", "pyarrow.parquet", "cluster")
+    needed("study", "pyarrow.parquet")
     store = Store(folder, study)
     try:
         if folder.exists() and not folder.is_dir():

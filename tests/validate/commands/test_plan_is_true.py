@@ -66,7 +66,7 @@ def test_a_long_table_is_planned_by_a_map_and_says_why(
     work = motion.work
     assert (len(planned.solved.orders), sum(planned.solved.orders)) == (work.segments, work.series_orders)
     assert planned.work.factorisations == work.factorisations
-    monkeypatch.setattr("validate.commands.scenes.load_scene", lambda _: scene)
+    monkeypatch.setattr("validate.commands.usage.load_scene", lambda _: scene)
     assert main(["plan", "steer"]) == 0
     told = capsys.readouterr().out
     assert "solved by a map of the inputs: series in time would be about 2.1e+03, and 2000 are" in told

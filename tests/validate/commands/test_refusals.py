@@ -90,7 +90,7 @@ def test_what_cannot_be_done_is_one_line_that_says_why_and_nothing_is_written(
         ("simulate steer -o m.parquet", "pyarrow.parquet", "parquet"),
         ("report OUT steer", "jinja2", "report"),
         ("plot steer -o a.svg", "matplotlib", "plot"),
-        ("export steer", "validate.peers.mjcf", "peers"),
+        ("export steer", "mujoco", "peers"),
     ],
 )
 def test_without_a_package_the_extra_is_named(

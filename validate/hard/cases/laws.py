@@ -13,6 +13,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from pointcoord import NotFollowed
 from validate.cars.car import Law
 from validate.hard.answer import Answer, Trial
 from validate.hard.case import RIGHT, SOLVERS, Case, decades, family, right_from
@@ -105,18 +106,19 @@ def close_times_of_a_table(subject: Subject, value: float) -> Content:
     return subject.content(*laws, stop=1.0, samples=5)
 
 
-def told_as_rough(subject: Subject, _: float, __: Trial, answer: Answer) -> Answer:
+def refused_as_rough(subject: Subject, _: float, trial: Trial, answer: Answer) -> Answer:
     """A refusal must name the first input as the law that the series cannot follow; otherwise it is wrong.
 
     The mechanism is not near a singular pose, so singularity must not be given as the reason.
     """
-    rough = answer.reason.startswith(f"NotFollowed: input '{subject.driven[0]}'")
-    if answer.outcome != "refused" or (rough and "singular" not in answer.reason):
+    reason = getattr(trial.came.get(answer.formulation), "reason", None)
+    rough = isinstance(reason, NotFollowed) and reason.name == subject.driven[0]
+    if answer.outcome != "refused" or rough:
         return answer
     return replace(answer, outcome="wrong", reason=f"refused for another reason: {answer.reason}")
 
 
-@_laws("time of the jump, s", WITHIN, JUMP, judge=told_as_rough)
+@_laws("time of the jump, s", WITHIN, JUMP, judge=refused_as_rough)
 def jump_of_a_table(subject: Subject, value: float) -> Content:
     """An input moves within a very short time: accelerations grow as the inverse square of this time."""
     times, first = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0), subject.driven[0]

@@ -9,6 +9,7 @@ from validate.html.blocks import Block, Panel, Paragraph, Plots, marks, panel, p
 from validate.html.hard_cases import Case
 from validate.html.run import Run
 from validate.output.table import Cell, Table
+from validate.plain_text import gathered
 
 WORDS = (
     "Every answer is compared with a proven reference of 60 digits. An answer must be right within "
@@ -43,10 +44,11 @@ def _panel(case: Case) -> Panel:
     """The errors of each formulation by outcome; an answer without one is drawn below the least error."""
     floor = min(a.error for _, a in case.answers if a.error) / 10.0
     colours = dict(zip(dict.fromkeys(a.formulation for _, a in case.answers), cycle(COLOURS)))
-    points: dict[tuple[str, str], list[tuple[float, float]]] = {}
-    for value, a in case.answers:
-        if value > 0.0:
-            points.setdefault((a.formulation, a.outcome), []).append((value, max(a.error or 0.0, floor)))
+    points = gathered(
+        ((a.formulation, a.outcome), (value, max(a.error or 0.0, floor)))
+        for value, a in case.answers
+        if value > 0.0
+    )
     traces = []
     for (name, outcome), some in sorted(points.items(), key=lambda one: [*colours].index(one[0][0])):
         values, errors = zip(*some, strict=True)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from stand_in import stand_in
 
-from pointcoord import Scene
+from pointcoord import NotFollowed, Scene, SingularConfiguration
 from pointcoord.solve import taylor
 from pointcoord.solve.proven_step import Proof
 from validate.formulations.protocol import FormulationError, Solution
@@ -74,13 +74,13 @@ def test_a_map_refuses_an_input_whose_rates_overflow() -> None:
 
 
 def test_a_jump_refused_for_another_reason_is_wrong() -> None:
-    def told(reason: str) -> str:
-        answer = Answer("pointcoord", "refused", reason)
-        return laws.told_as_rough(PAPER, 1e-9, Trial(1e-9, (answer,)), answer).outcome
+    def judged(reason: Exception) -> str:
+        answer, came = Answer("pointcoord", "refused"), {"pointcoord": FormulationError("pointcoord", reason)}
+        return laws.refused_as_rough(PAPER, 1e-9, Trial(1e-9, (answer,), came=came), answer).outcome
 
-    assert told("NotFollowed: input 'arm_angle' changes too fast") == "refused"
-    assert told("NotFollowed: input 'rack' changes too fast") == "wrong"
-    assert told("SingularConfiguration: singular configuration at t = 0.5 s") == "wrong"
+    assert judged(NotFollowed(0.5, name="arm_angle")) == "refused"
+    assert judged(NotFollowed(0.5, name="rack")) == "wrong"
+    assert judged(SingularConfiguration("x of rack_centre", 1e17)) == "wrong"
 
 
 def test_a_refusal_that_names_nothing_of_what_is_at_fault_is_wrong() -> None:
