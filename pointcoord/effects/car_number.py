@@ -116,8 +116,9 @@ class Angle(Number):
     formula: Callable[..., Any] = field(init=False)
 
     def __post_init__(self) -> None:
-        letter, seen = LETTERS[self.line], (d.replace("_", " ") for d in (self.sine, self.cosine))
-        components = ", ".join(f"{letter} . {direction}" for direction in seen)
+        letter = LETTERS[self.line]
+        components = f"{letter} . {self.sine}, {letter} . {self.cosine}"
+        components = components.replace("to_the_left", "(up x outboard)")
         made = {"formula": self._of_corner, "roles": (self.line,), "definition": f"atan2({components})"}
         for name, value in made.items():
             object.__setattr__(self, name, value)

@@ -68,8 +68,7 @@ def _suites(record: Record) -> Iterator[Suite]:
         scene = {"scene": examined.name}
         for outcome in examined.outcomes:
             first, second = (solution.formulation for solution in outcome.solutions)
-            instants = len(outcome.solutions[0].times) if outcome.compared is None else outcome.compared
-            pair = {"first": first, "second": second, "instants": str(instants)}
+            pair = {"first": first, "second": second, "instants": str(outcome.compared)}
             cases = [*(_compared(row, outcome) for row in outcome.rows), *_unusable(outcome)]
             yield f"{examined.name}: {first} and {second}", {**scene, **pair, **factor}, cases
         if faults := [*_faults(examined)]:

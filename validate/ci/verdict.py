@@ -113,10 +113,17 @@ def _since(record: Record) -> Iterator[str]:
     ]
     if lost:
         yield f"given in the baseline and not now: {'; '.join(lost)}"
-    yield from (f"no verdict: {since.words}" for since in record.since if since.replaced)
+    yield from (f"no verdict: {why}" for why in undecided_since(record))
     if record.gone:
         gone = [since.scene for since in record.gone]
         yield f"gone, in the baseline and not in this run: {some_of(gone, NAMED)}"
+
+
+def undecided_since(record: Record) -> Iterator[str]:
+    """Why scenes have no verdict on their movement since the baseline."""
+    for since in record.since:
+        if since.status is ExitStatus.NO_VERDICT:
+            yield since.words or f"{since.scene}: some numbers are not tested"
 
 
 HEAD = ("scene", "verdict", "largest share of a tolerance, and where")
@@ -124,7 +131,10 @@ HEAD = ("scene", "verdict", "largest share of a tolerance, and where")
 
 
 def scene_row(examined: Examined) -> tuple[str, str, str]:
-    """Name, verdict, and the largest share of a tolerance with its place, or the reason why there is none."""
+    """Name, verdict, and the largest share of a tolerance with its place, or the reason why there is none.
+
+    If one formulation gives only some of the instants, the text says how many were compared.
+    """
     verdict, why = standing(examined)
     text = why or (silence(examined) if verdict == NOT_TESTED else "")
     if not text and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
@@ -132,7 +142,9 @@ def scene_row(examined: Examined) -> tuple[str, str, str]:
         text = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
         if outcome is not examined.outcomes[0]:
             text += f", {outcome.solutions[0].formulation}"
-    return examined.name, verdict, text
+    asked = [(one.compared, len(one.solutions[1].times)) for one in examined.outcomes]
+    few = (f"only {some} of {every} instants compared" for some, every in asked if some < every)
+    return examined.name, verdict, "; ".join(filter(None, [text, *few]))
 
 
 def scene_line(row: Sequence[str], seconds: float | str, width: int) -> str:

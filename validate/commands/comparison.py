@@ -276,10 +276,8 @@ def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
             # The complaint of a scene has been printed already.
             if not one.complaint and (why := verdict.silence(one)):
                 console.complain(f"{one.name}: {why}")
-        for since in record.since:
-            if since.status is ExitStatus.NO_VERDICT:
-                words = since.words or f"{since.scene}: some numbers are not tested"
-                console.complain(f"no verdict since the baseline: {words}")
+        for why in verdict.undecided_since(record):
+            console.complain(f"no verdict since the baseline: {why}")
 
 
 COMMANDS = {"validate": Command(run, PAGE_WORDS)}

@@ -89,7 +89,7 @@ class Outcome:
         notes: remarks of the formulations on numbers without meaning, and what is wrong with their numbers.
         missing: one line for each kind of number that one formulation does not give.
         faults: one line for each part of a solution that cannot be used; the notes repeat these lines.
-        compared: number of rows compared, for a file of results; None: all instants that both give.
+        compared: number of instants that both give, or of rows compared, for a file of results.
         factor: factor on the derived tolerances.
         explanations: possible explanations of the disagreements, the best first; empty if not searched for.
     """
@@ -99,10 +99,10 @@ class Outcome:
     solutions: tuple[Solution, Solution]
     notes: tuple[str, ...]
     missing: tuple[str, ...]
+    compared: int
     factor: float = 1.0
     explanations: tuple[Explanation, ...] = ()
     faults: tuple[str, ...] = ()
-    compared: int | None = None
 
     @property
     def agreed(self) -> bool:
@@ -260,7 +260,7 @@ def compare_solutions(
         pair = Pair(quantity, (first, second), factor)
         for part in parts:
             rows.append(_reasoned(_row(name, part, pair, instants, scene), absent, notes, faults))
-    return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor, faults=faults)
+    return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), len(instants), factor, faults=faults)
 
 
 def _parts(quantity: str, asked: Sequence[str], one: Solution, two: Solution) -> list[str]:

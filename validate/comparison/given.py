@@ -13,6 +13,7 @@ import numpy as np
 
 from pointcoord.effects.registry import QUANTITIES
 from validate.formulations.protocol import Accuracy, Array, FormulationError, Places, Solution, shape_of
+from validate.plain_text import shown
 
 Arrays = dict[str, dict[str, Array]]
 
@@ -54,8 +55,8 @@ def given(solution: Solution, instants: Array) -> Solution:
     common: Array = instants
     places: Places = slice(None)
     if not np.array_equal(times, instants):
-        # Of several rows with the same time the first counts.
         common, _, places = np.intersect1d(instants, times, return_indices=True)
+    again = _first_rows(times)
     if len(common) < len(instants):
         notes.append(f"{who} gives {len(common)} of {len(instants)} instants; the others are not compared")
     numbers: Arrays = {quantity: {} for quantity in QUANTITIES}
@@ -72,6 +73,11 @@ def given(solution: Solution, instants: Array) -> Solution:
             array = _shaped(raw, shape)
             if isinstance(array, str):
                 faults.append(f"{what} {array}; it is ignored")
+                continue
+            other = ((array != array[again]) & ~np.isnan(array)).reshape(len(array), -1).any(axis=-1)
+            if other.any():
+                when = f"{times[np.argmax(other)]:g} s"
+                faults.append(f"{what} has different numbers at one instant, {when}; it is ignored")
                 continue
             finite = np.isfinite(array)
             wrong = 0 if finite.all() else int(np.sum(~finite.reshape(len(array), -1).all(axis=-1)))
@@ -102,6 +108,14 @@ def usable(solution: Solution, instants: Array) -> Solution:
     return Solution(side.formulation, side.times, numbers, accuracy)
 
 
+def _first_rows(times: Array) -> Places:
+    """The index of the first row that has the time of each row; a slice of all if no time is repeated."""
+    if (times[1:] > times[:-1]).all():
+        return slice(None)
+    _, first, of = np.unique(times, return_index=True, return_inverse=True)
+    return np.asarray(first[of])
+
+
 def _by_name(part: object, what: str, faults: list[str]) -> Mapping[str, object]:
     """The mapping itself; for anything else a fault is added and an empty mapping returned."""
     if isinstance(part, Mapping):
@@ -120,6 +134,8 @@ def _shaped(raw: object, shape: tuple[int, ...]) -> Array | str:
 
 def _real(raw: object) -> Array | str:
     """The numbers as an array of doubles, or what is wrong with them."""
+    if isinstance(raw, str):
+        return f"is {shown(raw)!r}; needed: real numbers"
     try:
         array = np.asarray(raw)
     except (ValueError, TypeError) as error:

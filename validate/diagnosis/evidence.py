@@ -154,7 +154,8 @@ class Evidence:
         other_cars: whether the instants are those of the scene, so that other cars can be solved there.
         own: further errors of the given numbers, such as their rounding, in their unit; added to `allowed`.
         known: positions of points, (N, 3), in addition to the rows.
-        units: unit in words, for rows whose unit differs from that of their quantity, such as derivatives.
+        units: unit of given amounts in words, and its factor to our unit, if not that of the quantity.
+        labels: the instants in words, such as lines of a file; their times if empty.
     """
 
     scene: Scene
@@ -168,7 +169,8 @@ class Evidence:
     other_cars: bool = True
     own: Rows = field(default_factory=dict)
     known: Mapping[str, Array] = field(default_factory=dict)
-    units: Mapping[Row, str] = field(default_factory=dict)
+    units: Mapping[Row, tuple[str, float]] = field(default_factory=dict)
+    labels: Sequence[str] = ()
 
     @classmethod
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
@@ -228,6 +230,14 @@ class Evidence:
         wrong = (row for row, held in self.held.items() if there.left(row, held, self.allowed[row]) > 1.0)
         return replace(there, wrong=tuple(wrong))
 
+    def unit_of(self, row: Row) -> tuple[str, float]:
+        """The unit in which amounts of a row are reported, and its factor to our unit."""
+        return self.units.get(row, (row.unit, 1.0))
+
+    def label(self, place: int) -> str:
+        """An instant in words."""
+        return self.labels[place] if self.labels else f"{self.times[place]:g} s"
+
     def off_by(self, row: Row) -> Array:
         """The allowed differences of a row, including the errors of the given numbers."""
         return np.asarray(self.allowed[row] + self.own.get(row, 0.0))
@@ -245,6 +255,11 @@ class Evidence:
         gap = gaps_between(self.given[row], value, QUANTITIES[row.quantity].unit)
         with np.errstate(over="ignore"):  # a tolerance may be tiny
             return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
+
+    def wrong_at(self, row: Row) -> NDArray[np.bool_]:
+        """The instants at which a row disagrees, (N,)."""
+        gap = gaps_between(self.given[row], self.held[row], QUANTITIES[row.quantity].unit)
+        return np.asarray(~(gap <= self.off_by(row)).reshape(len(gap), -1).all(axis=-1))
 
     def explained(self, rows: Mapping[Row, WouldBe]) -> bool:
         """Whether all given numbers of rows are within their tolerances."""

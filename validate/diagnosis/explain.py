@@ -30,6 +30,8 @@ from validate.diagnosis.kinds import KINDS
 # Limits of the number of instants for which a shift by one sample is tried together with another car: one
 # instant can be left out, and the two further searches take a second or two.
 FEWEST_LATE, MOST_LATE = 8, 2000
+# An unexplained row is reported as wrong in part if it agrees at least at this share of the instants.
+LEAST_RIGHT = 0.25
 
 
 def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
@@ -57,7 +59,25 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
                 if not _open(undone, [one]):
                     both = replace(one, words=f"{one.words}, and {words}", kind=f"{one.kind} and {kind}")
                     return (_in_words(undone, both),)
-    return tuple(_in_words(evidence, one) for one in found)
+    return (*(_in_words(evidence, one) for one in found), *_wrong_in_part(evidence, found))
+
+
+def _wrong_in_part(evidence: Evidence, found: Iterable[Hypothesis]) -> Iterator[Explanation]:
+    """Where unexplained rows disagree, if that is one stretch and they agree at a share of all instants."""
+    rows_of: dict[tuple[int, int], list[Row]] = {}
+    for row in _open(evidence, found):
+        places = np.flatnonzero(evidence.wrong_at(row))
+        first, last = int(places[0]), int(places[-1])
+        if len(places) == last - first + 1 <= (1.0 - LEAST_RIGHT) * len(evidence.times):
+            rows_of.setdefault((first, last), []).append(row)
+    for (first, last), rows in rows_of.items():
+        where, end = evidence.label(first), evidence.label(last)
+        where = f"at {where} only" if first == last else f"from {where} to {end} only"
+        noun = "rows" if evidence.labels else "instants"
+        words = f"disagrees {where}, {last - first + 1} of {len(evidence.times)} {noun}"
+        share = max(evidence.left(row, evidence.held[row], evidence.allowed[row]) for row in rows)
+        fault = Hypothesis(words, {}, kind="part", explains=tuple(rows), leftover=share)
+        yield _in_words(evidence, fault)
 
 
 def _explained(evidence: Evidence) -> list[Hypothesis]:
@@ -138,7 +158,7 @@ def _pairs(evidence: Evidence) -> Iterator[Hypothesis]:
         for one in _merged(first, evidence) if first.opens else ():
             after = evidence.after(one.rows, tuple(row for row in evidence.wrong if row in one.rows))
             if first.name == "unit":
-                after = replace(after, units=dict.fromkeys(after.held, "in its own unit"))
+                after = replace(after, units=dict.fromkeys(after.held, ("in its own unit", 1.0)))
             for second in (kind for kind in KINDS[place + 1 :] if kind.closes):
                 if any(_tested(after.few, two) for two in _merged(second, after.few)):
                     for two in _merged(second, after):

@@ -494,4 +494,5 @@ def _off(vector: Vector, count: int) -> Array:
 
 
 def _lengths(vectors: Array) -> Array:
-    return np.asarray(np.linalg.norm(vectors, axis=-1))
+    # Squares of slow rates, such as 1e-175 mm/s, would underflow.
+    return np.asarray(np.hypot.reduce(vectors, axis=-1))

@@ -132,7 +132,9 @@ class _HomePose:
         return str(getattr(self.model, kind)(number).name) or f"{kind}_{number}"
 
     def ignored(self) -> Iterator[str]:
-        """Messages on ignored tendons and on soft equalities, which are taken as rigid."""
+        """Messages on ignored ranges and tendons, and on soft equalities, which are taken as rigid."""
+        for one in np.flatnonzero(self.model.jnt_limited).tolist():
+            yield f"range of joint {short(self.name('joint', one))} is ignored"
         for one in range(self.model.ntendon):
             yield f"tendon {short(self.name('tendon', one))} is ignored"
         soft = self.model.eq_active0 & (self.model.eq_solref != SOLREF).any(axis=1)

@@ -76,6 +76,9 @@ def read(
         if not columns.said and (count := sum(map(is_number, row))) > 3:
             problem = f"has {count} numbers for {short(name)}, in columns without a title"
             raise FileError(source, line, problem, f"three, {SAY}")
+        if columns.row >= 0 and any(map(is_number, row[(count := len(rows[columns.row][1])) :])):
+            problem = f"has {len(row)} cells under {count} titles"
+            raise FileError(source, line, problem, "a title for each number, and no comma inside a number")
         corner = columns.at.get("corner", len(row))
         side, part = wheels.get(plain(row[corner]) if corner < len(row) else over, ("", ""))
         points.append(FilePoint(name, place_of(cells, source, line, name), line, side, part, section))

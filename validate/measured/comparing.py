@@ -92,7 +92,7 @@ def compare_results(
     coarse = ", ".join(row.name for row in rows if row.why == TOO_COARSE)
     notes = (*notes, *([f"{coarse} is not tested: {TOO_COARSE}"] if coarse else []), *faults)
     solutions = _solution(measured, by_row), ours
-    outcome = Outcome(name, rows, solutions, notes, lacking, factor, faults=faults, compared=compared)
+    outcome = Outcome(name, rows, solutions, notes, lacking, compared, factor, faults=faults)
     if wrong := [row for row, one in zip(by_row, rows, strict=True) if one.verdict == "disagrees"]:
         other = meant_otherwise(driven, measured, held, accuracy, factor, wrong)
         others = _explained(driven, measured, by_row, ours, wrong, factor)
@@ -187,7 +187,8 @@ def _explained(
         over_time=driven.over_time,
         other_cars=driven.over_time or there is not None,
         own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
-        units={row: columns[0].series.meaning.unit for row, columns in whole.items()},
+        units={row: (columns[0].series.unit, columns[0].series.factor) for row, columns in whole.items()},
+        labels=[measured.rows[place] for place in places],
         known={} if driven.over_time else {n: a[places] for n, a in ours.numbers[PLACES].items()},
     )
     try:

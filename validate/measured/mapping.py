@@ -121,7 +121,7 @@ class Series:
         column: its name in the file. meaning: its meaning.
         values: (N,), NaN for no number.
         off: rounding error of the values, half a unit of the last digit, (N,).
-        factor: its unit in our unit.
+        factor: its unit in our unit. unit: its unit in the file.
         accuracy: accuracy from the map, in its unit; None if not given.
         said: whether the map gives the unit of its last digit.
     """
@@ -133,6 +133,7 @@ class Series:
     factor: float = 1.0
     accuracy: float | None = None
     said: bool = False
+    unit: str = ""
 
     @property
     def rounded_unasked(self) -> bool:
@@ -422,7 +423,7 @@ class _Map:
             raise FileError(source, f"{self.columns.rows[row]}, {column}", problem, allowed)
         said = part.printed is not None
         last = np.full(len(steps), part.printed) if said else steps
-        return Series(name, meaning, values, 0.5 * factor * last, factor, part.accuracy, said)
+        return Series(name, meaning, values, 0.5 * factor * last, factor, part.accuracy, said, unit)
 
     def independent(self, found: Sequence[Series]) -> tuple[Series, ...]:
         """The columns that give the pose of a row: time, or a travel and inputs."""
@@ -432,5 +433,7 @@ class _Map:
             raise FileError(self.where, "columns", problem, f'is = "{IGNORE}" for all but one')
         if not (chosen := times or [*travels, *inputs]):
             problem, allowed = "no column gives the pose of a row", f"a column of {self.poses} (in a map)"
+            if ignored := [name for name, one in self.meant.items() if one is None]:
+                problem += f"; ignored: {listed(ignored)}"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return tuple(chosen)

@@ -7,6 +7,7 @@ that `pointcoord simulate -o` writes. For inputs and numbers of the car the last
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
@@ -83,14 +84,17 @@ def meanings_of(topology: Topology) -> dict[str, Meaning]:
 
 
 def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
-    """The meaning with a full name, or with the last part of the name of an input or a number of the car."""
+    """The meaning with a full name, or with the last part of the name of an input or a number of the car.
+
+    If there is none, the name is read in small letters, with _ for spaces and hyphens.
+    """
     if name in meanings:
         return meanings[name]
     short = [one for one in meanings.values() if one.name == name and one.axis is None and one.kind != TRAVEL]
     # The force of a rod may have the name of a wheel angle; the angle is taken.
     short = [one for one in short if angle_of(one) is not None] or short
-    if not short and name != name.lower():
-        return named(name.lower(), meanings)
+    if not short and name != (plain := re.sub(r"[\s-]+", "_", name.lower())):
+        return named(plain, meanings)
     return short[0] if len(short) == 1 else None
 
 

@@ -83,7 +83,12 @@ def read_columns(path: str) -> Columns:
         return _parquet(path, source)
     text = text_of(data)
     if text is None:
-        raise FileError(source, "", "contains bytes that are not text", "text, or Parquet")
+        raise FileError(
+            source,
+            "",
+            "contains bytes that are not text",
+            "text, or Parquet; for a workbook, save one sheet as CSV",
+        )
     return columns_of_text(text, source)
 
 

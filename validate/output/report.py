@@ -158,9 +158,7 @@ def quantity_rows(outcome: Outcome) -> Iterator[tuple[str | Cell, ...]]:
         words = heading(worst.quantity, worst.name)
         given = [row for row in of_one[words] if row.verdict != "not given"]
         largest = max(given, key=lambda row: row.difference, default=worst)
-        text = (
-            f"DISAGREES, {with_unit(worst.share, 'times')}" if worst.verdict == "disagrees" else worst.verdict
-        )
+        text = worst.verdict.upper() if worst.verdict == "disagrees" else worst.verdict
         if worst.verdict in ("disagrees", "not tested") and worst is not largest:
             text += f": {worst.name}"
         numbers = ["-"] * 5

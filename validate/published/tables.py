@@ -221,10 +221,9 @@ def compare_table(table: Table) -> Published:
     notes = tuple(note for note in (table.note, *told) if note)
     theirs = Solution(table.title, over, {}, Accuracy(np.ones(len(over))))
     outcomes = tuple(
-        Outcome(
-            table.name, tuple(one.rows[k] for one in columns if not one.open), (theirs, solution), notes, ()
-        )
+        Outcome(table.name, rows, (theirs, solution), notes, (), len(over))
         for k, solution in enumerate(solutions)
+        for rows in [tuple(one.rows[k] for one in columns if not one.open)]
     )
     return Published(table, f"{printed.names[0]} [{printed.units[0]}]", over, columns, outcomes)
 

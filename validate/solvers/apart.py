@@ -197,4 +197,4 @@ def _plain(answer: Any) -> Any:
             return array
     if type(answer) in (list, tuple):
         return [_plain(one) for one in answer]
-    return f"something of type {type(answer).__name__}"
+    return f"an object of type {type(answer).__name__}"

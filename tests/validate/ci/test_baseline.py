@@ -91,9 +91,11 @@ def test_another_car_or_motion_under_the_name_is_told_and_not_compared(tmp_path:
         (scene_with("steer", moved), "another car", "tie_rod_outer"),
         (scene_with("steer", samples=SCENE.time.samples + 1), "another motion", "another time"),
     ):
-        since = saved(tmp_path).since("steer", scene, [OUTCOME])
+        baseline = saved(tmp_path)
+        since = baseline.since("steer", scene, [OUTCOME])
         assert (since.standing, since.moves, since.status) == (standing, (), ExitStatus.NO_VERDICT)
         assert words in since.words
+        assert sentence(record_of(since, baseline)).endswith(f"; no verdict: {since.words}")
 
 
 def test_numbers_that_are_new_or_gone_are_named(tmp_path: Path) -> None:

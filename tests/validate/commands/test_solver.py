@@ -213,9 +213,19 @@ def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in
         out = capfd.readouterr().out
         assert "agrees" in next(line for line in out.splitlines() if line.startswith("position"))
         told.append(out)
+    assert "strut_top is 'an object of type Odd'; needed: real numbers" in told[0]
     # Of a class that only the solver's process knows the name comes through.
     assert "velocity is of type" in told[0]
     assert "velocity is of type Odd" in told[1]
+
+
+def test_the_line_of_a_scene_says_how_many_instants_a_solver_gives(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    some = "{'instants': given['instants'][:2] + [0.0, 1e-9], 'camber': a['camber'][:2]}"
+    (solvers / "own" / "few.py").write_text(f"{WHEEL}{some}\n", encoding="utf-8")
+    assert run("few", "off-axis-strut.toml") == 0
+    assert "camber at 0 s; only 1 of 5 instants compared" in capfd.readouterr().out
 
 
 def test_what_is_given_and_cannot_be_used_ends_with_3_and_is_an_error_of_the_test_results(

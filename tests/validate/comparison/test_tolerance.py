@@ -85,7 +85,7 @@ def outcome_of(*verdicts: str, own: bool, faults: tuple[str, ...] = ()) -> Outco
         for v in verdicts
     )
     plain = Solution("a", np.zeros(1), {}, Accuracy(np.ones(1)))
-    return Outcome("s", rows, (plain, stated(plain) if own else plain), (), (), faults=faults)
+    return Outcome("s", rows, (plain, stated(plain) if own else plain), (), (), 1, faults=faults)
 
 
 @pytest.mark.parametrize(

@@ -76,6 +76,22 @@ def mirrored(held: Solution) -> Numbers:
     return {**each(held, STATES, lambda v: v * side), **each(held, TURNS, lambda v: -v * side)}
 
 
+def exchanged(held: Solution, quantities: tuple[str, ...], one: str, two: str) -> Numbers:
+    """The numbers of two names under each other's."""
+    other = {one: two, two: one}
+    return {q: {n: held.numbers[q][other.get(n, n)] for n in held.numbers[q]} for q in quantities}
+
+
+def in_body_axes(held: Solution) -> Numbers:
+    """Rates of the knuckle along axes that are the car's in the first pose, and turn with the knuckle."""
+    at = np.stack([held.position[n] for n in KNUCKLE], axis=1)
+    at = at - at.mean(axis=1, keepdims=True)
+    drawn = np.array([solved("double-wishbone")[0].mechanism.points[n] for n in KNUCKLE])
+    turns = Rotation.concatenate([Rotation.align_vectors(one, drawn - drawn.mean(axis=0))[0] for one in at])
+    return each(held, TURNS, lambda v: turns.inv().apply(v.copy()))
+
+
+KNUCKLE = ("lower_ball_joint", "tie_rod_outer", "wheel_centre")
 FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
     (lambda h: each(h, STATES, lambda v: v * [1.0, 1.0, -1.0]), "sign", "sign of z"),
     (lambda h: angle(h, "toe", lambda v: -v), "sign", "toe: the other sign"),
@@ -94,9 +110,20 @@ FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
     (lambda h: angle(h, "camber", lambda v: v + 0.013), "offset", "constant offset of 0.013 rad"),
     (lambda h: each(h, STATES, lambda v: v[:, [1, 0, 2]]), "axes", "our y, x, z"),
     (mirrored, "mirror", "left for right"),
+    (
+        lambda h: exchanged(h, ("wheel",), "kingpin", "caster"),
+        "names",
+        "kingpin, caster: caster and kingpin are exchanged",
+    ),
+    (lambda h: exchanged(h, STATES, "wheel_centre", "tie_rod_outer"), "names", "wheel_centre are exchanged"),
     (lambda h: angle(h, "camber", np.degrees), "unit", "degrees for radians"),
     (lambda h: angle(h, "toe", lambda v: 60.0 * v), "unit", "toe: minutes of arc taken for degrees"),
     (lambda h: each(h, STATES, lambda v: v / 1000.0), "unit", "m for mm"),
+    (
+        lambda h: {**each(h, STATES[1:2], lambda v: v / 1e3), **each(h, STATES[2:], lambda v: v / 1e6)},
+        "unit",
+        "velocity, acceleration: per millisecond for per second",
+    ),
     (lambda h: each(h, STATES, lambda v: v.astype(np.float32).astype(float)), "digits", "single precision"),
     (lambda h: each(h, (*STATES, "wheel"), lambda v: np.round(v, 3)), "digits", "3 decimals"),
     (lambda h: {"velocity": by_differences(h.position, h.times)}, "differences", "central differences"),
@@ -188,6 +215,45 @@ def nearly(times: float) -> Callable[[Solution], Numbers]:
 def noisy(size: float) -> Callable[[Array], Array]:
     random = np.random.default_rng(11)
     return lambda v: v + size * random.standard_normal(v.shape)
+
+
+def nothing(v: Array) -> Array:
+    return np.full_like(v, np.nan)
+
+
+def test_rates_along_axes_of_the_body_are_named() -> None:
+    (only,) = diagnosis("double-wishbone", in_body_axes(solved("double-wishbone")[1]))
+    words = "angular velocity, angular acceleration: along axes that turn with the body"
+    assert (only.words, only.kind) == (words, "body axes")
+
+
+@pytest.mark.parametrize(
+    ("places", "change", "words"),
+    [
+        (slice(7, 8), noisy(1.0), "disagrees at 1.27273 s only, 1 of 12 instants"),
+        (slice(2, 4), nothing, "disagrees from 0.363636 s to 0.545455 s only, 2 of 12 instants"),
+        (slice(8, None), noisy(1.0), "disagrees from 1.45455 s to 2 s only, 4 of 12 instants"),
+    ],
+)
+def test_an_unexplained_fault_of_a_few_instants_is_named_with_them(
+    places: slice, change: Callable[[Array], Array], words: str
+) -> None:
+    right = solved("double-wishbone")[1].position
+    wrong = right["wheel_centre"].copy()
+    wrong[places] = change(wrong[places])
+    (only,) = diagnosis("double-wishbone", {"position": {**right, "wheel_centre": wrong}})
+    assert only.words == f"position of wheel_centre: {words}"
+
+
+def test_the_drawing_of_another_car_shows_in_the_points_at_rest() -> None:
+    held = solved("double-wishbone")[1]
+    off = np.array([[1.0, 2.0, -3.0], [0.0, 4.0, 1.0], [-2.0, 0.0, 5.0]])
+    names = ("lower_arm_front", "lower_arm_rear", "upper_arm_front")
+    wrong = {n: held.position[n] + one for n, one in zip(names, off, strict=True)}
+    moved = {"wheel_centre": noisy(1.0)(held.position["wheel_centre"])}
+    found = diagnosis("double-wishbone", {"position": {**held.position, **wrong, **moved}})
+    said = "3 points at rest lie up to 5 mm off, as if another drawing were solved"
+    assert [one.words for one in found] == [f"position of {', '.join(names)}: {said}"]
 
 
 UNEXPLAINED: dict[str, Callable[[Solution], Numbers]] = {

@@ -160,3 +160,13 @@ def test_an_accuracy_that_is_a_lie_is_seen_to_be_one(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(Problem, "solution", boasting)
     outcome = compare(Scene.load("bounce-and-steer"), "pointcoord", "relative")
     assert {"position", "velocity", "wheel"} <= {row.quantity for row in outcome.disagreements}
+
+
+def test_tolerances_of_slow_rates_are_in_proportion_to_them() -> None:
+    """Squares of such rates underflow."""
+
+    def tolerances(rate: float) -> np.ndarray:
+        scene = Scene.from_mapping(scene_content(CARS[0], [1.57, rate], [0.0], samples=1), "slow")
+        return accuracy_for(scene, 1e-6).claims["velocity"]["lower_ball_joint"]
+
+    assert tolerances(1e-175) == pytest.approx(1e-150 * tolerances(1e-25), rel=1e-9, abs=0.0)

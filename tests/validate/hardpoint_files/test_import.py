@@ -246,6 +246,7 @@ NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle"
         (table(titles="Point,X,Y\n"), {}, "line 1: has no columns of z"),
         (table(titles="Point,X (m),Y (mm),Z (m)\n"), {}, "line 1: has units .'m', 'mm'."),
         ("A,1,2,3,4,5,6", {}, "has 6 numbers for 'A'"),
+        ("Point,X,Y,Z\nA,1,5,2,5,3,5", {}, "line 2: has 7 cells under 4 titles; allowed: a title for each"),
         (
             table(titles="Punkt,Hoch,Quer,Laengs\n"),
             {},

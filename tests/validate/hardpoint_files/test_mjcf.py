@@ -310,6 +310,11 @@ def test_what_is_not_known_is_refused_by_its_name(
     assert "\n" not in str(caught.value)
 
 
+def test_ranges_of_joints_are_ignored_and_named(tmp_path: Path) -> None:
+    (fact,) = made(broken('name="knee"', 'name="knee" limited="true" range="-1 1"'), tmp_path).facts
+    assert "range of joint 'knee' is ignored" in fact
+
+
 def test_tendons_soft_equalities_and_bodies_that_hold_nothing_are_ignored_and_named(tmp_path: Path) -> None:
     strap = '<tendon><fixed name="strap"><joint joint="knee" coef="1"/></fixed></tendon><equality>'
     tyre = '<body name="tyre"><joint/><geom size="1"/></body>'

@@ -66,7 +66,7 @@ def test_a_column_that_is_meant_otherwise_is_told_first(
     ("change", "words"),
     [
         (lambda toe: -toe, ["toe: the other sign"]),
-        (lambda toe: toe + 0.3, ["toe: a constant offset of 0.00523"]),
+        (lambda toe: toe + 0.3, ["toe: a constant offset of 0.3 deg"]),
         (lambda toe: toe + 1e-2 * np.random.default_rng(1).standard_normal(ROWS), []),
     ],
 )

@@ -53,6 +53,12 @@ def test_a_table_is_read_however_it_is_written(how: str, tmp_path: Path) -> None
     assert any("ignored: who" in note for note in found.notes) == (how == "words")
 
 
+def test_names_are_read_in_small_letters_with_underscores(tmp_path: Path) -> None:
+    found = read(tmp_path, b"RACK [mm],Half-track change [mm]\n0,0.5\n")
+    names = [one.meaning.name for one in (*found.independent, *found.numbers)]
+    assert names == ["rack", "half_track_change"]
+
+
 def test_a_column_of_words_that_a_map_wants_is_refused_with_what_it_holds(tmp_path: Path) -> None:
     data = b"rack [mm],toe,camber [deg]\n0,rig,0\n5,rig,1\n"
     map = 'columns.rack = {}\ncolumns.camber = {}\ncolumns.toe = { unit = "deg" }\n'

@@ -14,8 +14,10 @@ KINDS = (
     Kind("offset", numbers.offsets, closes=True),
     Kind("digits", numbers.printed_digits, closes=True),
     Kind("mirror", numbers.mirrored),
+    Kind("body axes", numbers.along_the_body),
     Kind("hardpoint", drawing.points_that_rest_elsewhere),
     Kind("swapped", numbers.swapped),
+    Kind("names", numbers.names_exchanged),
     Kind("sides", numbers.sides_exchanged),
     Kind("differences", motion.differences),
     Kind("rates", motion.per_input),
@@ -27,5 +29,6 @@ KINDS = (
     Kind("link", drawing.wrong_lengths, "drawing"),
     Kind("hardpoint", drawing.misread_hardpoints, "drawing"),
     Kind("factor", numbers.factors, "last"),
+    Kind("another drawing", drawing.another_drawing, "last"),
 )
 """All kinds. In a pair of faults in the same numbers, the first fault is earlier in this list."""

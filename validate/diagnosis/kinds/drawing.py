@@ -58,20 +58,34 @@ def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
 
     If there are more than a few, they have another fault in common.
     """
+    gaps = _gaps_at_rest(evidence)
+    for row, gap in gaps.items() if len(gaps) <= MOST_POINTS else ():
+        off = np.flatnonzero(gap)
+        texts = (_in_words(evidence.scene, row.name, int(i), float(gap[i])) for i in off)
+        there = so_much_more(evidence, row, gap)
+        yield Hypothesis(" and ".join(texts), there, len(off), 1.5 + len(off), rests=True)
+
+
+def another_drawing(evidence: Evidence) -> Iterator[Hypothesis]:
+    """More than a few points at rest are given at other positions, and nothing else explains them."""
+    gaps = _gaps_at_rest(evidence)
+    if len(gaps) > MOST_POINTS:
+        there = {k: v for row, gap in gaps.items() for k, v in so_much_more(evidence, row, gap).items()}
+        most = max(float(np.abs(gap).max()) for gap in gaps.values())
+        words = f"{len(gaps)} points at rest lie up to {most:.4g} mm off, as if another drawing were solved"
+        yield Hypothesis(words, there, 3 * len(gaps), 3.0 * len(gaps), rests=True)
+
+
+def _gaps_at_rest(evidence: Evidence) -> dict[Row, Array]:
+    """The constant difference of each wrong point that rests where it is drawn."""
     drawn = evidence.scene.mechanism.points
-    rest = [
+    rest = (
         row
         for row in evidence.wrong
         if row.is_place and row.name in drawn
         if (np.abs(evidence.held[row] - drawn[row.name]) <= evidence.rounded(row)).all()
-    ]
-    for row in rest if len(rest) <= MOST_POINTS else ():
-        gap = constant_gap(evidence, row)
-        if gap is not None:
-            off = np.flatnonzero(gap)
-            texts = (_in_words(evidence.scene, row.name, int(i), float(gap[i])) for i in off)
-            there = so_much_more(evidence, row, gap)
-            yield Hypothesis(" and ".join(texts), there, len(off), 1.5 + len(off), rests=True)
+    )
+    return {row: gap for row in rest if (gap := constant_gap(evidence, row)) is not None}
 
 
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:

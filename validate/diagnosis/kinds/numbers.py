@@ -53,12 +53,13 @@ class Unit(NamedTuple):
 
 UNITS = (
     Unit("degrees for radians", "rad", 180.0 / pi),
-    Unit("degrees taken for radians and converted once more", "rad", pi / 180.0),
+    Unit("radians taken for degrees, or converted to radians twice", "rad", pi / 180.0),
     Unit("minutes of arc taken for degrees", "rad", 60.0),
     Unit("m for mm", "mm", 1e-3),
     Unit("inches for mm", "mm", 1.0 / 25.4),
-    Unit("mm taken for m and converted once more", "mm", 1e3),
+    Unit("mm taken for m, or converted to mm twice", "mm", 1e3),
     Unit("per minute for per second", "s", 60.0),
+    Unit("per millisecond for per second", "s", 1e-3),
 )
 
 
@@ -136,6 +137,31 @@ def mirrored(evidence: Evidence) -> Iterator[Hypothesis]:
     right = evidence.scene.mechanism.axes.right
     times = partial(_turned, np.eye(3) - 2.0 * np.outer(right, right), True)
     yield _linear(evidence, "left for right: the car is mirrored", evidence.held, times, whole=True)
+
+
+def along_the_body(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Angular velocities and accelerations along axes that turn with the body, and are ours as drawn."""
+    rows = [row for row in evidence.wrong if row.of == "body"]
+    scene = evidence.solved.fine
+    numbers = solve_poses(scene, drawn_inputs(scene)).numbers if rows else {}
+    drawn = {
+        n: at for quantity in numbers if Row(quantity, "").is_place for n, at in numbers[quantity].items()
+    }
+    for row in rows:
+        points = scene.mechanism.topology.bodies[row.name]
+        paths = [path for point in points if (path := evidence.places(point)) is not None]
+        if len(paths) == len(points):
+            # A vector has the same components along the edges whether both are turned or not.
+            along = np.linalg.solve(_edges(*paths), evidence.held[row][..., None])
+            value = (_edges(*(drawn[point] for point in points)) @ along)[..., 0]
+            words = "along axes that turn with the body"
+            yield Hypothesis(words, {row: (value, evidence.rounded(row, value))}, cost=1.2)
+
+
+def _edges(one: Array, two: Array, three: Array) -> Array:
+    """Two edges of a triangle and their cross product, as columns."""
+    a, b = two - one, three - one
+    return np.stack([a, b, np.cross(a, b)], axis=-1)
 
 
 def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -247,6 +273,17 @@ def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
         yield Hypothesis(words, _of_others(evidence, rows), whole=True)
 
 
+def names_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
+    """The numbers of two points, bodies or angles are given under each other's names."""
+    few = evidence.few
+    for one, two in combinations(sorted({row.name for row in evidence.wrong}), 2):
+        other = {one: two, two: one}
+        rows = {row: Row(row.quantity, other[row.name]) for row in evidence.wrong if row.name in other}
+        if few.explained(_of_others(few, rows)):
+            words = f"{one} and {two} are exchanged"
+            yield Hypothesis(words, _of_others(evidence, rows), cost=1.1)
+
+
 def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, WouldBe]:
     """Rows with the numbers of other rows, if these exist and have the same shape."""
     held = evidence.held
@@ -278,9 +315,10 @@ def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
         if gap is not None:
             # If the origin is another one, all points have this offset.
             undo = partial(_shifted, -gap) if row.of == "point" else None
-            amount = ", ".join(f"{component:.6g}" for component in gap.ravel())
+            unit, factor = evidence.unit_of(row)
+            amount = ", ".join(f"{component:.6g}" for component in np.ravel(gap / factor))
             amount = f"({amount})" if gap.ndim else amount
-            words = f"a constant offset of {amount} {evidence.units.get(row, row.unit)}"
+            words = f"a constant offset of {amount} {unit}"
             count = int(np.count_nonzero(gap))
             yield Hypothesis(words, more(gap), count, 1.0 + count, undo=undo)
 
@@ -298,7 +336,8 @@ def constant_gap(evidence: Evidence, row: Row, least: float = 1.0) -> Array | No
     if not (np.isfinite(gap).all() and np.abs(gap).max() > least * noise):
         return None
     gap = np.where(np.abs(gap) <= noise, 0.0, gap)
-    return roundest(gap, lambda near: evidence.explained(so_much_more(evidence, row, near)))
+    unit = evidence.unit_of(row)[1]
+    return roundest(gap, lambda near: evidence.explained(so_much_more(evidence, row, near)), unit)
 
 
 def so_much_more(evidence: Evidence, row: Row, amount: Array) -> dict[Row, WouldBe]:
