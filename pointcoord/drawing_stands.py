@@ -10,21 +10,19 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.car_number import WHEEL
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
 from pointcoord.solve.assembly import close_drawing, driven_to, limiting
 from pointcoord.solve.follower import follow
 from pointcoord.solve.path import Path
-
-Array = NDArray[np.float64]
 
 WHOLE = 2.0 * np.pi  # rad
 

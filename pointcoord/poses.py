@@ -13,13 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pointcoord.effects.registry import EFFECTS, plan_effects
 from pointcoord.errors import AssemblyError, InputOutOfRange, PointcoordError, UnknownName
 from pointcoord.linkage.chassis import SPREAD, ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.freedoms import locked
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.rounding import EPS
 from pointcoord.patches.domain import Domain, widened
 from pointcoord.patches.flood import Limits, flood, start_at_drawing
@@ -33,9 +34,6 @@ from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import assemble, assembled, close_drawing
 from pointcoord.solve.path import Path
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.intp]
 
 # From FEW poses on a map pays, with one factorisation per WORTH poses. For a strut, an off-axis strut and a
 # double wishbone, 100 poses on separate paths took 40, 44 and 24 ms, and maps 40 to 90 ms.
@@ -62,7 +60,7 @@ class SolvedPoses(Named):
     failures: Mapping[int, PointcoordError]
 
     @property
-    def solved(self) -> NDArray[np.bool_]:
+    def solved(self) -> Flags:
         """Where there is a pose, (...)."""
         return np.isfinite(self.bound)
 
@@ -200,7 +198,7 @@ def _by_patches(
     tolerance: float,
     rows: Array,
     bounds: Array,
-) -> NDArray[np.bool_]:
+) -> Flags:
     """Write the poses that patches cover into rows (3 points, N) and bounds (2, N); returns which, (N,)."""
     count = rows.shape[1]
     nobody = np.zeros(count, dtype=bool)
@@ -234,7 +232,7 @@ def _by_paths(
     mechanism: Mechanism,
     closed: Path,
     inputs: Mapping[str, Array],
-    some: Numbers,
+    some: Indices,
     rows: Array,
     bounds: Array,
     y: Array | None,

@@ -8,7 +8,6 @@ from os import PathLike
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import plan_effects
 from pointcoord.errors import (
@@ -23,6 +22,7 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import AUTO, MAP, SERIES, Method, method_of
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.by_series import AtInstants, ByChain
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from pointcoord.patches.flood import Limits
     from pointcoord.results.by_map import ByMap
 
-Array = NDArray[np.float64]
 
 # Poses that are tried between the end of a map and the next instant, to find what stops the motion.
 TRIED = 32

@@ -16,8 +16,9 @@ from math import comb, factorial, perm
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.enclosure import TURN, Enclosed, within_a_turn
 from pointcoord.numerics.infinitesimal import slope_of, with_slope
@@ -26,7 +27,6 @@ from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-Array = NDArray[np.float64]
 
 # rad. The cosine of a smaller angle is 1 to rounding, and its sine adds less than one rounding.
 SMALL_ANGLE = 2.0**-27

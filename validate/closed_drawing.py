@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, PointcoordError, Scene
 from pointcoord.linkage.mechanism import Mechanism
@@ -18,8 +17,7 @@ from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.results.closing import Closing, closing
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
-
-Array = NDArray[np.float64]
+from validate.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -10,17 +10,16 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.enclosure import Enclosed, anchored, both
 from pointcoord.numerics.kantorovich import Certificate, certify, defect_of
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.numerics.vectors import components_last
-
-Array = NDArray[np.float64]
 
 # Most poses of a group, and the share by which a shared inverse may enlarge the bounds.
 LARGEST, SHARED = 256, 0.02

@@ -35,13 +35,13 @@ from dataclasses import dataclass, field
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.bounds.certified_poses import CertifiedPoses
 from pointcoord.linkage.constraints.in_body import carrier_weights
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import Way
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import PAIRS, two_sum
 from pointcoord.numerics.enclosed_rows import differences, twice_polar
 from pointcoord.numerics.enclosure import Enclosed, anchored, cross
@@ -49,7 +49,6 @@ from pointcoord.numerics.kantorovich import applied
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
-Array = NDArray[np.float64]
 Points = Mapping[str, Enclosed]
 Edges = tuple[Enclosed, Enclosed]
 Numbers = Mapping[str, Mapping[str, Array]]

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.rounding import EPS
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.numerics import enclosure, vectors
+from pointcoord.numerics.arrays import Array, Flags
 from pointcoord.numerics.enclosure import Enclosed
 
-Array = NDArray[np.float64]
 P = TypeVar("P", Array, Enclosed, "Dual[Any]")
 
 
@@ -118,7 +117,7 @@ def reciprocal(x: P) -> P:
     return enclosure.quotient(Enclosed.of(1.0), x) if isinstance(x, Enclosed) else np.asarray(1.0 / x)
 
 
-def positive(x: P) -> NDArray[np.bool_]:
+def positive(x: P) -> Flags:
     """Where a number is above 0."""
     if isinstance(x, Dual):
         return positive(x.value)
@@ -133,7 +132,7 @@ def sign_of(x: P) -> P:
     return Enclosed.of(signs) if isinstance(x, Enclosed) else signs
 
 
-def chosen(where: NDArray[np.bool_], one: P, other: P) -> P:
+def chosen(where: Flags, one: P, other: P) -> P:
     """`one` where the condition holds, `other` elsewhere."""
     if isinstance(one, Dual):
         return Dual(chosen(where, one.value, other.value), chosen(where, one.slope, other.slope))

@@ -18,7 +18,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import S, angle
 from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
@@ -36,12 +35,12 @@ from pointcoord.effects.effect import (
 from pointcoord.linkage.directions import CarAxes, Direction
 from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.enclosure import Enclosed
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 
-Array = NDArray[np.float64]
 
 BY_TRAVEL, BY_RACK, BY_ROLL = "by_travel", "by_rack", "by_roll"
 # Car data that a scene may give, with an example value for messages.

@@ -8,18 +8,15 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array, Flags
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 
-Array = NDArray[np.float64]
 Point = tuple[float, float, float]
 
 
@@ -55,7 +52,7 @@ class Doubt:
         words: index of a drawing -> the warning, with the reason.
     """
 
-    where: NDArray[np.bool_]
+    where: Flags
     words: Callable[[tuple[int, ...]], str]
 
 

@@ -18,7 +18,6 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import P, cross, multiple, plain, still
 from pointcoord.effects.corner import turn_of_edges
@@ -26,13 +25,13 @@ from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.errors import SingularConfiguration
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.enclosure import Enclosed, both
 from pointcoord.numerics.rounding import EPS
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers, Points
 
-Array = NDArray[np.float64]
 States = Mapping[str, Array]
 Edges = tuple[Array, Array]
 

@@ -22,7 +22,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import dot, ratio, root, times
 from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of
@@ -31,12 +30,12 @@ from pointcoord.effects.effect import Effect, Point, Poses, Quantity, lacks, no_
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.slopes import GAP, ByGap, ByLength, Way
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.enclosure import Enclosed
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 
-Array = NDArray[np.float64]
 
 ROD_FORCE = Quantity(
     "rod_force",

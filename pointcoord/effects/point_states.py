@@ -6,16 +6,12 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pointcoord.effects.effect import Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

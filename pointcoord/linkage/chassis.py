@@ -16,19 +16,17 @@ from functools import partial
 from math import comb, factorial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.directions import V, axis_along
 from pointcoord.linkage.drives import times, turn_slopes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosure
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import PAIRS
 from pointcoord.numerics.enclosure import Enclosed, within_a_turn
 from pointcoord.numerics.vectors import cross
 from pointcoord.time_functions import TimeFunction
-
-Array = NDArray[np.float64]
 
 LARGEST = 1e300  # mm and s: a sum with an origin and some inputs stays finite
 FASTEST = 1e140  # rad and s: squares of rates, times lengths, stay finite

@@ -8,13 +8,12 @@ from functools import cached_property
 from typing import Literal, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.numerics import enclosure, vectors
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import Pair, pair_cross, pair_dot, pair_quotient, pair_root
 from pointcoord.numerics.enclosure import Enclosed
 
-Array = NDArray[np.float64]
 V = TypeVar("V", Array, Enclosed)
 
 DIRECTIONS = ("up", "right", "down", "left", "forward", "rearward")

@@ -8,12 +8,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import Pair, exact_square, pair_root, two_sum
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,18 +14,16 @@ from math import comb
 from operator import methodcaller
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.constraints.on_line import Line
 from pointcoord.linkage.directions import DIRECTIONS, V
 from pointcoord.linkage.drawing import Drawing
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import Pair, pair_product, pair_quotient
 from pointcoord.numerics.enclosure import TURN, Enclosed, within_a_turn
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine_and_sine
-
-Array = NDArray[np.float64]
 
 SIDEWAYS = {"right": "to the right", "left": "to the left"}
 EXTREME = 8.0

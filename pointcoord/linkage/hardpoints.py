@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.in_body import carrier_weights
@@ -14,12 +14,12 @@ from pointcoord.linkage.directions import car_directions, direction_of
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import PAIRS
 from pointcoord.numerics.infinitesimal import with_slope
 from pointcoord.numerics.linear import null_directions
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
-Array = NDArray[np.float64]
 AXES = ("up", "right")
 # Rounding of a coordinate or squared length, relative to the car's size: two places, half a last digit each.
 DRAWN_TO = 4.0 * UNIT_ROUNDOFF

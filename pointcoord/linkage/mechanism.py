@@ -12,17 +12,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Piece, Topology
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.vectors import cross
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +100,7 @@ class Mechanism:
             carrier_weights={name: self.carrier_weights[name] for name in topology.carried},
         )
 
-    def taken(self, members: NDArray[np.intp] | int) -> Mechanism:
+    def taken(self, members: Indices | int) -> Mechanism:
         """Some members of a batch with one dimension, by number, or one car of it."""
         vectors, lacks = (
             {name: place[members] if place.ndim > 1 else place for name, place in table.items()}
@@ -127,7 +125,7 @@ class Mechanism:
             found[name] = carried_place(self.carrier_weights[name], *(found[one] for one in carriers))
         return found
 
-    def turned_over(self, y: Array) -> tuple[NDArray[np.bool_], tuple[Piece, Piece] | None]:
+    def turned_over(self, y: Array) -> tuple[Flags, tuple[Piece, Piece] | None]:
         """Which poses y, (..., size), have two pieces of a line that turn over; and one such pair of pieces.
 
         In a drawing that is not assembled, points are first moved onto their line. Pieces drawn more than a

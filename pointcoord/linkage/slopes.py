@@ -12,15 +12,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism, carried_place
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import implicit_rate
 from pointcoord.numerics.power_series import cross_series
-
-Array = NDArray[np.float64]
 
 # Poses at a time, so that intermediate results stay in cache.
 POSES = 4096

@@ -8,15 +8,14 @@ from functools import cached_property
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.layout import Layout
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.numerics.block_order import rows_too_many
 from pointcoord.numerics.quadratic import QuadraticMap, quadratic_map
 
-Array = NDArray[np.float64]
 Piece = tuple[str, str]
 
 
@@ -196,7 +195,7 @@ class Topology:
         )
 
     @cached_property
-    def paired_pieces(self) -> tuple[tuple[tuple[Piece, Piece], ...], NDArray[np.intp]]:
+    def paired_pieces(self) -> tuple[tuple[tuple[Piece, Piece], ...], Indices]:
         """Pairs of pieces of one line, and the coordinates of their starts and ends, (pairs, 2, 2, 3).
 
         A piece is a pair of points with a sense along the line: a link on it, or its start and a slider.

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pointcoord.errors import InputOutOfRange, UnknownName, WrongArgument
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array
 from pointcoord.patches.domain import Domain
 
-Array = NDArray[np.float64]
 Ranges = Mapping[str, tuple[float, float]]
 
 # Smallest width and largest end of a range for which squares and products of series stay finite and not zero.

@@ -16,17 +16,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
+from pointcoord.numerics.arrays import Array, Integers
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.patches.patches import Patches
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.results.proof import bounds_of_numbers, enclosed_poses
 from pointcoord.results.readout import Readout
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 # Poses of a block: a hundred arrays for each point stay in a cache.
 BLOCK = 1024
@@ -48,7 +45,7 @@ class Evaluated:
 
     patches: Patches
     readout: Readout
-    patch: Whole
+    patch: Integers
     inputs: Sequence[Array]
     moving: Sequence[Array]
     laws: Mapping[str, Sequence[Array]]

@@ -25,7 +25,7 @@ from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS, Plan, plan_effects
@@ -36,6 +36,7 @@ from pointcoord.mapping.asked import STATES, Ranges, checked_ranges, columns_of,
 from pointcoord.mapping.effect_bounds import Evaluated
 from pointcoord.mapping.stored import ALLOWED, Gaps, packed, unpacked
 from pointcoord.mechanism.freedoms import locked
+from pointcoord.numerics.arrays import Array, Flags, Integers
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.evaluation import sum_one, table_of_exponents
@@ -51,8 +52,6 @@ from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import close_drawing
 
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 T = TypeVar("T")
 
 HALVINGS = 6  # 64 smallest boxes along a range
@@ -285,7 +284,7 @@ class KinematicMap(ReadOnly):
         """Box and table of exponents of each patch, filled when `evaluate` first uses the patch."""
         return [None] * len(self.series.low)
 
-    def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
+    def covers(self, inputs: Mapping[str, ArrayLike]) -> Flags:
         """Whether poses are covered, in the inputs' shape; False also outside the ranges."""
         (values,), _, shape = columns_of(self.domain, [inputs])
         low, high = self.domain.ends
@@ -322,7 +321,7 @@ class KinematicMap(ReadOnly):
             table[part_of(low, high)] = -1 - number
         return Lookup(self.domain, table)
 
-    def _patches_of(self, states: Sequence[Array]) -> Whole:
+    def _patches_of(self, states: Sequence[Array]) -> Integers:
         """Number of the patch of each pose, (N,), from the inputs and their rates, each (N, p).
 
         Raises:

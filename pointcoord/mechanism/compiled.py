@@ -14,7 +14,6 @@ from functools import cached_property
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage import drives
@@ -49,8 +48,8 @@ from pointcoord.mechanism.inputs import (
     Turns,
 )
 from pointcoord.mechanism.structure import Slide, Structure
+from pointcoord.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Place = tuple[float, float, float]
 Made = tuple[list[Constraint], list[Drive]]
 

@@ -12,16 +12,15 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.hardpoints import dominant, drawn_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.structure import Structure
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.rounding import EPS
 
-Array = NDArray[np.float64]
 Place = tuple[float, float, float]
 
 # Newton's method doubles the digits in each step: a drawing not closed after this many steps does not close.

@@ -18,10 +18,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+
+from pointcoord.numerics.arrays import Indices
 
 FREE = -1
-Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,11 @@ A number is stored as a pair high + low.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import LAST, NEXT
 
-Array = NDArray[np.float64]
 Pair = tuple[Array, Array]
 """Numbers as high and low."""
 

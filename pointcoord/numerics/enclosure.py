@@ -30,14 +30,12 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.numerics.double_double import quick_two_sum, two_product, two_sum
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import LAST, NEXT, components_first, components_last
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 OF_A_SUM = 8.0 * UNIT_ROUNDOFF**2
 OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2

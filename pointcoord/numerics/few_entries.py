@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from pointcoord.numerics.arrays import Array, Indices
 
 # Rows from which sparse algebra is faster. Measured on chains of rockers, ms for an inverse by SuperLU and by
 # LAPACK: 0.18 and 0.08 for 60 rows, 0.4 and 0.6 for 150, 6 and 47 for 600, 115 and 490 for 1500.

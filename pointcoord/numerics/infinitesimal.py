@@ -12,10 +12,7 @@ from __future__ import annotations
 
 from typing import cast
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array
 
 H = 2.0**-600
 

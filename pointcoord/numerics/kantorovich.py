@@ -46,16 +46,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Flags
 from pointcoord.numerics.enclosed_rows import differences, residual
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.numerics.vectors import components_last
-
-Array = NDArray[np.float64]
 
 INFLATION = 1.0 + 1e-6  # covers rounding in the bound itself, see above
 SMALLEST = 1e-300  # replaces a zero norm, so that weights stay as they are
@@ -72,7 +70,7 @@ class Ball:
         tail: z radius + omega radius^2 / 2.
     """
 
-    proven: NDArray[np.bool_]
+    proven: Flags
     radius: Array
     outer: Array
     contraction: Array

@@ -13,13 +13,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.few_entries import LARGE, SparseFactors, sparse_inverse
 from pointcoord.numerics.rounding import EPS
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 # Rows of a large matrix processed at a time, so that intermediate results stay in the second-level cache.
 ROWS = 32
@@ -95,7 +92,7 @@ class Factors:
             None if self.sparse is None else self.sparse.reshaped(batch),
         )
 
-    def taken(self, members: NDArray[np.intp]) -> Factors:
+    def taken(self, members: Indices) -> Factors:
         """Some members of the one batch dimension, by number."""
         return Factors(
             self.matrix[members],
@@ -105,7 +102,7 @@ class Factors:
             None if self.sparse is None else self.sparse.taken(members),
         )
 
-    def replaced(self, members: NDArray[np.intp], new: Factors) -> Factors:
+    def replaced(self, members: Indices, new: Factors) -> Factors:
         """These factors with some members of the one batch dimension, by number, replaced by others."""
         if len(members) == len(self.condition):
             return new
@@ -121,7 +118,7 @@ class Factors:
         return np.asarray(self.inverse * self.row_scale[..., None, :])
 
     @property
-    def singular(self) -> NDArray[np.bool_]:
+    def singular(self) -> Flags:
         """Where no digit of a solution is certain: n eps condition >= 1 (or a NaN), shape (...,)."""
         return np.asarray(~(self.matrix.shape[-1] * EPS * self.condition < 1.0))
 

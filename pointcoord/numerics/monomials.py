@@ -14,9 +14,8 @@ from functools import lru_cache
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

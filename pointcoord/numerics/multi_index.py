@@ -13,9 +13,9 @@ from itertools import product
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
-Indices = NDArray[np.intp]
+from pointcoord.numerics.arrays import Indices
+
 Places = tuple[slice, ...]
 
 

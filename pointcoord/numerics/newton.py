@@ -21,15 +21,13 @@ from math import comb
 from types import EllipsisType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Flags, Indices, Integers
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.kantorovich import smallest_radius
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
-
-Array = NDArray[np.float64]
 
 # From a start inside the Kantorovich region the error is squared at every step: 2^-1 falls below 2^-53 in
 # six steps. Twice that leaves room for starts outside the region that still converge.
@@ -60,8 +58,8 @@ class Converged:
 
     y: Array
     factors: Factors
-    converged: NDArray[np.bool_]
-    iterations: NDArray[np.int64]
+    converged: Flags
+    iterations: Integers
     first_step: Array
     left: Array
     last_step: Array
@@ -93,7 +91,7 @@ def newton_refine(
     first_step, left = np.zeros(members), np.zeros(members)
     previous, lipschitz = np.full(members, np.inf), np.full(members, np.nan)
     # First all members, of any dimensions; once one has ended, the numbers of the others.
-    active: EllipsisType | NDArray[np.intp] = ...
+    active: EllipsisType | Indices = ...
     factors: Factors | None = None
     with np.errstate(all="ignore"):
         for count in range(LIMIT):

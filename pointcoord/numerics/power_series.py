@@ -21,14 +21,13 @@ from itertools import pairwise
 from math import prod
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.multi_index import Products, powers_counted, products
 from pointcoord.numerics.quadratic import MovingProducts, QuadraticMap
 from pointcoord.numerics.vectors import LAST, NEXT
 
-Array = NDArray[np.float64]
 Combine = Callable[[Array], Array]
 
 # Pairs of coefficients multiplied at once: 7 MB for a map of a hundred terms.

@@ -19,14 +19,11 @@ from functools import cached_property, lru_cache
 from math import frexp
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.numerics.block_order import BlockOrder, block_order_of
 from pointcoord.numerics.few_entries import product_of_few_entries
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True)

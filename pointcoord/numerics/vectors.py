@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array
 
 NEXT, LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # the next and the previous axis, cyclic
 

@@ -11,15 +11,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array, Integers
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.jet import Jet
 from pointcoord.time_functions import middle_and_half
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 # Lowest order from which convergence can be seen; digits of a double; and highest order by number of inputs:
 # with three inputs order 12 has 455 powers.
@@ -58,13 +55,13 @@ class Domain:
         low, high = np.array([self.ranges[name] for name in self.free]).reshape(-1, 2).T
         return low, high
 
-    def inputs_at(self, twice: Whole) -> Array:
+    def inputs_at(self, twice: Integers) -> Array:
         """Values of the free inputs at places in units of half the smallest box, shape (..., p)."""
         low, high = self.ends
         share = twice / (2.0 * self.parts)
         return np.asarray(np.where(share >= 1.0, high, low + (high - low) * share))
 
-    def middle_and_half(self, low: Whole, high: Whole) -> tuple[Array, Array]:
+    def middle_and_half(self, low: Integers, high: Integers) -> tuple[Array, Array]:
         """Middles of boxes, and half widths that include both ends in spite of rounding, each (..., p)."""
         return middle_and_half(self.inputs_at(2 * low), self.inputs_at(2 * high))
 
@@ -83,7 +80,7 @@ class Domain:
         low, high = self.ends
         return np.asarray((values - low) * (self.parts / (high - low)))
 
-    def nearest_place(self, values: Array) -> Whole:
+    def nearest_place(self, values: Array) -> Integers:
         """The place nearest to values of the free inputs, in units of half the smallest box, (p,)."""
         low, high = self.ends
         share = (values - low) / (high - low)

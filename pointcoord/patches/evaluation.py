@@ -17,13 +17,10 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Indices, Integers
 from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 # Poses per matrix product: their powers, 90 in two inputs, stay in a second-level cache.
 BLOCK = 512
@@ -33,7 +30,7 @@ def sum_series(
     table: Array,
     boxes: tuple[Array, Array],
     order: int,
-    patch: Whole,
+    patch: Integers,
     states: Sequence[Array],
     out: Sequence[Array] | None = None,
 ) -> Sequence[Array]:
@@ -68,7 +65,7 @@ def sum_series(
     return found
 
 
-def _by_patch(patch: Whole, patches: int) -> Iterator[tuple[int, NDArray[np.intp]]]:
+def _by_patch(patch: Integers, patches: int) -> Iterator[tuple[int, Indices]]:
     """Each patch that has poses, with the places of its poses."""
     by_patch = np.argsort(patch, kind="stable")
     counts = np.bincount(patch, minlength=patches)

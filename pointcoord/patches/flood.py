@@ -20,8 +20,8 @@ import dataclasses
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Flags, Integers
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.multi_index import powers
@@ -36,11 +36,9 @@ from pointcoord.solve.assembly import assemble
 from pointcoord.solve.follower import follow
 from pointcoord.solve.path import Path
 
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 Corner = tuple[int, ...]
 Key = tuple[Corner, Corner]
-Start = tuple[Whole, Array]
+Start = tuple[Integers, Array]
 """A place in units of half the smallest box, (p,), and the pose near this place, (size,)."""
 
 # Boxes that are expanded and proven at once: their matrices take less than about 100 MB with two inputs.
@@ -73,7 +71,7 @@ class Entry:
         used: share of the tolerance that the halved box used, if it was proven but not exact enough.
     """
 
-    twice: Whole
+    twice: Integers
     y: Array
     used: float = np.inf
 
@@ -375,19 +373,19 @@ def last_terms(series: Array, inputs: int, order: int) -> tuple[Array, Array]:
     return sizes.value.max(axis=-1), sizes.first.max(axis=-1)
 
 
-def touching(low: Whole, high: Whole, other_low: Whole, other_high: Whole) -> NDArray[np.bool_]:
+def touching(low: Integers, high: Integers, other_low: Integers, other_high: Integers) -> Flags:
     """Which boxes (A, p) share a part of a face with which boxes (B, p), shape (A, B); none overlap."""
     first = np.maximum(low[:, None], other_low[None])
     last = np.minimum(high[:, None], other_high[None])
     return np.asarray(((first == last).sum(axis=-1) == 1) & (first <= last).all(axis=-1))
 
 
-def shared_place(low: Whole, high: Whole, other_low: Whole, other_high: Whole) -> Whole:
+def shared_place(low: Integers, high: Integers, other_low: Integers, other_high: Integers) -> Integers:
     """Middle of the face that two boxes share, in units of half the smallest box, shape (..., p)."""
     return np.asarray(np.maximum(low, other_low) + np.minimum(high, other_high))
 
 
-def _seams(patches: ProvenPatches) -> NDArray[np.bool_]:
+def _seams(patches: ProvenPatches) -> Flags:
     """Marks patches with another assembly than a neighbour that was reached earlier, shape (P,)."""
     dropped = np.zeros(len(patches.low), dtype=bool)
     one, other = np.nonzero(np.triu(touching(patches.low, patches.high, patches.low, patches.high)))

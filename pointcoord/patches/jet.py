@@ -11,10 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from pointcoord.numerics.arrays import Array, Flags, Indices
 
 
 @dataclass(frozen=True)
@@ -79,7 +77,7 @@ class Jet:
         """A linear operation without negative factors, applied to all bounds along their last axes."""
         return Jet(operation(self.value), operation(self.first), operation(self.second))
 
-    def where(self, proven: NDArray[np.bool_]) -> Jet:
+    def where(self, proven: Flags) -> Jet:
         """The bounds on the patches marked by `proven`, (P,); infinite on the others."""
 
         def only(part: Array) -> Array:

@@ -7,12 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Flags, Integers
 from pointcoord.patches.domain import Domain
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 # A value this near to the edge of a smallest box, in widths of the box, touches both boxes.
 TOUCHING = 1e-3
@@ -28,17 +25,17 @@ class Lookup:
     """
 
     domain: Domain
-    table: Whole
+    table: Integers
 
     @classmethod
-    def of(cls, domain: Domain, low: Whole, high: Whole) -> Lookup:
+    def of(cls, domain: Domain, low: Integers, high: Integers) -> Lookup:
         """The lookup of patches with given corners, (P, p); -1 where there is no patch."""
         table = np.full((domain.parts,) * len(domain.free), -1, dtype=np.int64)
         for number, (first, last) in enumerate(zip(low, high, strict=True)):
             table[part_of(first, last)] = number
         return cls(domain, table)
 
-    def at(self, values: Array) -> Whole:
+    def at(self, values: Array) -> Integers:
         """The numbers at values inside the domain, shape (..., p) to (...)."""
         places = self.domain.in_boxes(values).astype(np.int64)
         return np.asarray(self.table[tuple(np.moveaxis(np.minimum(places, self.domain.parts - 1), -1, 0))])
@@ -60,7 +57,7 @@ class Lookup:
         columns = (low.tolist(), high.tolist(), (self.domain.parts / (high - low)).tolist())
         return list(zip(*columns, strict=True))
 
-    def everywhere(self, low: Array, high: Array) -> NDArray[np.bool_]:
+    def everywhere(self, low: Array, high: Array) -> Flags:
         """Whether boxes of values, (N, p), touch only smallest boxes that patches cover, (N,)."""
         return ~self._gaps.any_in(*touched(self.domain, low, high))
 
@@ -77,10 +74,10 @@ class Marked:
         sums: number of boxes of the set below each corner in all inputs, (parts + 1, ..., parts + 1).
     """
 
-    sums: Whole
+    sums: Integers
 
     @classmethod
-    def of(cls, marks: NDArray[np.bool_]) -> Marked:
+    def of(cls, marks: Flags) -> Marked:
         """The set of boxes that are marked, from a mark for each smallest box."""
         sums = np.zeros(tuple(count + 1 for count in marks.shape), dtype=np.int64)
         inner = marks.astype(np.int64)
@@ -102,7 +99,7 @@ class Marked:
             steps = np.cumsum(steps, axis=axis)
         return cls.of(steps[(slice(0, -1),) * inputs] > 0)
 
-    def any_in(self, low: Whole, high: Whole) -> NDArray[np.bool_]:
+    def any_in(self, low: Integers, high: Integers) -> Flags:
         """Whether the set has a box between two corners, in smallest boxes, each (N, p), to (N,)."""
         inputs = low.shape[1]
         found = np.zeros(len(low), dtype=np.int64)
@@ -112,7 +109,7 @@ class Marked:
         return np.asarray(found > 0)
 
 
-def touched(domain: Domain, low: Array, high: Array) -> tuple[Whole, Whole]:
+def touched(domain: Domain, low: Array, high: Array) -> tuple[Integers, Integers]:
     """Corners of the region of smallest boxes that boxes of values touch, in smallest boxes, each (N, p)."""
     last = domain.parts
     first = np.clip(np.floor(domain.in_boxes(low) - TOUCHING), 0, last - 1).astype(np.int64)

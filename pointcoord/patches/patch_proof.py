@@ -36,8 +36,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Flags
 from pointcoord.numerics.enclosed_rows import differences, residual
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION, ball, nearer_perron
@@ -47,8 +47,6 @@ from pointcoord.numerics.power_series import multiplied
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from pointcoord.patches.jet import Jet
-
-Array = NDArray[np.float64]
 
 # Power iterations towards the Perron vector. Any positive vector gives a proof, so they need not converge.
 ITERATIONS = 40
@@ -74,12 +72,12 @@ class PatchProof:
             smaller patch would not be much more exact, (P,).
     """
 
-    proven: NDArray[np.bool_]
+    proven: Flags
     error: Jet
     unique_within: Array
     change: Array
     left_out: Array
-    rounded: NDArray[np.bool_]
+    rounded: Flags
 
 
 def prove_patches(
@@ -172,7 +170,7 @@ def _remaining(
     return kept + cut + spread, cut
 
 
-def _mostly_rounded(remaining: Jet, cut: Jet, weights: Array) -> NDArray[np.bool_]:
+def _mostly_rounded(remaining: Jet, cut: Jet, weights: Array) -> Flags:
     """Whether the truncation error is the smaller part of the residual, in every derivative, (P,)."""
     found = np.ones(len(weights), dtype=bool)
     for part, whole in zip(cut.parts, remaining.parts, strict=True):

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Indices, Integers
 from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.domain import Domain
@@ -17,9 +17,6 @@ from pointcoord.patches.evaluation import sum_series
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup
 from pointcoord.patches.reported_points import moving_points
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -36,12 +33,12 @@ class Patches:
 
     domain: Domain
     order: int
-    low: Whole
-    high: Whole
+    low: Integers
+    high: Integers
     coefficients: Array
     off: Jet
 
-    def taken(self, places: NDArray[np.intp]) -> Self:
+    def taken(self, places: Indices) -> Self:
         """Some of the patches, by number."""
 
         def some(value: Any) -> Any:
@@ -76,7 +73,7 @@ class Patches:
         self,
         table: Array,
         states: Sequence[Array],
-        patch: Whole | None = None,
+        patch: Integers | None = None,
         out: Sequence[Array] | None = None,
     ) -> Sequence[Array]:
         """Sums of the series of each pose's patch, and their time derivatives.
@@ -130,7 +127,7 @@ class ProvenPatches(Patches):
         """The same patches with the reported points only."""
         return Patches(*(getattr(self, part.name) for part in fields(Patches)))
 
-    def unknowns_at(self, which: NDArray[np.intp], values: Array) -> Array:
+    def unknowns_at(self, which: Indices, values: Array) -> Array:
         """Unknown coordinates on patches `which`, (N,), at inputs `values`, (N, p), shape (N, unknowns)."""
         middle, half = (part[which] for part in self.boxes)
         (row,) = monomials([((values - middle) / half).T], self.order)

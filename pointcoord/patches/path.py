@@ -11,13 +11,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.rounding import EPS
 from pointcoord.patches.lookup import Lookup
 from pointcoord.time_functions import TimeFunction
-
-Array = NDArray[np.float64]
 
 # Number of spans to begin with, whatever the duration.
 SPANS = 1024
@@ -58,7 +56,7 @@ class Spans:
         unknown = ~(np.isfinite(low) & np.isfinite(high))
         return cls(first, last, np.where(unknown, -np.inf, low), np.where(unknown, np.inf, high))
 
-    def taken(self, places: NDArray[np.intp] | NDArray[np.bool_] | slice) -> Spans:
+    def taken(self, places: Indices | Flags | slice) -> Spans:
         """Some of the spans."""
         return Spans(self.first[places], self.last[places], self.low[places], self.high[places])
 
@@ -74,7 +72,7 @@ class Spans:
         return Spans.of(laws, edges[:, :-1].ravel(), edges[:, 1:].ravel())
 
     @property
-    def divisible(self) -> NDArray[np.bool_]:
+    def divisible(self) -> Flags:
         """Whether each span is long enough to be cut, above the rounding of its instants, (N,)."""
         size = np.maximum(np.abs(self.first), np.abs(self.last))
         return np.asarray(self.last - self.first > 4.0 * PARTS * EPS * size)

@@ -13,19 +13,17 @@ rounded once.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_points import exact_weights
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.power_series import cross_series
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import LAST, NEXT
 from pointcoord.patches.jet import Jet
-
-Array = NDArray[np.float64]
 
 
 def moving_points(topology: Topology) -> tuple[str, ...]:

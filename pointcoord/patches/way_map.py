@@ -19,7 +19,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
@@ -30,9 +29,6 @@ from pointcoord.patches.patches import ProvenPatches
 from pointcoord.patches.path import covered_until, way_of
 from pointcoord.solve.assembly import Pose
 from pointcoord.time_functions import TimeFunction
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 # Most halvings of a range, by number of inputs that move: 65,536 to 262,144 smallest boxes.
 HALVINGS = {1: 16, 2: 9, 3: 6}

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from math import factorial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.bounds.summed import Summed
 from pointcoord.errors import InputOutOfRange
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.evaluation import sum_series
@@ -20,8 +20,6 @@ from pointcoord.results.readout import Readout
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.status import COMPLETE
 from pointcoord.time_functions import TimeFunction
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +84,7 @@ class ByMap(SolvedScene):
         parts = (sums(order - 1, order), sums(order - 3, order - 2), sums(0, order))
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
-    def pieces(self, instants: Array) -> NDArray[np.intp]:
+    def pieces(self, instants: Array) -> Indices:
         return self.patches.lookup.at(self._inputs(instants)[0])
 
     def _inputs(self, instants: Array) -> list[Array]:

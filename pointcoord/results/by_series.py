@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.bounds.summed import Summed
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.results.readout import ENOUGH, Readout
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.dense_output import SeriesRows, evaluate
@@ -22,9 +22,6 @@ from pointcoord.time_functions import TimeFunction
 if TYPE_CHECKING:
     from pointcoord.results.cells import CloseInstants
     from pointcoord.solve.pointwise import Solved
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,6 +158,6 @@ class ByChain(SolvedScene):
         left = np.array([np.max(segment.left) for segment in self.chain.segments])
         return np.asarray(left[self.pieces(instants)])
 
-    def pieces(self, instants: Array) -> Numbers:
+    def pieces(self, instants: Array) -> Indices:
         starts = [segment.start for segment in self.chain.segments]
         return np.asarray(np.searchsorted(starts, instants, side="right") - 1)

@@ -21,9 +21,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange, SingularConfiguration
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.chebyshev import interpolation
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.readout import ENOUGH
@@ -31,8 +31,6 @@ from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.dense_output import narrow_product
 from pointcoord.solve.taylor import Chain
 
-Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
 Stretch = tuple[int, int]
 """The first instant, by number, and the one after the last."""
 
@@ -110,7 +108,7 @@ class CloseInstants:
         edges = np.flatnonzero(np.diff(filled, prepend=True, append=True))
         return [(first, last) for first, last in edges.reshape(-1, 2).tolist()]
 
-    def _longest(self, times: Array) -> Whole:
+    def _longest(self, times: Array) -> Indices:
         """The longest cells, by number of the first instant and of the one after the last, (cells, 2)."""
         edges = [0, *np.searchsorted(times, self._starts[1:], side="left").tolist(), len(times)]
         cells = [
@@ -125,18 +123,18 @@ class CloseInstants:
     def _starts(self) -> Array:
         return np.array([segment.start for segment in self.chain.segments])
 
-    def _apart(self, cells: Whole, times: Array) -> NDArray[np.bool_]:
+    def _apart(self, cells: Indices, times: Array) -> Flags:
         """Whether the instants of each cell differ by more than rounding, (cells,)."""
         middle, half = middle_and_half(cells, times)
         return np.asarray((half > 0.0) & (EPS * np.abs(middle) <= ROUNDED * half))
 
-    def _near(self, cells: Whole, times: Array) -> NDArray[np.bool_]:
+    def _near(self, cells: Indices, times: Array) -> Flags:
         """Whether each cell is near the start of its series, where a number may begin at zero, (cells,)."""
         middle, half = middle_and_half(cells, times)
         start = self._starts[np.searchsorted(self._starts, times[cells[:, 0]], side="right") - 1]
         return np.asarray(middle - start < NEAR * half)
 
-    def _coefficients(self, cells: Whole, times: Array) -> tuple[Array, NDArray[np.bool_]]:
+    def _coefficients(self, cells: Indices, times: Array) -> tuple[Array, Flags]:
         """Coefficients of the rows that are solved for or computed, and in which cells the polynomials fit.
 
         The highest power is first and the largest coefficient, the constant, last. So the partial sums are
@@ -164,7 +162,7 @@ class CloseInstants:
         powers = np.moveaxis(found @ own.powers, 1, 0)[..., ::-1]
         return np.ascontiguousarray(powers), fits & ~(grown & self._near(cells, times))
 
-    def _sum(self, cells: Whole, coefficients: Array, times: Array, laws: Array, rows: Array) -> None:
+    def _sum(self, cells: Indices, coefficients: Array, times: Array, laws: Array, rows: Array) -> None:
         """Fill the columns of cells from coefficients and laws, except for the points of the chassis."""
         matrices = np.concatenate([coefficients, np.empty((*coefficients.shape[:-1], len(laws)))], axis=-1)
         matrices[..., DEGREE] += self._added[: matrices.shape[1], -1]
@@ -199,7 +197,7 @@ class CloseInstants:
         return values[: table.first_still]
 
     @cached_property
-    def _numbers(self) -> tuple[Whole, Array, Whole]:
+    def _numbers(self) -> tuple[Indices, Array, Indices]:
         """The first row of each number, the smallest size with which it is compared, and its kind, from 0.
 
         The size of a vector is the size of its largest component, and that of an angle is at least 1 rad.
@@ -237,7 +235,7 @@ class CloseInstants:
         return added
 
 
-def middle_and_half(cells: Whole, times: Array) -> tuple[Array, Array]:
+def middle_and_half(cells: Indices, times: Array) -> tuple[Array, Array]:
     """Middle and half length of cells, s, each (cells,)."""
     first, last = times[cells[:, 0]], times[cells[:, 1] - 1]
     middle = first + 0.5 * (last - first)

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from math import hypot
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.rounding import EPS
 from pointcoord.numerics.vectors import lengths
 from pointcoord.results.read_only import ReadOnly
-
-Array = NDArray[np.float64]
 
 NOTICED = 0.1  # mm: hardpoints are drawn to a tenth of a millimetre, so a larger movement is not rounding
 NOTICED_SHARE = 2e-4  # of the size: that tenth for a size of half a metre, for cars in other units than mm

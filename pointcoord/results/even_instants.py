@@ -6,9 +6,8 @@ from fractions import Fraction
 from math import lcm
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array
 
 # Whole numbers up to 2^53 are exact, so that their quotient is rounded once.
 EXACT = 2**53

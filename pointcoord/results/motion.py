@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pointcoord.errors import NotComputed
 from pointcoord.mechanism.freedoms import locked
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.counters import Work
 from pointcoord.results.closing import Closing
 from pointcoord.results.even_instants import even_instants
@@ -22,7 +23,6 @@ from pointcoord.solve.status import Status
 if TYPE_CHECKING:
     from pointcoord.results.proof import Proof
 
-Array = NDArray[np.float64]
 
 # Rows of a table in a notebook.
 SHOWN = 11

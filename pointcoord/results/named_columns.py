@@ -8,13 +8,11 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import MissingLibrary, UnknownName
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.samples import Samples
-
-Array = NDArray[np.float64]
 
 # The first installed one is used; each is an extra of the same name.
 LIBRARIES = ("pandas", "polars")

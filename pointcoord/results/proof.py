@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.bounds.certified_poses import CertifiedPoses, Groups, grouped, with_known
 from pointcoord.bounds.enclosed_points import (
@@ -21,6 +20,7 @@ from pointcoord.effects.effect import Effect
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import GAP, ByGap, ByInput, Way, shifted, way_slopes
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.vectors import LAST, NEXT
@@ -28,8 +28,6 @@ from pointcoord.results.readout import Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 Laws = Mapping[str, Sequence[Enclosed]]
 
 POSITION = "position"

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.registry import Plan
@@ -15,9 +14,9 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import ByInput, Way, moved_along
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.table import Table, vectors
 
-Array = NDArray[np.float64]
 Slopes = Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]]
 Laws = Mapping[str, Sequence[Array]]
 """Values and time derivatives of the inputs that move the chassis, each (N,), mm or rad."""

@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pointcoord.effects.effect import Quantity
 from pointcoord.effects.registry import Plan
 from pointcoord.errors import NotComputed, UnknownName
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.read_only import ReadOnly
-
-Array = NDArray[np.float64]
 
 
 class Channel(Mapping[str, Array]):

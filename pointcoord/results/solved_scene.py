@@ -15,16 +15,14 @@ from math import comb
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.bounds.summed import Summed
 from pointcoord.errors import WrongArgument
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.solve.status import Status
 from pointcoord.time_functions import TimeFunction
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +74,7 @@ class SolvedScene(ABC):
         """Magnitudes of the terms that `coordinates` sums for each derivative; empty if nothing is summed."""
         return ()
 
-    def pieces(self, instants: Array) -> NDArray[np.intp]:
+    def pieces(self, instants: Array) -> Indices:
         """Number of the series from which each instant is summed, (N,); all 0 if nothing is summed."""
         return np.zeros(len(instants), dtype=np.intp)
 

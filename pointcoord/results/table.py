@@ -10,15 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import QUANTITIES, Plan
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.samples import Channel, Samples
 
-Array = NDArray[np.float64]
 State = tuple[int, str]
 """A time derivative, and the name of the point."""
 

@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.corner import wheels_of
 from pointcoord.effects.effect import Doubt
 from pointcoord.effects.registry import ANGLES
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.topology import Topology
-
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array, Flags
 
 SMALLEST, LARGEST = 50.0, 20_000.0  # mm: no suspension is smaller, and no car longer
 # Share of the largest outboard distance of a wheel's points: a rack may end a little beyond the car's middle.
@@ -90,7 +88,7 @@ def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAx
         yield _farther_out(inner, outer, one - other, np.maximum(one, other) < 0.0)
 
 
-def _farther_out(inner: str, outer: str, out: Array, across: NDArray[np.bool_]) -> Doubt:
+def _farther_out(inner: str, outer: str, out: Array, across: Flags) -> Doubt:
     return Doubt(
         (out > 0.0) & ~across,
         lambda one: f"{inner} lies {float(out[one]):.4g} mm outboard of {outer}: are they swapped?",

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from pointcoord.effects.effect import Effect
@@ -29,6 +28,7 @@ from pointcoord.mechanism.file import (
 )
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
 from pointcoord.mechanism.structure import TABLES, Structure
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.rounding import EPS
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.own_units import in_directions
@@ -375,7 +375,7 @@ class MechanismPart(Part):
         return effect.refusal(self.topology, self.points, self.axes)
 
     @property
-    def outboard(self) -> NDArray[np.float64]:
+    def outboard(self) -> Array:
         """Unit vector away from the car's middle, on the wheel's side."""
         return np.array(self.right) * (-1.0 if self.side == "left" else 1.0)
 

@@ -11,8 +11,6 @@ from functools import partial
 from pathlib import Path
 from typing import IO, Annotated, Any
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, ValidationInfo, field_validator
 
 from pointcoord.effects.numbers import ConventionName
@@ -23,6 +21,7 @@ from pointcoord.mechanism.faults import TableFault, no_such
 from pointcoord.mechanism.file import is_path, whole_tables
 from pointcoord.mechanism.freedoms import Freedoms, askew_hinges
 from pointcoord.mechanism.inputs import Names
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of, read_in, swept, with_drawn
 from pointcoord.scene.mechanism_part import MechanismPart, by_dotted_name
@@ -248,7 +247,7 @@ class Scene(Part):
         return tuple(name for name in self.mechanism.topology.points if name not in reported)
 
     @property
-    def instants(self) -> NDArray[np.float64]:
+    def instants(self) -> Array:
         """The instants of the scene, shape (samples,), s."""
         return even_instants(self.time.start, self.time.stop, self.time.samples)
 

@@ -12,16 +12,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import AssemblyError
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_singular_vectors
 from pointcoord.solve.follower import Law, follow
 from pointcoord.solve.path import Path
-
-Array = NDArray[np.float64]
 
 # Largest rotation in one step, rad: above pi the two ends do not show which way round the input goes.
 LONGEST = 1.0
@@ -37,7 +35,7 @@ class Pose(Path):
 
     mechanism: Mechanism
 
-    def taken(self, members: NDArray[np.intp]) -> Pose:
+    def taken(self, members: Indices) -> Pose:
         """Some members of a batch of one dimension."""
         return replace(super().taken(members), mechanism=self.mechanism.taken(members))
 
@@ -168,7 +166,7 @@ def by_inputs(mechanism: Mechanism, ends: Mapping[str, tuple[Array, Array]], goa
     """
     cars = mechanism.drawn.ndim > 1
 
-    def law(members: NDArray[np.intp], shares: Array, order: int) -> Array:
+    def law(members: Indices, shares: Array, order: int) -> Array:
         inputs = {}
         for name, (first, last) in ends.items():
             change = last[members] - first[members]
@@ -195,7 +193,7 @@ def _stopped(
     mechanism: Mechanism,
     path: Path,
     target: Array,
-    which: NDArray[np.bool_],
+    which: Flags,
     problem: str,
     instant: float | None,
 ) -> dict[int, AssemblyError]:
@@ -213,7 +211,7 @@ def blocked(
     y: Array,
     factors: Factors,
     goal: Array,
-    unfinished: NDArray[np.bool_],
+    unfinished: Flags,
     instant: float | None,
     change: Array | None = None,
 ) -> AssemblyError:

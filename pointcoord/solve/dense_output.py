@@ -10,11 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.solve.taylor import Chain
-
-Array = NDArray[np.float64]
 
 # Instants per matrix product: the powers and the results of a block stay in a second-level cache.
 BLOCK = 1024

@@ -21,8 +21,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.few_entries import LARGE
 from pointcoord.numerics.linear import Factors, factorise
@@ -32,8 +32,7 @@ from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.path import Path
 from pointcoord.solve.proven_step import hidden, orientation, prove, same_side
 
-Array = NDArray[np.float64]
-Law = Callable[[NDArray[np.intp], Array, int], Array]
+Law = Callable[[Indices, Array, int], Array]
 """A path of the known coordinates: law(members, shares, order) expands the known coordinates of some members,
 by number, about shares of their paths, both (m,), as series in the share, (m, order + 1, size - unknowns)."""
 
@@ -143,7 +142,7 @@ def _straight(start: Array, goals: Array) -> Law:
     """The law of straight paths between known coordinates, start and goals (members, size - unknowns)."""
     change = goals - start
 
-    def law(members: NDArray[np.intp], shares: Array, order: int) -> Array:
+    def law(members: Indices, shares: Array, order: int) -> Array:
         known = np.zeros((len(members), order + 1, goals.shape[-1]))
         share = shares[:, None]
         known[:, 0] = np.where(share == 1.0, goals[members], start[members] + change[members] * share)

@@ -13,18 +13,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import PointcoordError
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.solve.assembly import assembled, closed_drawings
 from pointcoord.solve.series_in_inputs import follow_by_inputs
 from pointcoord.solve.step_rule import Settings
 from pointcoord.solve.taylor import Chain, build_chains
 from pointcoord.time_functions import TimeFunction
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,7 @@ class Followed:
         chain: coefficients of shape (A, order + 1, size), or (A, powers, size) in an `InputSeries`.
     """
 
-    numbers: Numbers
+    numbers: Indices
     chain: Chain
 
     @property
@@ -60,7 +57,7 @@ class SolvedDesigns:
     failures: Mapping[int, PointcoordError]
 
     @property
-    def solved(self) -> Numbers:
+    def solved(self) -> Indices:
         """The numbers of all solved designs, in increasing order."""
         return np.sort(
             np.concatenate([np.empty(0, dtype=np.intp), *(each.numbers for each in self.followed)])
@@ -97,7 +94,7 @@ def solve_designs(
     if not len(alive):
         return SolvedDesigns((), closed, failures)
 
-    def left(stopped: Mapping[int, PointcoordError]) -> Numbers:
+    def left(stopped: Mapping[int, PointcoordError]) -> Indices:
         """Places, among `alive`, of the designs that go on."""
         failures.update({int(alive[place]): error for place, error in stopped.items()})
         return np.array([place for place in range(len(alive)) if place not in stopped], dtype=np.intp)

@@ -5,13 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Self
 
-import numpy as np
-from numpy.typing import NDArray
-
+from pointcoord.numerics.arrays import Array, Indices, Integers
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -32,7 +28,7 @@ class Path:
     factors: Factors
     left: Array
     work: Work
-    iterations: NDArray[np.int64]
+    iterations: Integers
     done: Array
 
     def reshaped(self, batch: tuple[int, ...]) -> Self:
@@ -46,7 +42,7 @@ class Path:
             done=self.done.reshape(batch),
         )
 
-    def taken(self, members: NDArray[np.intp]) -> Self:
+    def taken(self, members: Indices) -> Self:
         """The paths of some members, by number; one batch dimension."""
         return replace(
             self,

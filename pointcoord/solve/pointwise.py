@@ -22,9 +22,9 @@ from dataclasses import dataclass, replace
 from math import comb, factorial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array, Flags
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.kantorovich import smallest_radius
 from pointcoord.numerics.linear import Factors, factorise
@@ -38,7 +38,6 @@ from pointcoord.solve.proven_step import WHOLE, hidden, prove
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
-Array = NDArray[np.float64]
 SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
 Values = Mapping[str, Array]
 """Value of every input at all instants, each (N,)."""
@@ -245,7 +244,7 @@ def _ahead(
 
 def _by_chord(
     system: QuadraticMap, inverse: Array, y: Array, tolerance: float
-) -> tuple[Array, NDArray[np.bool_], Array, Work]:
+) -> tuple[Array, Flags, Array, Work]:
     """Poses from estimates, by Newton steps with one inverse X for all.
 
     Within r, the radius of the theorem about an estimate (see `kantorovich`), the iteration contracts by
@@ -298,7 +297,7 @@ def _straight(system: QuadraticMap, factors: Factors, y: Array, targets: Array, 
     return expand(system, factors, y, known, system.residual(y))
 
 
-def _first_false(flags: NDArray[np.bool_]) -> int:
+def _first_false(flags: Flags) -> int:
     return len(flags) if flags.all() else int(np.argmin(flags))
 
 

@@ -38,8 +38,8 @@ from functools import lru_cache
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.few_entries import LARGE, product_of_few_entries
 from pointcoord.numerics.kantorovich import nearer_perron
 from pointcoord.numerics.linear import Factors, factorise
@@ -47,9 +47,6 @@ from pointcoord.numerics.multi_index import products
 from pointcoord.numerics.power_series import multiplied, powers_first
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 # Lengths of steps that are tried, a compromise between few lengths and few steps: fine steps down to 0.09,
 # then halves.
@@ -89,7 +86,7 @@ class Proof:
     alone: Array
     weights: Array
 
-    def taken(self, members: NDArray[np.intp]) -> Proof:
+    def taken(self, members: Indices) -> Proof:
         """The proofs of some members, by number."""
         return Proof(self.length[members], self.alone[members], self.weights[members])
 
@@ -124,7 +121,7 @@ def prove(
     powers = lengths[:, None] ** np.arange(2.0 * order + 1.0)
     of_rest = np.r_[: len(first), order + 1 : 2 * order + 1]
 
-    def proven(weights: Array, count: int | None) -> tuple[NDArray[np.intp], Array]:
+    def proven(weights: Array, count: int | None) -> tuple[Indices, Array]:
         """Index of the longest length proven in a norm, (...,), and the radius `alone` at its end."""
         z = _summed(powers[:count, : order + 1], np.matvec(change, weights) / weights)
         omega = system.lipschitz(inverse, weights)

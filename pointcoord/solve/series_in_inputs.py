@@ -22,10 +22,10 @@ from itertools import product
 from math import comb, factorial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.monomials import monomials
@@ -38,10 +38,6 @@ from pointcoord.solve.proven_step import prove_box
 from pointcoord.solve.step_rule import MOST, SEGMENT, Settings, degrees_lacking
 from pointcoord.solve.taylor import SOLVED, Segment, confirmed
 from pointcoord.time_functions import TimeFunction
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.intp]
-Flags = NDArray[np.bool_]
 
 # Most inputs of a series: three or more inputs need too many powers.
 INPUTS = 2
@@ -107,7 +103,7 @@ def follow_by_inputs(
     start: float,
     stop: float,
     settings: Settings,
-) -> tuple[Numbers, InputSeries | None, Work]:
+) -> tuple[Indices, InputSeries | None, Work]:
     """The numbers of the designs for which one box is confirmed, their series, and the work.
 
     Returns no designs and None where a chain in time is cheaper.
@@ -212,7 +208,7 @@ class _Boxed:
             found[places] += series[:, 1:, columns].swapaxes(0, 1)
         return found
 
-    def solve(self, pose: Pose, start: float, stop: float) -> tuple[Numbers, InputSeries | None, Work]:
+    def solve(self, pose: Pose, start: float, stop: float) -> tuple[Indices, InputSeries | None, Work]:
         """The numbers of the designs for which the box is confirmed, their series, and the work."""
         system, everyone = self.mechanism.map, np.arange(len(pose.y))
         nobody = everyone[:0], None, Work()

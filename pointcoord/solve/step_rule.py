@@ -21,12 +21,10 @@ from functools import lru_cache
 from math import perm
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.rounding import EPS
-
-Array = NDArray[np.float64]
 
 # A smaller truncation error, relative to the size of a derivative, drowns in the rounding of its sum.
 FINEST = 4.0 * EPS

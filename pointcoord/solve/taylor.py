@@ -14,10 +14,10 @@ from functools import cached_property, partial
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange, NotFollowed
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.newton import Converged, factors_at, newton_refine, rounding_of
@@ -29,9 +29,6 @@ from pointcoord.solve.proven_step import hidden, prove_segment
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.solve.step_rule import COARSEST, SAFE, Settings, lengths_by_sizes, log_sizes, order_for
 from pointcoord.time_functions import TimeFunction
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.intp]
 
 # A motion stops where a segment would be shorter than this share of the motion. Near a singular pose lengths
 # shrink in proportion to the time that is left, so the instant of that pose is then known to as many digits.
@@ -77,7 +74,7 @@ class Segment:
         """Order of the series."""
         return int(self.coefficients.shape[-2]) - 1
 
-    def taken(self, members: Numbers) -> Self:
+    def taken(self, members: Indices) -> Self:
         """The segment of some members of a batch of one dimension."""
         left = np.broadcast_to(self.left, self.coefficients.shape[:1])[members]
         return replace(self, coefficients=self.coefficients[members], left=left)
@@ -127,13 +124,13 @@ def build_chains(
     start: float,
     stop: float,
     settings: Settings,
-) -> list[tuple[Numbers, Chain]]:
+) -> list[tuple[Indices, Chain]]:
     """Chains for a batch of one dimension, each with the numbers of the members that share the chain.
 
     A member leaves its chain if it needs much shorter segments than the others, or if its end of a segment is
     not confirmed. The members that left are followed together in a further chain, until no member is left.
     """
-    found: list[tuple[Numbers, Chain]] = []
+    found: list[tuple[Indices, Chain]] = []
     waiting = [np.arange(len(pose.y))] if len(pose.y) else []
     while waiting:
         members = waiting.pop()
@@ -176,7 +173,7 @@ class _Joint:
         """Number of poses in the batch."""
         return self.factors.condition.size
 
-    def taken(self, members: Numbers) -> Self:
+    def taken(self, members: Indices) -> Self:
         """The poses of some members, by number."""
         factors, left = self.factors.taken(members), self.left[members]
         return replace(self, y=self.y[members], factors=factors, left=left, known=self.known[members])
@@ -192,7 +189,7 @@ class _Course:
     stop: float
     settings: Settings
 
-    def build(self, pose: Pose, leaving: bool) -> tuple[Chain, Numbers]:
+    def build(self, pose: Pose, leaving: bool) -> tuple[Chain, Indices]:
         """The chain, and the numbers of the members that it holds for.
 
         Args:
@@ -205,7 +202,7 @@ class _Course:
         work = Work()
         kept = np.arange(joint.members)
 
-        def chain(status: Status) -> tuple[Chain, Numbers]:
+        def chain(status: Status) -> tuple[Chain, Indices]:
             return Chain(tuple(segments), work, status), kept
 
         def too_many(reached: float) -> NotFollowed:
@@ -332,7 +329,7 @@ class _Course:
 
     def step_along(
         self, segment: Segment, length: float, joint: _Joint, leaving: bool
-    ) -> tuple[_Joint | None, NDArray[np.bool_], Work]:
+    ) -> tuple[_Joint | None, Flags, Work]:
         """Shorten a segment until Newton's method confirms its end and it is proven to stay on one branch.
 
         Args:
@@ -378,7 +375,7 @@ class _Course:
         rows = self.mechanism.map.uncertainty(reached.y, data)
         return np.asarray(np.matvec(np.abs(reached.factors.preconditioner), rows).max(axis=-1))
 
-    def stops_at(self, joint: _Joint, unfinished: NDArray[np.bool_], coarsest: bool) -> Status:
+    def stops_at(self, joint: _Joint, unfinished: Flags, coarsest: bool) -> Status:
         """The reason why no segment leads on from a joint.
 
         Args:
@@ -408,7 +405,7 @@ def confirmed(
     tolerance: float,
     law_noise: Callable[[], Array] | None = None,
     leaving: bool = True,
-) -> NDArray[np.bool_]:
+) -> Flags:
     """Whether solved ends agree with the ends of the series, up to a tolerance, shape (...,).
 
     Args:

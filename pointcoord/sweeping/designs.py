@@ -12,16 +12,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pointcoord.errors import UnknownName, WrongArgument
 from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.results.read_only import ReadOnly
 from pointcoord.scene.scene_file import Scene
 from pointcoord.wording import shown
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.intp]
 
 AXES = ("x", "y", "z")
 # A larger grid is a mistake: with 100 instants and a microsecond each it would take more than a day.
@@ -35,7 +33,7 @@ class Column(ReadOnly):
     values: Array
     repeat: int = 1
 
-    def of(self, numbers: Numbers) -> Array:
+    def of(self, numbers: Indices) -> Array:
         return np.asarray(self.values[(numbers // self.repeat) % len(self.values)])
 
 
@@ -67,11 +65,11 @@ class Designs(ReadOnly):
             if name in topology.chassis and drawn[name] == drawn[other] and name not in varied
         }
 
-    def varied(self, numbers: Numbers) -> dict[str, Array]:
+    def varied(self, numbers: Indices) -> dict[str, Array]:
         """Values of each coordinate that varies in some designs, by coordinate, each (n,), mm."""
         return {coordinate: column.of(numbers) for coordinate, column in self.columns.items()}
 
-    def points(self, numbers: Numbers) -> dict[str, Array]:
+    def points(self, numbers: Indices) -> dict[str, Array]:
         """The hardpoints of some designs, each (n, 3), mm."""
         found = {
             name: np.tile(np.array(place, dtype=float), (len(numbers), 1))

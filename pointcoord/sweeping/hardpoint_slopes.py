@@ -20,7 +20,6 @@ from math import factorial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import Dual
 from pointcoord.effects.effect import Poses
@@ -36,6 +35,7 @@ from pointcoord.linkage.slopes import (
     shifted,
     way_slopes,
 )
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.infinitesimal import slope_of, with_slope
 from pointcoord.numerics.linear import factorise
@@ -46,8 +46,6 @@ from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.pointwise import square_velocity_term, with_rates
 from pointcoord.sweeping.designs import AXES, designs_of
-
-Array = NDArray[np.float64]
 
 # Most numbers in the coordinates, time derivatives and slopes of the poses of one block: 30 MB.
 ROOM = 4e6

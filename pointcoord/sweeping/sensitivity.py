@@ -10,9 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import UnknownName, WrongArgument
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.read_only import ReadOnly
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
@@ -20,8 +20,6 @@ from pointcoord.simulation import require_scene
 from pointcoord.sweeping.designs import coordinates_of
 from pointcoord.sweeping.hardpoint_slopes import slopes_of_motion
 from pointcoord.sweeping.sweep import sweep
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

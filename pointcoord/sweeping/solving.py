@@ -12,7 +12,6 @@ from functools import cached_property
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.drawing_stands import drawn_angles
 from pointcoord.effects.registry import Plan, plan_effects
@@ -27,6 +26,7 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.results.by_series import ByChain
 from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size, closing, movements
 from pointcoord.results.readout import BLOCK as INSTANTS
@@ -48,8 +48,6 @@ from pointcoord.solve.many_designs import solve_designs
 from pointcoord.sweeping.designs import Designs
 from pointcoord.sweeping.swept import Failure, Noted, Sweep, merged
 
-Array = NDArray[np.float64]
-Numbers = NDArray[np.intp]
 Points = Mapping[str, Array]
 
 # Most designs that are solved together: of 128 to 2048 this is the fastest, or nearly so.
@@ -137,7 +135,7 @@ class _Block:
     course: Course
     first: int
     rows: Array
-    filled: NDArray[np.bool_]
+    filled: Flags
     closing: Array
     drawn: dict[str, Array]
     failures: dict[int, Failure] = field(default_factory=dict)
@@ -180,10 +178,10 @@ class _Block:
         for number in members:
             self.failures[int(number)] = Failure(int(number), reason_of(error), error)
 
-    def alive(self, members: Numbers) -> NDArray[np.bool_]:
+    def alive(self, members: Indices) -> Flags:
         return ~np.isin(members, list(self.failures))
 
-    def solve(self, members: Numbers) -> None:
+    def solve(self, members: Indices) -> None:
         designs, scene = self.course.designs, self.course.scene
         topology = scene.mechanism.topology
         points = designs.points(members)
@@ -208,7 +206,7 @@ class _Block:
                 self._note(f"doubt {i}", some, doubt.where, doubt.words)
             self._move(some, mechanism)
 
-    def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
+    def _mechanisms(self, members: Indices, points: Points) -> Iterator[tuple[Indices, Mechanism]]:
         """Mechanisms of the members that have one: a batch in which a member fails is divided in halves."""
         part = self.course.scene.mechanism
         if not len(members):
@@ -227,8 +225,8 @@ class _Block:
     def _note(
         self,
         kind: str,
-        members: Numbers,
-        where: NDArray[np.bool_],
+        members: Indices,
+        where: Flags,
         words: str | Callable[[tuple[int, ...]], str],
         weights: Array | None = None,
         warns: bool = True,
@@ -241,7 +239,7 @@ class _Block:
             text = words if isinstance(words, str) else words((place,))
             self.notes.append(Noted(kind, warns, count, int(members[place]), text, weight))
 
-    def _move(self, members: Numbers, mechanism: Mechanism) -> None:
+    def _move(self, members: Indices, mechanism: Mechanism) -> None:
         course, scene = self.course, self.course.scene
         time = scene.time
         functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
@@ -268,7 +266,7 @@ class _Block:
             else:
                 self.fail([members[place]], error)
 
-    def _look_at_closing(self, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
+    def _look_at_closing(self, members: Indices, mechanism: Mechanism, closed: Array) -> None:
         """Refuse drawings that closing turns into another car, and note how far the others move."""
         moved = np.max(list(movements(mechanism, closed).values()), axis=0)
         size, places = car_size(mechanism), members - self.first
@@ -293,7 +291,7 @@ class _Block:
     def _angles(self, mechanism: Mechanism, closed: Array) -> dict[str, Array]:
         return drawn_angles(mechanism, self.course.scene.mechanism.axes, self.course.plan.effects, closed)
 
-    def _fill(self, solved: ByChain, instants: Array, members: Numbers) -> None:
+    def _fill(self, solved: ByChain, instants: Array, members: Indices) -> None:
         places = members - self.first
         self.filled[places] = True
         together = self.rows[places[0] : places[-1] + 1]
@@ -330,7 +328,7 @@ class _Block:
             if closed.noticeable:
                 self.notes.append(Noted("closing", True, 1, number, closed.words, closed.largest))
 
-    def _note_missing(self, members: Numbers) -> None:
+    def _note_missing(self, members: Indices) -> None:
         if not len(members):
             return
         places = members - self.first
@@ -355,7 +353,7 @@ class _Block:
                         self._note(kind, members, where, words, warns=False)
 
 
-def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
+def _suspicious(designs: Designs, points: Points) -> Flags:
     """Marks all designs that are not valid as a scene, and hardly any others.
 
     The faults of a design are numbers that are not finite, a wheel that lies inboard, and two points at one

@@ -6,17 +6,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import PointcoordError, WrongArgument
+from pointcoord.numerics.arrays import Array, Flags, Indices
 from pointcoord.results.motion import Motion
 from pointcoord.results.proof import Proof
 from pointcoord.results.samples import Samples
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import simulate
 from pointcoord.sweeping.designs import Designs
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -104,7 +102,7 @@ class Sweep(Samples):
     designs: Designs
     first: int
     varied: Mapping[str, Array]
-    solved: NDArray[np.bool_]
+    solved: Flags
     closing: Array
     drawn: Mapping[str, Array]
     failures: Mapping[int, Failure]
@@ -118,7 +116,7 @@ class Sweep(Samples):
         return len(self.solved)
 
     @property
-    def numbers_of_designs(self) -> NDArray[np.intp]:
+    def numbers_of_designs(self) -> Indices:
         """Number of the design at each place."""
         return np.arange(self.first, self.first + len(self))
 

@@ -29,17 +29,16 @@ import numpy as np
 import pyarrow
 import pyarrow.csv
 import pytest
-from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from pointcoord import Scene, kinematic_map, simulate, solve_poses, sweep_blocks
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.named_columns import number_columns
 from validate.cost.scenes import study_instants
 from validate.cost.ways.absolute import in_bodies
 from validate.cost.ways.registry import ways_named
 from validate.output.columns import csv_lines, rows_of_motion
 
-Array = NDArray[np.float64]
 Work = Callable[[], object]
 
 SMALL = os.environ.get("SPEED") == "small"

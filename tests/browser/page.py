@@ -23,17 +23,15 @@ from typing import Any
 import numpy as np
 import pytest
 from made_rows import measured
-from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from pointcoord.numerics.arrays import Array
 from validate.cli import main
 from validate.cost.report import Report
 from validate.cost.ways.registry import WAYS
 from validate.html.page import page as page_of
 from validate.html.run import Run
 from validate.output.document import Head
-
-Array = NDArray[np.float64]
 
 WINDOW = {"width": 1200, "height": 900}
 PHONE = {"width": 390, "height": 844}

@@ -6,19 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import Phase, assume, example, given, note, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from random_mechanisms import random_mechanism
 from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene, SceneError, simulate
+from pointcoord.numerics.arrays import Array
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import FormulationError
 from validate.formulations.reference_solution import reference_solution, told_by
 from validate.formulations.refusals import why_refused
 from validate.formulations.registry import formulation
 from validate.reference import NoReferenceError
-
-Array = NDArray[np.float64]
 
 FORMULATIONS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 # Others than those that are named are searched for by the long profile alone: each takes seconds. Without

@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from every_number import with_everything
 from mechanism_files import plain_scene
-from numpy.typing import NDArray
 from three_mechanics import MECHANICS, solved_by
 
 from pointcoord import Scene
@@ -22,10 +21,10 @@ from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.car_number import LENGTHS
 from pointcoord.effects.point_states import NAMED, STATES
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.numerics.arrays import Array
 from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import Solution
 
-Array = NDArray[np.float64]
 Content = dict[str, Any]
 
 # One of each mechanism and closure; Bricard's depends on exact lengths that only its own drawing has.

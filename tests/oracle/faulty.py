@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array
+
 Numbers = dict[str, dict[str, Array]]
 Fault = Callable[[Numbers, Array], Numbers]
 

@@ -17,9 +17,9 @@ import numpy as np
 import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array
+
 Fact = Any  # str, int, bool, None, a list of words, or [value, allowed] of two numbers
 Facts = dict[str, dict[str, Fact]]
 

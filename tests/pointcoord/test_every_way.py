@@ -13,18 +13,17 @@ from functools import partial
 import numpy as np
 import pytest
 from every_number import ASKEW, FAR, OF_A_TURN, TURNED, asked, exact, one_of_each
-from numpy.typing import NDArray
 from within_bounds import Numbers, among, bounds_of, outside
 
 from pointcoord import PointcoordError, Scene, kinematic_map, simulate, solve_poses, sweep
 from pointcoord.effects.point_states import NAMED, STATES
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS
+from pointcoord.numerics.arrays import Array
 from validate.cars.random_scenes import random_scene
 from validate.formulations.reference_solution import reference_solution
 from validate.reference import NoReferenceError
 
-Array = NDArray[np.float64]
 Way = Callable[[Scene], tuple[Numbers, Numbers]]
 
 

@@ -11,13 +11,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import absolute
 from pointcoord import Scene, SceneError
+from pointcoord.numerics.arrays import Array
 from validate.closed_drawing import closed_drawing
 
-Array = NDArray[np.float64]
 Places = Mapping[str, Array]
 
 SEED = 20261123

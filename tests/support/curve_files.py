@@ -6,16 +6,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
+from pointcoord.numerics.arrays import Array
 from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import Measured, understood
 from validate.measured.poses import Driven
 from validate.measured.reading import columns_of_text
 from validate.measured.tolerances import Held, held_of
-
-Array = NDArray[np.float64]
 
 
 def measured(text: str, scene: Scene, **content: object) -> Measured:

@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array
 
 PLACES = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 """Where the cars are drawn, in steps."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
+from pointcoord.numerics.arrays import Array
 from validate.formulations.protocol import Numbers
-
-Array = NDArray[np.float64]
 
 
 def late(values: Array) -> Array:

@@ -7,9 +7,9 @@ from itertools import count
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pointcoord.numerics.arrays import Array
+
 CHASSIS = "chassis"
 LINES = {"up": (0.0, 0.0, 1.0), "left": (0.0, -1.0, 0.0), "forward": (1.0, 0.0, 0.0)}
 # By kind of joint, how many freedoms it leaves a body.

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Samples
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.proof import Proof
 
-Array = NDArray[np.float64]
 Numbers = Mapping[str, Mapping[str, Array]]
 
 

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.assemblies.homotopy import solve_quadratic
 from validate.assemblies.legs import forms
 from validate.extras import needing
@@ -32,7 +33,6 @@ with needing("validate.assemblies"):
     from validate.reference.errors import NotDecidedError
     from validate.reference.vectors import Scalar
 
-Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 BITS = 300

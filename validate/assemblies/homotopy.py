@@ -16,7 +16,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from validate.arrays import Array, Flags
+
 Complex = NDArray[np.complex128]
 
 FIRST = 0.01
@@ -77,7 +78,7 @@ def _at(both: Complex, x: Complex, t: Array) -> tuple[Complex, Complex, Complex]
     return value, 2.0 * row, change
 
 
-def _ahead(both: Complex, x: Complex, t: Array, step: Array) -> tuple[Complex, NDArray[np.bool_]]:
+def _ahead(both: Complex, x: Complex, t: Array, step: Array) -> tuple[Complex, Flags]:
     """Unit vectors after a step of each path, and the paths whose Newton steps converged."""
 
     def tangent(y: Complex, share: float) -> Complex:

@@ -27,12 +27,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.errors import NoAnswer
 from validate.spanning_tree.tree import car_directions
-
-Array = NDArray[np.float64]
 
 CHASSIS = "chassis"
 CONDITIONS = 6

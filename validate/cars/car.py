@@ -7,15 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.scene.mechanism_part import MechanismPart
+from validate.arrays import Array
 from validate.spanning_tree.tree import car_directions
 
-Array = NDArray[np.float64]
 Point = tuple[float, float, float]
 Points = dict[str, Point]
 Law = float | Sequence[float] | Mapping[str, Any]

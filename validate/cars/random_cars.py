@@ -21,8 +21,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pointcoord import PointcoordError, simulate
+from validate.arrays import Array
 from validate.cars.base_cars import Variant, variants
-from validate.cars.car import Array, Car, any_rotation
+from validate.cars.car import Car, any_rotation
 from validate.cars.input_ends import Inputs, at, drawn_inputs, end
 
 SHARE = 0.2  # largest move of a point in each coordinate, as a share of the car's size

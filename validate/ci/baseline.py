@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
+from validate.arrays import Array
 from validate.comparison.compare import Comparison, Outcome, compare_solutions
 from validate.comparison.given import given, usable
 from validate.errors import UsageError
@@ -35,8 +36,6 @@ from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Accuracy, Solution
 from validate.output.document import program_version
 from validate.plain_text import shown
-
-Array = NDArray[np.float64]
 
 FORMAT, VERSION = "pointcoord baseline", 1
 PARTS = ("times", "condition", "numbers", "claims")

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import sensitivity, sweep
 from pointcoord.effects.numbers import RANKED_FIRST
 from pointcoord.sweeping.sensitivity import numbers_named
+from validate.arrays import Array
 from validate.commands.pages import Command
 from validate.commands.usage import named_scene, require_results
 from validate.curves.numbers import asking_for, numbers_asked
@@ -21,8 +21,6 @@ from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
 from validate.output.table import Table, csv_of, text_for
-
-Array = NDArray[np.float64]
 
 PICTURES = (".svg", ".png")
 ENDINGS = (".csv", *PICTURES)

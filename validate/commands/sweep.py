@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import (
     Designs,
@@ -25,6 +24,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.sweeping.designs import coordinates_named
 from pointcoord.sweeping.swept import Failure, Noted, merged
 from pointcoord.toml_text import read_file
+from validate.arrays import Array
 from validate.commands.pages import Command
 from validate.commands.usage import named_scene, require_results
 from validate.commands.values import finite, values_of
@@ -38,8 +38,6 @@ from validate.output.table import Part, Table
 from validate.plain_text import shown
 from validate.tables.cells import joined, lines_of, text_of
 from validate.tables.units import degrees_of
-
-Array = NDArray[np.float64]
 
 EXAMPLES = "POINT.AXIS=START:STOP:COUNT or =A,B,C, in finite mm from the drawing"
 

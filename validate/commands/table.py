@@ -7,12 +7,12 @@ import sys
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SceneError, UnknownName, WrongArgument, solve_poses
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.numbers import CONVENTIONS, READ_FIRST
 from pointcoord.wording import meant
+from validate.arrays import Array
 from validate.commands.pages import Command
 from validate.commands.solved import solved
 from validate.commands.usage import named_scene, require_results
@@ -26,7 +26,6 @@ from validate.output.console import Console
 from validate.output.table import Table, csv_of, text_for
 from validate.plain_text import shown
 
-Array = NDArray[np.float64]
 Columns = Sequence[tuple[Number, Array]]
 """Numbers over the rows of a table, (N,) each, angles in degrees."""
 

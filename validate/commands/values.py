@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import WrongArgument
+from validate.arrays import Array
 from validate.plain_text import shown
-
-Array = NDArray[np.float64]
 
 MOST_VALUES = 10_000_000
 

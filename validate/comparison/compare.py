@@ -14,11 +14,12 @@ from pointcoord.results.named_columns import html_table
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.wording import nearest, shown
+from validate.arrays import Array
 from validate.comparison.given import given_by_both
 from validate.comparison.pair import SMALLEST, Pair
 from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers
-from validate.formulations.protocol import AccuracyError, Array, Formulation, FormulationError, Solution
+from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
 
 GIVEN_BACK = "points of the chassis, or points that stay where they are drawn"

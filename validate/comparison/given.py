@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from pointcoord.effects.registry import QUANTITIES
-from validate.formulations.protocol import Accuracy, Array, FormulationError, Places, Solution, shape_of
+from validate.arrays import Array
+from validate.formulations.protocol import Accuracy, FormulationError, Places, Solution, shape_of
 from validate.plain_text import shown
 
 Arrays = dict[str, dict[str, Array]]

@@ -26,13 +26,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from pointcoord.scene.scene_file import Scene
+from validate.arrays import Array, Flags
 from validate.formulations.asked_numbers import per_second
-from validate.formulations.protocol import NOTHING, Array, Solution
+from validate.formulations.protocol import NOTHING, Solution
 
 # Numbers below the smallest normal double lose digits, and so do tolerances computed from them.
 SMALLEST = float(np.finfo(float).tiny)
@@ -127,7 +127,7 @@ class Pair:
             share=share,
         )
 
-    def wide(self, held: Held) -> NDArray[np.bool_]:
+    def wide(self, held: Held) -> Flags:
         """The instants at which the tolerance is too wide to test anything, (N,)."""
         # An accuracy that was stated beforehand may be coarse: a wide bound from it still tests.
         stated = [side.accuracy.blind for side in self.sides if side.accuracy.blind is not None]

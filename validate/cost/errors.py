@@ -15,10 +15,11 @@ import numpy as np
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
+from validate.arrays import Array
 from validate.cost.race import Found, absent
 from validate.cost.way import Answer
 from validate.errors import NoAnswer
-from validate.formulations.protocol import Array, Solution
+from validate.formulations.protocol import Solution
 from validate.formulations.reference_solution import as_solution, reference_motion, told_by
 
 

@@ -16,13 +16,11 @@ import math
 from importlib import resources
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS, plan_effects
 from pointcoord.toml_text import parsed
-
-Array = NDArray[np.float64]
+from validate.arrays import Array
 
 NEAR_TOGGLE = "near-toggle"
 STUDY_SCENES = ("bounce", "steer", "bounce-and-steer", "off-axis-strut", "double-wishbone", NEAR_TOGGLE)

@@ -9,7 +9,8 @@ from importlib.util import find_spec
 from typing import Any
 
 from pointcoord import Scene
-from validate.formulations.protocol import Array, Numbers
+from validate.arrays import Array
+from validate.formulations.protocol import Numbers
 
 DIGITS = tuple(10.0**-digits for digits in range(2, 14))
 

@@ -8,13 +8,13 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, NotComputed, Samples, Scene
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.numbers import meant_by
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES, number_called, words_of
 from pointcoord.wording import meant as hint
+from validate.arrays import Array
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
 from validate.formulations.asked_numbers import is_force, per_second
@@ -22,8 +22,6 @@ from validate.formulations.asked_numbers import numbers_of as names_of
 from validate.formulations.protocol import Solution
 from validate.plain_text import gathered, shown, some_of
 from validate.tables.units import degrees_of
-
-Array = NDArray[np.float64]
 
 Sampled = Samples | Solution
 """Numbers of a motion, or of another solution, at instants."""

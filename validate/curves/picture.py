@@ -7,8 +7,8 @@ from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.curves.numbers import TRAVEL, Curves, Number
 from validate.output.columns import DESIGN
 from validate.output.figure import BLUE, FAINT, GREEN, GREY, LOOK, ORANGE, PINK, RED, SHADES, SKY, panels
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 Values = Callable[[Number], Array]
 
 COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY)

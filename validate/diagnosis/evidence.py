@@ -14,19 +14,18 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import finest_tolerance
+from validate.arrays import Array, Flags, Indices
 from validate.comparison.compare import Outcome
 from validate.comparison.given import given_by_both
 from validate.comparison.pair import SMALLEST, Pair, gaps_between
 from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import Numbers, Solution
 
-Array = NDArray[np.float64]
 Content = dict[str, Any]
 """The content of a scene, a copy that may be changed."""
 
@@ -187,10 +186,10 @@ class Evidence:
         wrong = tuple(row for row in rows if row in disagree)
         return cls(scene, times, theirs, trusted, allowed, wrong, Solved(scene))
 
-    def at(self, places: slice | NDArray[np.intp], theirs: slice | None = None) -> Evidence:
+    def at(self, places: slice | Indices, theirs: slice | None = None) -> Evidence:
         """The evidence at some instants; the given numbers are taken at `theirs` instead, if given."""
 
-        def of(rows: Rows, some: slice | NDArray[np.intp] = places) -> Rows:
+        def of(rows: Rows, some: slice | Indices = places) -> Rows:
             return {row: array[some] for row, array in rows.items()}
 
         return replace(
@@ -256,7 +255,7 @@ class Evidence:
         with np.errstate(over="ignore"):  # a tolerance may be tiny
             return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
 
-    def wrong_at(self, row: Row) -> NDArray[np.bool_]:
+    def wrong_at(self, row: Row) -> Flags:
         """The instants at which a row disagrees, (N,)."""
         gap = gaps_between(self.given[row], self.held[row], QUANTITIES[row.quantity].unit)
         return np.asarray(~(gap <= self.off_by(row)).reshape(len(gap), -1).all(axis=-1))

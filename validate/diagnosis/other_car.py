@@ -8,10 +8,10 @@ from functools import cache
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, simulate
 from pointcoord.numerics.rounding import EPS
+from validate.arrays import Array
 from validate.diagnosis.evidence import (
     DECIMALS,
     Content,
@@ -22,8 +22,6 @@ from validate.diagnosis.evidence import (
     numbers_in,
     roundest,
 )
-
-Array = NDArray[np.float64]
 
 # Least number of numbers of the car, if one of them is left out: one or two numbers fit many changes.
 ENOUGH_NUMBERS = 3

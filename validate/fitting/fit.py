@@ -29,16 +29,13 @@ from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares, lsq_linear
 from scipy.special import ndtri, stdtrit
 
 from pointcoord import PointcoordError, Scene
+from validate.arrays import Array, Flags
 from validate.fitting.problem import Problem
 from validate.measured.poses import Found
-
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 # Relative to the sum of squares: the search ends if a step reduces the sum by less.
 ENOUGH = 1e-9
@@ -214,7 +211,7 @@ def fit_hardpoints(
     after = rest[: len(problem.spread)]
     matrix = np.asarray(solved.jac)[: len(after)]
     singular, turned = _known(matrix)
-    loose: Bools = np.abs(amounts) < (1.0 - AT_A_BOUND) * bounds
+    loose: Flags = np.abs(amounts) < (1.0 - AT_A_BOUND) * bounds
     own, directions = _known(matrix[:, loose])
     freedom = len(after) - int((own > 1.0 / bounds).sum())
     factor = max(1.0, math.sqrt(float(after @ after) / freedom) if freedom > 0 else 1.0)

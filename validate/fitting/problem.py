@@ -19,18 +19,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene, designs_of
 from pointcoord.sweeping.designs import coordinates_of
+from validate.arrays import Array, Flags
 from validate.errors import UsageError
 from validate.measured.mapping import Measured
 from validate.measured.poses import Driven, Found, columns_of, swings
 from validate.measured.tolerances import out_of_reach
 from validate.tables.errors import FileError
-
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 
 BOUNDS = 25.0  # mm: no hardpoint in a drawing of this car has a larger error
 # The bounds are then five standard deviations, which less than one of 1e6 coordinates exceeds. With a wider
@@ -63,7 +60,7 @@ class Problem:
     bounds: float
     prior: float
     start: Found
-    used: Bools
+    used: Flags
     spread: Array
 
     @classmethod
@@ -101,7 +98,7 @@ class Problem:
             raise UsageError(f"--free: {twice} is given twice; allowed: each coordinate once")
         start = driven.at([s.values for s in measured.independent], TIGHT, bounded=False)
         first = columns_of(measured.numbers, start.numbers, len(measured.rows))
-        used: Bools = np.isfinite(first) & np.isfinite([s.values for s in measured.numbers])
+        used: Flags = np.isfinite(first) & np.isfinite([s.values for s in measured.numbers])
         if not used.any():
             why = next(iter(start.reasons.values()), "no number is both in the file and computed")
             allowed = "rows that the scene's car can reach"

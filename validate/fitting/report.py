@@ -9,7 +9,6 @@ from textwrap import wrap
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from validate.exit_status import ExitStatus
@@ -19,8 +18,6 @@ from validate.output.table import csv_of
 from validate.plain_text import shown
 from validate.tables.units import degrees_of
 from validate.toml_written import written
-
-Array = NDArray[np.float64]
 
 # Smallest printed part of a combination, relative to its largest; if exact, all that two decimals show.
 SAID, SAID_EXACT = 0.2, 0.005

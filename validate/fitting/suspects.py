@@ -25,14 +25,12 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import chdtri
 
 from pointcoord import PointcoordError
+from validate.arrays import Array
 from validate.fitting.fit import CONFIDENCE, Fit, Told, fit_hardpoints
 from validate.fitting.problem import Problem
-
-Array = NDArray[np.float64]
 
 LARGEST = 3  # coordinates of a set: all of one misread point
 LEVEL = 1000.0

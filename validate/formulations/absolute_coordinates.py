@@ -9,10 +9,11 @@ from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES, plan_effects
 from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import Scene
+from validate.arrays import Array
 from validate.extras import needing
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.modelled import Problem, require_the_drawn_car
-from validate.formulations.protocol import AccuracyError, Array, FormulationError, Numbers, Solution
+from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
 
 with needing("absolute"):
     import absolute

@@ -8,8 +8,9 @@ from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.proof import ROUNDINGS, prove
+from validate.arrays import Array
 from validate.formulations.asked_numbers import asked_numbers, is_force
-from validate.formulations.protocol import NOTHING, Array, Numbers, largest_at
+from validate.formulations.protocol import NOTHING, Numbers, largest_at
 
 
 def claims_of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str, Array]]:

@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from pointcoord.effects.registry import plan_effects
 from pointcoord.scene.input_part import InputPart, TablePart
 from pointcoord.scene.scene_file import Scene
+from validate.arrays import Array
 from validate.extras import not_there
 
 # flint is imported where a law needs it, which is rare; but a missing flint is reported before solving.
 if find_spec("flint") is None:
     raise not_there("validate.formulations.input_rates", ModuleNotFoundError(name="flint"))
 
-Array = NDArray[np.float64]
 Intervals = NDArray[Any]
 """Array of flint's arb; each is an interval that encloses the exact number."""
 

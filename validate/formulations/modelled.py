@@ -12,9 +12,10 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import Scene
+from validate.arrays import Array
 from validate.formulations.asked_numbers import asked_numbers, is_force, per_second
 from validate.formulations.input_rates import laws_of
-from validate.formulations.protocol import AccuracyError, Array, FormulationError, Numbers, Solution
+from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_at, places_in
 from validate.peers.motion import OF_CAR
 from validate.reference import NoReferenceError

@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import (
     Motion,
@@ -25,7 +24,8 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import Method
 from pointcoord.results.proof import Proof
 from pointcoord.simulation import finest_tolerance
-from validate.formulations.protocol import Accuracy, Array, FormulationError, Solution, largest_at
+from validate.arrays import Array, Flags
+from validate.formulations.protocol import Accuracy, FormulationError, Solution, largest_at
 
 UNKNOWN = 1e-9  # relative rounding error of an input above which fewer than nine of its digits are known
 
@@ -85,7 +85,7 @@ class PointCoordinates:
         return Solution(self.name, motion.times, motion.numbers, accuracy, motion.notes)
 
     def _bounds(
-        self, motion: Motion, proof: Proof, quantity: str, uncertain: NDArray[np.bool_]
+        self, motion: Motion, proof: Proof, quantity: str, uncertain: Flags
     ) -> tuple[dict[str, Array], Array]:
         """The error bound of each number, and the largest expected error at each instant, (N,).
 
@@ -110,7 +110,7 @@ class PointCoordinates:
         return claims, usual
 
 
-def _uncertain_laws(scene: Scene, times: Array) -> NDArray[np.bool_]:
+def _uncertain_laws(scene: Scene, times: Array) -> Flags:
     """The times at which an input is known to fewer than nine digits of its largest value, (N,)."""
     uncertain = np.zeros(len(times), dtype=bool)
     for function in scene.functions.values():

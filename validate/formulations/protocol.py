@@ -8,12 +8,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.scene_file import Scene
-
-Array = NDArray[np.float64]
+from validate.arrays import Array, Flags, Indices
 
 NOTHING = 1e150
 """The error bound of a number without a known bound: larger than any number, and its square is finite."""
@@ -22,7 +20,7 @@ Numbers = Mapping[str, Mapping[str, Array]]
 """By quantity, then by point, body or angle: (N, 3), or (N,) for a number of the car."""
 
 
-Places = slice | NDArray[np.bool_] | NDArray[np.intp]
+Places = slice | Flags | Indices
 """A selection of instants."""
 
 
@@ -77,7 +75,7 @@ class Accuracy:
     condition: Array
     claims: Numbers = field(default_factory=dict)
     proven: bool = False
-    blind: NDArray[np.bool_] | None = None
+    blind: Flags | None = None
     stated: float | None = None
     usual: Mapping[str, Array] = field(default_factory=dict)
 

@@ -21,9 +21,10 @@ from pointcoord import Scene
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR, QUANTITIES
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from validate.arrays import Array
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.input_rates import laws_of
-from validate.formulations.protocol import Accuracy, Array, FormulationError, Numbers, Solution, largest_at
+from validate.formulations.protocol import Accuracy, FormulationError, Numbers, Solution, largest_at
 from validate.formulations.stated_accuracy import accuracy_at
 from validate.reference import Design, Instant, NoReferenceError, instants_of
 from validate.reference.effects.at_pose import numbers_of

@@ -63,17 +63,17 @@ from itertools import combinations
 from math import comb, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from validate.arrays import Array, Flags
 from validate.formulations.accuracy_of_forces import claims_of_forces
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
 from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
-from validate.formulations.protocol import NOTHING, Accuracy, Array
+from validate.formulations.protocol import NOTHING, Accuracy
 from validate.reference import Design
 from validate.reference.car_data import KNUCKLE, RACK, TIME
 from validate.reference.design import Known, values_only
@@ -259,9 +259,7 @@ class _Held:
         driver[:, 1] = self.unit if along == RACK else 1.0
         return known_in_doubles(self.design, held, len(driver))
 
-    def _pose(
-        self, places: Mapping[str, Array], known: Known
-    ) -> tuple[list[Array], Array, Array, NDArray[np.bool_]]:
+    def _pose(self, places: Mapping[str, Array], known: Known) -> tuple[list[Array], Array, Array, Flags]:
         """The unknowns, the inverse of their Jacobian, the Jacobian, and the instants without a pose nearby.
 
         The points of a faulty model are off; the bounds hold at the right pose, a few Newton steps away.

@@ -11,7 +11,6 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene, built_in_scenes
 from pointcoord.drawing_stands import drawn_inputs
@@ -19,7 +18,6 @@ from validate.cars.car import Car, Law, any_rotation, content_of
 from validate.cars.paper_car import PAPER as PAPER_POINTS
 from validate.formulations.reference_solution import reference_instant
 
-Array = NDArray[np.float64]
 Content = dict[str, Any]
 ASKED = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster")
 SQUARE = 1.5707963267948966  # rad: the arm is horizontal, and its rise nearly proportional to the angle

@@ -25,18 +25,16 @@ from decimal import Decimal
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import PAIR_ROLES, ROLES
+from validate.arrays import Array
 from validate.extras import needed
 from validate.hardpoint_files.contents import DIRECTIONS, FARTHEST, Axes, Place, short
 from validate.hardpoint_files.written_scene import Drawing, ScenePoint
 from validate.spanning_tree.tree import across
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
-
-Array = NDArray[np.float64]
 
 # A car has some thirty bodies, and the time grows with the third power of their number.
 MOST_BODIES = 100

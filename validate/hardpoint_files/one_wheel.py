@@ -14,12 +14,12 @@ from functools import cached_property
 from math import degrees, dist, radians, tan
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.file import AS_DRAWN
 from pointcoord.mechanism.structure import Structure
+from validate.arrays import Array
 from validate.hardpoint_files.contents import (
     ALLOWED,
     DIRECTIONS,
@@ -39,8 +39,6 @@ from validate.hardpoint_files.written_scene import Drawing, ScenePoint
 from validate.plain_text import some_of
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
-
-Array = NDArray[np.float64]
 
 SIDES = ("left", "right")
 PARTS = ("front", "rear")

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from validate.arrays import Array
 from validate.output.table import Table
 
-Array = NDArray[np.float64]
 Trace = dict[str, Any]
 """A trace of plotly: a curve or a set of points."""
 

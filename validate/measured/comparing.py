@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import MissingLibrary, Scene
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from validate.arrays import Array, Indices
 from validate.comparison.compare import Comparison, Outcome, Verdict
 from validate.comparison.pair import SMALLEST
 from validate.diagnosis import Explanation, explain_evidence
@@ -22,9 +22,6 @@ from validate.measured.poses import Driven, row_by_row
 from validate.measured.supposed import meant_otherwise
 from validate.measured.tolerances import NO_NUMBERS, OURS, Held, held_of, rounded
 from validate.plain_text import shown
-
-Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
 
 TOO_COARSE = (
     "the independent column is rounded so coarsely that any value would agree, even that of a constant curve"
@@ -208,7 +205,7 @@ def _side_by_side(row: Row, columns: Sequence[Held], number: Callable[[Held], Ar
     return found
 
 
-def _as_motion(driven: Driven, measured: Measured, rows: Rows) -> tuple[Rows, Scene | None]:
+def _as_motion(driven: Driven, measured: Measured, rows: Indices) -> tuple[Indices, Scene | None]:
     """Some rows of a file in order, and a scene with a motion through them, for solving other cars.
 
     The scene is None if times are not in even steps, or with several independent columns or too few rows.

@@ -31,7 +31,6 @@ from textwrap import fill
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from pointcoord import Scene, SceneError
@@ -39,6 +38,7 @@ from pointcoord.effects.numbers import ConventionName, meant_by
 from pointcoord.mechanism.faults import faults_of, known_keys
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant, shown_key
+from validate.arrays import Array, Flags
 from validate.measured.meanings import (
     CONTACT,
     IGNORE,
@@ -55,8 +55,6 @@ from validate.plain_text import shown
 from validate.tables.errors import FileError
 from validate.tables.units import allowed_units, factor_of
 from validate.toml_written import key_of, value_of
-
-Array = NDArray[np.float64]
 
 # Least number of values to decide that a column is in even steps: two values always are.
 FEWEST = 3
@@ -159,7 +157,7 @@ class Series:
         gap, turn = ours - theirs, 2.0 * math.pi
         return gap - turn * np.rint(gap / turn) if self.meaning.unit == "rad" else gap
 
-    def taken(self, rows: NDArray[np.bool_]) -> Series:
+    def taken(self, rows: Flags) -> Series:
         """The series at some rows."""
         return replace(self, values=self.values[rows], off=self.off[rows])
 
@@ -196,7 +194,7 @@ class Measured:
         one, *others = self.independent
         return np.arange(len(self.rows), dtype=float) if others else one.values
 
-    def taken(self, keep: NDArray[np.bool_]) -> Measured:
+    def taken(self, keep: Flags) -> Measured:
         """The file with some of its rows."""
         return replace(
             self,
@@ -252,7 +250,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     for s in numbers:
         if lacking := int(np.isnan(s.values).sum()):
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
-    lost: NDArray[np.bool_] = np.asarray(np.isnan([s.values for s in over]).any(axis=0))
+    lost: Flags = np.asarray(np.isnan([s.values for s in over]).any(axis=0))
     if lost.all():
         raise FileError(columns.source, "", "no row gives its pose", "at least one row with its pose")
     if lost.any():

@@ -13,7 +13,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, designs_of, simulate
 from pointcoord.effects.registry import EFFECTS
@@ -25,12 +24,11 @@ from pointcoord.poses import PoseSolver
 from pointcoord.scene.mechanism_part import MechanismPart
 from pointcoord.simulation import scene_mechanism
 from pointcoord.sweeping.hardpoint_slopes import ByHardpoints, moves_of, slopes_of_motion, slopes_of_poses
+from validate.arrays import Array, Flags
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import CONTACT, PLACES, TIME, TRAVEL
 from validate.tables.errors import FileError
 
-Array = NDArray[np.float64]
-Bools = NDArray[np.bool_]
 Numbers = dict[str, dict[str, Array]]
 
 # Largest range of an input to either side of the drawing: an angle, and a length relative to the car's size.
@@ -55,7 +53,7 @@ class Found:
     driven: Driven
     numbers: Numbers
     bounds: Numbers
-    reached: Bools
+    reached: Flags
     reasons: Mapping[int, str]
     inputs: Mapping[str, Array]
 
@@ -208,7 +206,7 @@ class Driven:
 
     def _over_time(self, times: Array, bounded: bool) -> Found:
         start, stop = self.scene.time.start, self.scene.time.stop
-        reached: Bools = (times >= start) & (times <= stop)
+        reached: Flags = (times >= start) & (times <= stop)
         why = f"is outside the scene's time, {start:.10g} to {stop:.10g} s"
         reasons = {int(i): f"t = {times[i]:.10g} s {why}" for i in np.flatnonzero(~reached)}
         found = Found(self, {}, {}, reached, reasons, {TIME: times})
@@ -353,7 +351,7 @@ def swings(
         yield measured.independent[i], change
 
 
-def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Bools, rows: Any = slice(None)) -> Numbers:
+def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Flags, rows: Any = slice(None)) -> Numbers:
     """Numbers of some rows as arrays of all rows, NaN elsewhere."""
     found: Numbers = {}
     for quantity, part in numbers.items():

@@ -18,17 +18,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import SceneError
 from pointcoord.toml_text import read_file
+from validate.arrays import Array
 from validate.extras import needed
 from validate.plain_text import shown
 from validate.tables.cells import NUMBER, is_number, joined, lines_of, text_of
 from validate.tables.errors import FileError
 from validate.tables.units import is_unit
-
-Array = NDArray[np.float64]
 
 NOTHING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
 NO_UNIT = ("", "-", "1")

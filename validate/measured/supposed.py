@@ -12,10 +12,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from pointcoord import PointcoordError
+from validate.arrays import Array
 from validate.diagnosis import Explanation
 from validate.diagnosis.evidence import Row
 from validate.measured.mapping import Measured, Series
@@ -24,8 +24,6 @@ from validate.measured.poses import Driven, columns_of
 from validate.measured.tolerances import Held, held_of
 from validate.plain_text import shown
 from validate.tables.units import ANGLES, KINDS, named
-
-Array = NDArray[np.float64]
 
 ROWS = 16  # number of rows at which inputs are found
 NEARLY_ALL = 0.8  # least share of these rows that must be within reach

@@ -34,9 +34,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.numerics.rounding import EPS
+from validate.arrays import Array
 from validate.comparison.pair import SMALLEST
 from validate.formulations.asked_numbers import is_force
 from validate.formulations.protocol import Accuracy, Solution
@@ -46,8 +46,6 @@ from validate.measured.poses import Driven, Found, columns_of, swings
 from validate.plain_text import gathered, shown, some_of
 from validate.tables.errors import FileError
 from validate.toml_written import key_of
-
-Array = NDArray[np.float64]
 
 OURS = "pointcoord"
 NO_NUMBERS = "no row has a number of it that can be compared"

@@ -23,7 +23,6 @@ from pointcoord.results.named_columns import columns, number_columns
 from validate.output.console import Console
 from validate.output.files import write_whole
 
-Array = NDArray[np.float64]
 Block = Mapping[str, NDArray[Any]]
 """Some rows of each column, by name; the rows are along the first axis."""
 

@@ -12,12 +12,11 @@ from textwrap import wrap
 from xml.sax.saxutils import escape
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.linkage.topology import Topology
+from validate.arrays import Array
 from validate.closed_drawing import ClosedDrawing
 
-Array = NDArray[np.float64]
 Places = Mapping[str, Array]
 
 VIEW = 290.0  # px, side of the square that a view is scaled into

@@ -14,7 +14,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, BodyRates, Edges, States
@@ -24,8 +23,7 @@ from pointcoord.linkage.topology import Topology
 from pointcoord.method import Method
 from pointcoord.numerics.quadratic import QuadraticMap, Row
 from pointcoord.solve.pointwise import square_velocity_term
-
-Array = NDArray[np.float64]
+from validate.arrays import Array
 
 # If a quotient loses more than two digits, the formula is at fault, not its rounding.
 MOST_LOST = 100.0

@@ -13,11 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-
-Array = NDArray[np.float64]
+from validate.arrays import Array
 
 WHY_NOT_EQUAL = (
     "The tables cannot be matched to better than about 10 mm: Table 1's own link lengths give a wheel "

@@ -15,13 +15,11 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree, axes_along, car_directions
-
-Array = NDArray[np.float64]
 
 # Imported by name, since exudyn's type hints differ from the arguments that its compiled functions take.
 with needing("exudyn"):

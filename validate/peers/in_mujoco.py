@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Place, SpanningTree
@@ -20,7 +20,6 @@ from validate.spanning_tree.tree import CHASSIS, Place, SpanningTree
 with needing("mujoco"):
     import mujoco
 
-Array = NDArray[np.float64]
 
 KINDS = {
     "hinge": mujoco.mjtJoint.mjJNT_HINGE,

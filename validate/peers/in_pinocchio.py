@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree
@@ -19,7 +19,6 @@ from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree
 with needing("relative"):
     import pinocchio
 
-Array = NDArray[np.float64]
 
 CAR = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED  # rates of the place itself, in the car's axes
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.reference.car_data import PAIR, corners
 from validate.reference.chassis import ChassisMotion
 from validate.reference.effects.at_pose import car_at, pair_of
@@ -19,7 +19,6 @@ from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Vector
 from validate.spanning_tree.tree import SpanningTree
 
-Array = NDArray[np.float64]
 Rates = dict[str, dict[str, Array]]
 """Velocity and acceleration of every moving point, in the tree's unit, and angular velocity and acceleration
 of the knuckles, by quantity and name, (N, 3).

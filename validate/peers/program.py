@@ -25,18 +25,15 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import qr
 from scipy.linalg.lapack import dgecon, dgesv
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
+from validate.arrays import Array, Flags, Indices, Integers
 from validate.errors import NoAnswer
 from validate.peers.motion import Poses, Rates
 from validate.spanning_tree.tree import UNIT_ROUNDOFF, SpanningTree
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 # Newton's method doubles its correct digits: six steps lead from half a digit to all; twice that is the
 # limit.
@@ -84,11 +81,11 @@ class Program(ABC):
 
     tree: SpanningTree
     as_drawn: Array
-    driven_at: NDArray[np.intp]
-    driven: NDArray[np.intp]
-    unknown: NDArray[np.intp]
-    rows: slice | Numbers = slice(None)
-    blocks: Sequence[tuple[Numbers, Numbers]] = ()
+    driven_at: Indices
+    driven: Indices
+    unknown: Indices
+    rows: slice | Integers = slice(None)
+    blocks: Sequence[tuple[Integers, Integers]] = ()
     drawn: Array
     jacobian: Array
     way: Array
@@ -379,7 +376,7 @@ class Program(ABC):
         return Poses(inputs, coordinates, named, np.asarray(steps), dict(counted))
 
 
-def independent_rows(jacobian: Array) -> Numbers:
+def independent_rows(jacobian: Array) -> Integers:
     """A largest set of independent rows of a Jacobian (rows, columns), in increasing order.
 
     Rows are chosen by pivoting (Golub and Van Loan, Matrix Computations, 5.4.2), so the rows left out are
@@ -392,7 +389,7 @@ def independent_rows(jacobian: Array) -> Numbers:
     return np.sort(order[:count]).astype(np.int64)
 
 
-def diagonal_blocks(pattern: NDArray[np.bool_]) -> list[tuple[Numbers, Numbers]]:
+def diagonal_blocks(pattern: Flags) -> list[tuple[Integers, Integers]]:
     """Rows and columns of the diagonal blocks of a square pattern in block triangular form.
 
     The determinant of the matrix is the product of those of the blocks (Duff and Reid, ACM Transactions on

@@ -13,11 +13,11 @@ from math import nan
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.scene.input_part import InputPart
+from validate.arrays import Array
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.pair import SMALLEST
 from validate.formulations.protocol import Accuracy, Solution
@@ -26,7 +26,6 @@ from validate.measured.reading import Columns, read_columns
 from validate.tables.errors import FileError
 from validate.tables.units import factor_of
 
-Array = NDArray[np.float64]
 FOLDER = Path(__file__).parent
 MODELS = ("pointcoord", "absolute")
 NOT_HELD = "rule not known"

@@ -10,14 +10,12 @@ from collections.abc import Mapping, Sequence
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.reference.design import Design, Known
 from validate.reference.jet import Dual, Jet, value_of
 from validate.reference.kinematics import Solved
 from validate.reference.vectors import Scalar, Vector
-
-Array = NDArray[np.float64]
 
 
 def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> Known:

@@ -40,9 +40,10 @@ from pointcoord import Scene, SceneError
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.wording import meant, shown
+from validate.arrays import Array
 from validate.errors import UsageError
 from validate.formulations.asked_numbers import asked_numbers, known_names
-from validate.formulations.protocol import Accuracy, Array, FormulationError, Solution
+from validate.formulations.protocol import Accuracy, FormulationError, Solution
 from validate.plain_text import named
 
 Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]

@@ -39,10 +39,10 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 
+from validate.arrays import Array
 from validate.errors import NoAnswer
 from validate.spanning_tree.tree import (
     CHASSIS,
-    Array,
     Driven,
     Joint,
     Kind,

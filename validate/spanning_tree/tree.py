@@ -8,11 +8,9 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array, Flags
 from validate.errors import NoAnswer
-
-Array = NDArray[np.float64]
 
 CHASSIS = "chassis"
 Kind = Literal["hinge", "ball", "slide"]
@@ -198,7 +196,7 @@ class SpanningTree:
         return np.asarray((CHAIN * UNIT_ROUNDOFF * far + last_step**2) * self.unit)
 
 
-def _require(name: str, law: Array, right: NDArray[np.bool_], allowed: str) -> None:
+def _require(name: str, law: Array, right: Flags, allowed: str) -> None:
     if not right.all():
         wrong = int(np.argmin(right))
         bad = law[wrong][~np.isfinite(law[wrong])]

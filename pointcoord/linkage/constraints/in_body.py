@@ -18,11 +18,11 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import ONE, Constraint, Edge, Equation, Names, Term
 from pointcoord.linkage.drawing import Drawing, Placed
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import (
     PAIRS,
     Pair,
@@ -35,7 +35,6 @@ from pointcoord.numerics.double_double import (
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import cross, lengths
 
-Array = NDArray[np.float64]
 Triangle = tuple[str, str, str]
 
 # Relative error of a product with the inverse of a 3 x 3 matrix and of the inverse: about 20 roundings.

@@ -7,15 +7,13 @@ from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import ONE, Constraint, Edge, Equation, Term
 from pointcoord.linkage.constraints.in_body import Axis
 from pointcoord.linkage.drawing import Drawing, Placed, no_length
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import PAIRS, Pair, exact_square, pair_dot, pair_root, two_product
-
-Array = NDArray[np.float64]
 
 # How many lengths of its line a point may stand from the line's origin. With R lengths, p_end moves by 1 / R
 # of the point's movement, and R itself must take up the rest: X = C_u^-1 grows as R^2, the curvature X C_u as

@@ -13,7 +13,6 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from every_number import every_effect
-from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
 from pointcoord.bounds import certified_poses, enclosed_points
@@ -24,13 +23,13 @@ from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosed_rows, enclosure, kantorovich
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.results import proof
 from validate.formulations.reference_solution import DUST, inputs_at, reference_instant
 from validate.reference.exact import as_fraction
 
-Array = NDArray[np.float64]
 # u u + 2 u p = q: one unknown, whose error counts by its square, and two known numbers.
 UNKNOWN, ZERO, ONE, P, Q = range(5)
 SYSTEM = quadratic_map(

@@ -9,7 +9,6 @@ from functools import cache
 import numpy as np
 import pytest
 from every_number import OF_A_WHEEL, asked
-from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 from within_bounds import beyond_claims, differing
 
@@ -17,11 +16,10 @@ from pointcoord import Motion, Scene, simulate
 from pointcoord.bounds import certified_poses
 from pointcoord.bounds.certified_poses import SHARED
 from pointcoord.bounds.summed import Summed
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.by_series import ByChain
 from pointcoord.results.proof import Numbers, Proof
-
-Array = NDArray[np.float64]
 
 
 def short(name: str, **changes: object) -> Scene:

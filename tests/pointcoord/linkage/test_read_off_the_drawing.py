@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.errors import MechanismError
@@ -15,10 +14,10 @@ from pointcoord.linkage.constraints.in_body import Axis, axis_in_body, carrier_w
 from pointcoord.linkage.constraints.on_line import FARTHEST, Line, on_line
 from pointcoord.linkage.constraints.scalar_product import link
 from pointcoord.linkage.drawing import Drawing, Placed
+from pointcoord.numerics.arrays import Array
 from pointcoord.simulation import scene_mechanism
 from validate.reference.vectors import Vector, cross, dot, minus, times
 
-Array = NDArray[np.float64]
 U = 2.0**-53
 BODY = ("base", "first", "second")
 DRAWN = Axis("axis", "tail", "head", "body")

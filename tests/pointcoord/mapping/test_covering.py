@@ -7,11 +7,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from sample_cars import by_drawn_car
 
 from pointcoord import NotCovered, Scene, kinematic_map, standing
 from pointcoord.drawing_stands import drawn_inputs
+from pointcoord.numerics.arrays import Array, Integers
 from pointcoord.patches import flood as flooding
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
@@ -23,8 +23,6 @@ from pointcoord.solve.assembly import assemble, close_drawing
 from pointcoord.solve.follower import follow
 from pointcoord.time_functions import Polynomial, Sine
 from validate.formulations.reference_solution import reference_instant
-
-Array = NDArray[np.float64]
 
 # Where two branches of the paper's car nearly meet: arm angle, rad, and rack, mm.
 SADDLE = (float(np.radians(35.118)), -0.0029)
@@ -94,7 +92,7 @@ def paper_domain() -> Domain:
     return Domain(STRUT, RANGES, 6)
 
 
-def entry(domain: Domain, twice: tuple[int, int] = (64, 64)) -> tuple[NDArray[np.int64], Array]:
+def entry(domain: Domain, twice: tuple[int, int] = (64, 64)) -> tuple[Integers, Array]:
     """The pose at a place of a domain."""
     values = dict(zip(domain.free, domain.inputs_at(np.array(twice)), strict=True))
     return np.array(twice), assemble(domain.mechanism, values).y

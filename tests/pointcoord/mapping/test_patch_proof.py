@@ -12,8 +12,8 @@ from math import perm
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.multi_index import powers
@@ -22,8 +22,6 @@ from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.patches import patch_proof
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.patch_proof import prove_patches
-
-Array = NDArray[np.float64]
 
 SEEDS = 400
 UNKNOWN, NONE, ONE, OTHER, LIKE_UNKNOWN, LIKE_OTHER = range(6)

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from within_bounds import differing
 
 from pointcoord import (
@@ -23,8 +22,8 @@ from pointcoord import (
     UnknownName,
     kinematic_map,
 )
+from pointcoord.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 RANGES = {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)}
 AT = {"arm_angle": 1.0, "rack": 1.0}
 

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import Certificate, ball, certify
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import EPS
 
-Array = NDArray[np.float64]
 plain = settings(deadline=None)
 
 

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import newton
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.solve.assembly import Pose, assemble
 
-Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
 
 

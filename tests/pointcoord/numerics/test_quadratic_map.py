@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 
-Array = NDArray[np.float64]
 U = np.finfo(float).eps / 2
 SIZE, UNKNOWNS = 9, 5
 seeds = st.integers(0, 2**32 - 1)

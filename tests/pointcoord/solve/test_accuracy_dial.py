@@ -11,16 +11,15 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from within_bounds import beyond_claims
 
 from pointcoord import AssemblyError, Motion, MotionNotMapped, Scene, simulate
 from pointcoord.method import METHODS
+from pointcoord.numerics.arrays import Array
 from pointcoord.simulation import TRUNCATION_SHARE
 from pointcoord.solve import step_rule, taylor
 from validate.strategies import scenes
 
-Array = NDArray[np.float64]
 FINEST = 1e-13
 # Random cars that were found to come to a lock within the time of a few long segments.
 THAT_LOCK = json.loads((Path(__file__).parent / "scenes_that_lock.json").read_text())

@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, MotionNotMapped, Scene, simulate
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.motion import Motion
 
-Array = NDArray[np.float64]
 CRANK = 1000.0
 DENSE, AT_INSTANTS = ("series", "map"), ("newton", "newton-cold", "chord")
 by_method = pytest.mark.parametrize("method", [*DENSE, *AT_INSTANTS])

@@ -5,18 +5,17 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from sample_cars import CARS
 from scipy.spatial.transform import Rotation
 
 import pointcoord.solve.assembly
 from pointcoord import AssemblyError, MechanismError, Scene
 from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.numerics.arrays import Array
 from pointcoord.scene.mechanism_part import MechanismPart
 from pointcoord.solve.assembly import close_drawing
 from pointcoord.solve.proven_step import Proof
 
-Array = NDArray[np.float64]
 # Only a drawing that closes says by itself on which side it stands.
 CLOSING = [part for part in (Scene.load(car).mechanism for car in CARS) if part.closure == "drawn"]
 by_part = pytest.mark.parametrize("part", CLOSING, ids=lambda part: part.type)

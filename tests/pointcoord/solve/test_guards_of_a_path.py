@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from parabola import AT_ONE, PARABOLA
 
+from pointcoord.numerics.arrays import Array
 from pointcoord.solve import proven_step
 from pointcoord.solve.follower import SMALLEST_STEP, follow
 from pointcoord.solve.proven_step import PARTS, ROOM, prove_box, prove_segment
-
-Array = NDArray[np.float64]
 
 
 def along_the_parabola(u: Array) -> Array:

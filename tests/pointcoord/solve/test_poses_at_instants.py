@@ -5,7 +5,6 @@ from functools import partial
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from parabola import AT_ONE, PARABOLA
 from sample_cars import by_car
 
@@ -13,6 +12,7 @@ from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import MAP, METHODS, NEWTON, Method
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.linear import factorise
 from pointcoord.simulation import pose_tolerance, prepare_task
 from pointcoord.solve import pointwise
@@ -87,7 +87,6 @@ def test_rates_near_a_lock_are_those_of_the_pose_that_is_reported(
         assert abs(stretch) <= 16 * EPS * 600.0 * 3 * fast
 
 
-Array = NDArray[np.float64]
 Make = Callable[..., Scene]
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from sample_cars import CARS
 
 from pointcoord import Scene
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.arrays import Array, Indices
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
@@ -19,7 +19,6 @@ from pointcoord.solve.assembly import Pose, assemble, close_drawing
 from pointcoord.solve.follower import follow
 from pointcoord.solve.proven_step import ROOM, Proof, prove
 
-Array = NDArray[np.float64]
 MECHANISMS = {car: scene_mechanism(Scene.load(car)) for car in CARS}
 by_mechanism = pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS.keys())
 few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 4))
@@ -96,7 +95,7 @@ def test_a_law_leads_where_the_straight_path_leads(mechanism: Mechanism) -> None
     y[:n] += off * np.random.default_rng(8).uniform(-1.0, 1.0, n)
     first, last = y[n:], end.y[n:]
 
-    def law(members: NDArray[np.intp], shares: Array, order: int) -> Array:
+    def law(members: Indices, shares: Array, order: int) -> Array:
         assert set(members.tolist()) == {0}
         known = np.zeros((1, order + 1, len(first)))
         share = float(shares[0])

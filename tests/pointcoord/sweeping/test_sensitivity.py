@@ -7,17 +7,15 @@ import numpy as np
 import pytest
 from drawn_anew import PLACES, STEP, hold_to_designs, size_of
 from every_number import asked, one_of_each
-from numpy.typing import NDArray
 from random_mechanisms import random_mechanism
 
 from pointcoord import Scene, SweepError, UnknownName, sensitivity, simulate, sweep
+from pointcoord.numerics.arrays import Array
 from pointcoord.results.samples import Channel
 from pointcoord.sweeping.designs import coordinates_of
 from pointcoord.sweeping.hardpoint_slopes import slopes_of_motion
 from validate.formulations.reference_solution import inputs_at
 from validate.reference import Design, instants_of
-
-Array = NDArray[np.float64]
 
 TIME = {"start": 0.0, "stop": 0.4, "samples": 3}
 # Of the largest derivative, how far one may be off as a solved rate is, some ten times.

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from within_bounds import beyond_claims
 
 from pointcoord import (
@@ -22,6 +21,7 @@ from pointcoord import (
     sweep,
     sweep_blocks,
 )
+from pointcoord.numerics.arrays import Flags
 from pointcoord.solve import series_in_inputs, taylor
 from pointcoord.sweeping import solving
 
@@ -91,7 +91,7 @@ def test_a_design_whose_end_is_not_confirmed_goes_on_without_the_others(
     monkeypatch.setattr(series_in_inputs, "INPUTS", inputs)
     right = taylor.confirmed
 
-    def all_but_the_third(*arguments: Any) -> NDArray[np.bool_]:
+    def all_but_the_third(*arguments: Any) -> Flags:
         good = np.array(right(*arguments))
         if good.shape[:1] == (9,):
             good[2] = False

@@ -7,16 +7,14 @@ import pytest
 from flint import acb, acb_mat, ctx
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene, simulate
+from pointcoord.numerics.arrays import Array
 from validate.assemblies import count
 from validate.assemblies.legs import STUDY, at_distance, forms, on_plane, on_plane_of_body
 from validate.assemblies.scenes import counts
 from validate.errors import NoAnswer
-
-Array = NDArray[np.float64]
 
 seeds = st.integers(0, 2**32 - 1)
 

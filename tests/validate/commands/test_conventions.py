@@ -8,14 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from curve_files import compared, verdicts
-from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
+from pointcoord.numerics.arrays import Array
 from pointcoord.scene.scene_file import SCENES
 from validate.cli import main
 from validate.curves.numbers import asking_for, numbers_called
 
-Array = NDArray[np.float64]
 TEXT = (SCENES / "double-wishbone.toml").read_text("utf-8").replace("samples = 101", "samples = 11")
 CAR = Scene.from_mapping(tomllib.loads(TEXT))
 UP, OUTBOARD, FORWARD = 2, 1, 0  # of its axes; x points rearward

@@ -8,12 +8,12 @@ from itertools import cycle
 import numpy as np
 import pytest
 from changed_scenes import scene_with
-from numpy.typing import NDArray
 from planted_faults import late, misread
 from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene
 from pointcoord.method import AUTO
+from pointcoord.numerics.arrays import Array
 from pointcoord.scene.input_part import InputPart
 from pointcoord.simulation import prepare_task, solve_task
 from validate.comparison.compare import compare_solutions
@@ -24,7 +24,6 @@ from validate.output import report
 from validate.output.table import text_of
 from validate.solvers.check import check
 
-Array = NDArray[np.float64]
 Numbers = Mapping[str, Mapping[str, Array]]
 
 SCENES = ("double-wishbone", "off-axis-strut", "bounce")

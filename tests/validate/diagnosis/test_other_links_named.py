@@ -7,17 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 from curve_files import compared, table
-from numpy.typing import NDArray
 from planted_faults import late
 
 from pointcoord import Scene
+from pointcoord.numerics.arrays import Array
 from validate import check
 from validate.comparison.compare import compare_solutions
 from validate.diagnosis import Explanation, explain_outcome
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 
-Array = NDArray[np.float64]
 Content = dict[str, Any]
 EFFECTS = ["velocity", "acceleration", "camber", "toe"]
 

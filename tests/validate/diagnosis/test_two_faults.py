@@ -6,13 +6,12 @@ from functools import partial
 import numpy as np
 import pytest
 from changed_scenes import scene_with
-from numpy.typing import NDArray
 from planted_faults import late, misread
 
 from pointcoord import Scene, simulate
+from pointcoord.numerics.arrays import Array
 from validate import check
 
-Array = NDArray[np.float64]
 Change = Callable[[Array], Array]
 SECOND = {"start": 0.0, "stop": 1.0}
 

@@ -11,10 +11,10 @@ import jsonschema
 import numpy as np
 import pytest
 from curve_files import at_inputs, measured, table
-from numpy.typing import NDArray
 from scipy.stats import norm, t
 
 from pointcoord import Scene, designs_of, simulate
+from pointcoord.numerics.arrays import Array
 from validate import paper
 from validate.cli import main
 from validate.exit_status import ExitStatus
@@ -25,8 +25,6 @@ from validate.measured.mapping import Measured
 from validate.measured.poses import Driven
 from validate.output.document import schema_text
 from validate.paper.tables import TABLE_2, TABLE_3
-
-Array = NDArray[np.float64]
 
 CAR = Scene.load("double-wishbone")
 ANGLES = np.linspace(1.40, 1.66, 9)

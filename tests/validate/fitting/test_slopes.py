@@ -7,14 +7,12 @@ import pytest
 from curve_files import measured
 from drawn_anew import PLACES, STEP, hold_to_designs, size_of
 from every_number import load, one_of_each
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.numerics.arrays import Array
 from pointcoord.sweeping.designs import coordinates_of
 from validate.measured.poses import Driven
-
-Array = NDArray[np.float64]
 
 # How far rows are from the drawing, rad and parts of the car's size.
 AWAY = np.array([-0.5, 0.0, 1.0])

@@ -11,10 +11,10 @@ from cars_in_closed_form import DRAWN, cars_of, pose_of
 from hypothesis import assume, given, note, settings
 from hypothesis import strategies as st
 from mechanism_closed_forms import NoPoseError
-from numpy.typing import NDArray
 
 import absolute
 from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
+from pointcoord.numerics.arrays import Array
 from validate.cars.car import Car
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.reference_solution import inputs_at, reference_instant
@@ -22,7 +22,6 @@ from validate.formulations.registry import formulation
 from validate.hard.subjects import drawn_angle, scene_content
 from validate.reference import NoReferenceError
 
-Array = NDArray[np.float64]
 Places = Mapping[str, Array]
 
 EPS = float(np.finfo(float).eps)

@@ -9,17 +9,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from changed_scenes import scene_with
-from numpy.typing import NDArray
 
 from pointcoord import MissingLibrary, Scene
+from pointcoord.numerics.arrays import Array
 from validate.comparison.compare import compare
 from validate.extras import not_there
 from validate.formulations.registry import OUTSIDE, formulation
 from validate.formulations.trees import InTree
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.motion import Poses, Rates
-
-Array = NDArray[np.float64]
 
 
 class Faulty(InMujoco):

@@ -10,10 +10,10 @@ import pinocchio
 import pytest
 from changed_scenes import scene_with
 from foreign_files import FOUR_BAR, imported
-from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
 from pointcoord.mechanism.file import MechanismFile
+from pointcoord.numerics.arrays import Array
 from validate import compare
 from validate.cli import main
 from validate.closed_drawing import closed_drawing, closed_mechanism
@@ -23,8 +23,6 @@ from validate.hardpoint_files.mjcf import drawing_of
 from validate.hardpoint_files.written_scene import Drawing
 from validate.peers.mjcf import mjcf_of
 from validate.tables.errors import FileError
-
-Array = NDArray[np.float64]
 
 EPSILON = float(np.finfo(float).eps)
 # mm: what simulate may leave out of a place, of every scene here.

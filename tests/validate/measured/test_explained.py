@@ -5,14 +5,13 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from curve_files import at_inputs, compared, table
-from numpy.typing import NDArray
 
 from pointcoord import Scene, designs_of
 from pointcoord.drawing_stands import drawn_inputs
+from pointcoord.numerics.arrays import Array
 from validate.comparison.compare import Explanation, Outcome
 from validate.measured.supposed import NEARLY
 
-Array = NDArray[np.float64]
 Columns = dict[str, Array]
 CAR = Scene.load("double-wishbone")
 HOME = drawn_inputs(CAR)["arm_angle"]

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError, simulate
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.mechanism import mechanism_file
 from pointcoord.mechanism.file import MECHANISMS
+from pointcoord.numerics.arrays import Array
 from pointcoord.solve.pointwise import square_velocity_term
 from validate.cars.paper_car import PAPER
 from validate.paper.printed import (
@@ -23,7 +23,6 @@ from validate.paper.printed import (
 
 COLLINEAR = mechanism_file("macpherson").topology(PAPER, "collinear")
 
-Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
 
 

@@ -8,18 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 from mechanism_files import plain_scene, scene_file
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import drawn_inputs
+from pointcoord.numerics.arrays import Array
 from validate.errors import NoAnswer
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.motion import Poses
 from validate.spanning_tree.cut import cut
-
-Array = NDArray[np.float64]
 
 
 def plain_car(scene: str, **points: Any) -> dict[str, Any]:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 from mechanism_files import mechanism_file, plain, plain_scene
-from numpy.typing import NDArray
 
+from pointcoord.numerics.arrays import Array
 from validate.errors import NoAnswer
 from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.motion import OF_CAR
@@ -17,8 +17,6 @@ from validate.reference import Design, instants_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.effects.wheel import OF_POSITIONS
 from validate.spanning_tree.cut import cut
-
-Array = NDArray[np.float64]
 
 # Lengths are at most 1 m; places have some ten roundings, magnified at most a hundred times; an angle is that
 # of a line of 50 mm.

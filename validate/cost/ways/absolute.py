@@ -6,10 +6,10 @@ The set-up compiles the bodies and constraints, and assembles the drawing.
 from __future__ import annotations
 
 from pointcoord import Scene
+from validate.arrays import Array
 from validate.cost.way import Answer, Solve, Way, laws_at
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.modelled import asked_of
-from validate.formulations.protocol import Array
 
 
 def in_bodies(scene: Scene, _: float | None) -> Solve:

@@ -12,11 +12,11 @@ import numpy as np
 
 from pointcoord import Scene
 from pointcoord.effects.registry import plan_effects
+from validate.arrays import Array
 from validate.cost.way import Answer, Solve, Way, laws_at
 from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import asked_of
-from validate.formulations.protocol import Array
 from validate.formulations.registry import OUTSIDE, WORDS, program_of
 from validate.formulations.trees import closed_in
 from validate.peers.motion import numbers

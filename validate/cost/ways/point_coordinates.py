@@ -18,8 +18,8 @@ from pointcoord.method import CHORD, MAP, NEWTON, NEWTON_COLD, SERIES, Method
 from pointcoord.results.motion import read
 from pointcoord.results.samples import Samples
 from pointcoord.simulation import Task, prepare_task, solve_by_map, solve_task
+from validate.arrays import Array
 from validate.cost.way import Answer, Solve, Way
-from validate.formulations.protocol import Array
 
 COUNTED = ("factorisations", "residuals", "segments", "series_orders")
 

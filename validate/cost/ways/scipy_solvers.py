@@ -20,10 +20,10 @@ from pointcoord.numerics.counters import Work
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.pointwise import Solved, SquareVelocityTerm, with_rates
 from pointcoord.time_functions import TimeFunction
+from validate.arrays import Array
 from validate.cost.way import Solve, Way
 from validate.cost.ways.point_coordinates import by_method
 from validate.errors import NoAnswer
-from validate.formulations.protocol import Array
 
 # Residual of the equations, whose terms are up to 1: a thousand times the residual with a difference
 # Jacobian.

@@ -20,7 +20,6 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene
 from pointcoord.linkage.chassis import ChassisMotion
@@ -31,11 +30,10 @@ from pointcoord.method import AUTO
 from pointcoord.simulation import prepare_task, scene_mechanism, solve_task
 from pointcoord.sweeping.designs import coordinates_of
 from pointcoord.sweeping.hardpoint_slopes import slopes_of_motion
+from validate.arrays import Array
 from validate.diagnosis.evidence import Content, Evidence, Hypothesis, Row
 from validate.diagnosis.kinds.numbers import constant_gap, so_much_more
 from validate.diagnosis.other_car import Change, any_of, otherwise
-
-Array = NDArray[np.float64]
 
 # Largest misreading, as a share of the car's size: a larger one is a different car, and slow to solve.
 FARTHEST = 0.1

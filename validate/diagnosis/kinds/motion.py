@@ -15,15 +15,14 @@ from functools import partial
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
+from validate.arrays import Array
 from validate.diagnosis.evidence import Content, Evidence, Hypothesis, Row, WouldBe
 from validate.diagnosis.other_car import Change, any_of
 from validate.formulations.input_rates import rates
 
-Array = NDArray[np.float64]
 Rule = Callable[[Array, Array], Array]
 
 SCALED = {"amplitude", "offset", "values"}  # the entries of a law that are multiplied if the law is

@@ -11,7 +11,6 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, solve_poses
 from pointcoord.drawing_stands import drawn_inputs
@@ -19,9 +18,9 @@ from pointcoord.effects.car_number import Angle
 from pointcoord.effects.corner import Wheel
 from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.numerics.rounding import EPS
+from validate.arrays import Array
 from validate.diagnosis.evidence import Evidence, Hypothesis, Row, WouldBe, roundest, together
 
-Array = NDArray[np.float64]
 Times = Callable[[Row], float | Array]
 """The factor or the matrix, (3, 3), by which the numbers of a row are multiplied."""
 

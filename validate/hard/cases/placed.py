@@ -15,11 +15,12 @@ import numpy as np
 
 from pointcoord import Scene
 from pointcoord.numerics.rounding import EPS
+from validate.arrays import Array
 from validate.cars.car import any_rotation, rotation
 from validate.formulations.protocol import Solution
 from validate.hard.answer import Answer, Trial, solved
 from validate.hard.case import HARD, IF_ANY, RIGHT, Case, Expected, decades, family, right_from
-from validate.hard.subjects import BESIDE, HEAVING, PAPER, ROLLING, SQUARE, SUBJECTS, Array, Content, Subject
+from validate.hard.subjects import BESIDE, HEAVING, PAPER, ROLLING, SQUARE, SUBJECTS, Content, Subject
 
 AWAY = (1.0, -1.0, 3.0)
 # A model subtracts a local origin within a few sizes of the car, wherever the car is: its local coordinates

@@ -20,9 +20,10 @@ from typing import Any
 
 import numpy as np
 
+from validate.arrays import Array
 from validate.cars.car import unit
 from validate.hard.case import RIGHT, Case, family, right_from
-from validate.hard.subjects import NAMED, Array, Content, Subject, drawn_angle, scene_content
+from validate.hard.subjects import NAMED, Content, Subject, drawn_angle, scene_content
 
 Points = Mapping[str, Array]
 BALL, OUTER, INNER = "lower_ball_joint", "tie_rod_outer", "tie_rod_inner"

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validate.arrays import Array
 from validate.ci.verdict import by_scene, complaints, disagreements, notes, standing, undecided, word
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
@@ -29,8 +29,6 @@ from validate.output.report import (
 )
 from validate.output.table import Cell, Table
 from validate.plain_text import shown
-
-Array = NDArray[np.float64]
 
 LINES = 150  # largest number of remarks on all scenes together: there may be hundreds of scenes
 DRAWN = 60  # largest number of rows of the heat map

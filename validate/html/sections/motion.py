@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.effects.registry import ALWAYS
+from validate.arrays import Array
 from validate.closed_drawing import closed_drawing
 from validate.curves.numbers import Number, angles_of, usual
 from validate.formulations.protocol import Solution
@@ -28,8 +28,6 @@ from validate.html.blocks import (
     plain,
 )
 from validate.html.run import FRAMES, POINTS, Drawn, Run
-
-Array = NDArray[np.float64]
 
 DIGITS = 2  # decimals of positions, mm
 # Markers of the second model on a curve: more would hide the line of the first model.
