@@ -100,7 +100,8 @@ def held_apart(plain: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
 def tables_of(subject: Subject) -> Tables:
     """A copy of the mechanism's tables that may be changed."""
     plain = subject.plain
-    return {name: plain[name] for name in ("bodies", "rods", "slides", "inputs", "roles")}
+    parts = {part: {"side": side} for part, side in plain.get("sides", {}).items()}
+    return {name: plain[name] for name in ("bodies", "rods", "slides", "inputs", "roles")} | {"parts": parts}
 
 
 @cache
