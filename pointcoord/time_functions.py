@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from math import comb, factorial, perm
 from typing import TYPE_CHECKING, Any
 
@@ -97,6 +97,14 @@ class TimeFunction(ABC):
         """Whether the law is constant at all times by its form."""
 
 
+@lru_cache(maxsize=1024)
+def _shifted(coefficients: tuple[float, ...], k: int) -> tuple[list[float], list[float]]:
+    """binomial(j, k) c_j as high and low parts, for all j from k."""
+    factors = [float(comb(j, k)) for j in range(k, len(coefficients))]
+    high, low = two_product(np.array(factors), np.array(coefficients[k:]))
+    return high.tolist(), low.tolist()
+
+
 @dataclass(frozen=True)
 class Polynomial(TimeFunction):
     """f(t) = sum_j coefficients[j] t^j.
@@ -119,23 +127,13 @@ class Polynomial(TimeFunction):
         count = min(order + 1, len(self.coefficients))
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(count):
-                result[..., k] = _doubled_horner(*self._shifted[k], numbers)
+                result[..., k] = _doubled_horner(*_shifted(self.coefficients, k), numbers)
             if not np.isfinite(result).all():
                 # Splitting a number above 1e300 overflows; the plain sum does not.
                 for k in range(count):
-                    plain = np.polyval(self._shifted[k][0][::-1], t)
+                    plain = np.polyval(_shifted(self.coefficients, k)[0][::-1], t)
                     np.copyto(result[..., k], plain, where=~np.isfinite(result[..., k]))
         return result
-
-    @cached_property
-    def _shifted(self) -> list[tuple[list[float], list[float]]]:
-        """By k: binomial(j, k) c_j as high and low parts, for all j from k."""
-        found = []
-        for k in range(len(self.coefficients)):
-            factors = [float(comb(j, k)) for j in range(k, len(self.coefficients))]
-            high, low = two_product(np.array(factors), np.array(self.coefficients[k:]))
-            found.append((high.tolist(), low.tolist()))
-        return found
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
         """4 n^2 u^2 times the sum of n terms' sizes (Graillat, Langlois, Louvet); zero for a constant."""

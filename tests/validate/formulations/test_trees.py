@@ -53,7 +53,7 @@ def test_a_program_that_is_not_installed_is_told_with_its_package_and_extra(
         formulation(who)
     assert f"needs the package {who!r}, which is not installed" in str(caught.value)
     assert "pip install 'pointcoord[peers]'" in str(caught.value)
-    lacking = not_there(who, ImportError("libGL.so.1: cannot open shared object file"), "peers")
+    lacking = not_there(who, ImportError("libGL.so.1: cannot open shared object file"))
     assert lacking.libraries == (who,)
     assert "does not load (libGL.so.1" in str(lacking)
     assert "the system package" in str(lacking)
