@@ -57,13 +57,16 @@ def scene_facts(content: dict[str, Any]) -> Facts:
 
 
 def comparison_facts(comparison: dict[str, Any]) -> dict[str, Any]:
-    """The verdict of every row, and the kinds of explanations in alphabetical order."""
+    """The verdict of every row, and the kinds of causes in alphabetical order.
+
+    An explanation of the kind `part` names a place, not a cause.
+    """
     pair = " and ".join(Path(name).name for name in comparison["formulations"])
     found: dict[str, Any] = {
         f"{pair}: {row['quantity']} {row['name']}": row["verdict"] for row in comparison["rows"]
     }
-    if comparison["explanations"]:
-        found[f"{pair}: explained by"] = sorted({one["kind"] for one in comparison["explanations"]})
+    if kinds := {one["kind"] for one in comparison["explanations"]} - {"part"}:
+        found[f"{pair}: explained by"] = sorted(kinds)
     return found
 
 
