@@ -97,7 +97,8 @@ def opened(browser: Browser, folder: Path, **options: Any) -> Opened:
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as program:
-        started = program.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
+        # Without a graphics processor the browser's own process for it may hang.
+        started = program.chromium.launch(executable_path=chromium(), args=["--no-sandbox", "--disable-gpu"])
         yield started
         started.close()
 
