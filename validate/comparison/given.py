@@ -75,8 +75,10 @@ def given(solution: Solution, instants: Array) -> Solution:
             if isinstance(array, str):
                 faults.append(f"{what} {array}; it is ignored")
                 continue
+            # Each of two rows with one time may be off by its own error bound.
+            bound = claimed.get(name, np.zeros_like(array))
             with np.errstate(invalid="ignore"):
-                apart = np.abs(array - array[again]) > 2.0 * np.asarray(claimed.get(name, 0.0))
+                apart = np.abs(array - array[again]) > bound + bound[again]
             other = apart.reshape(len(array), -1).any(axis=-1)
             if other.any():
                 when = f"{times[np.argmax(other)]:g} s"
