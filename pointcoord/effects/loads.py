@@ -25,7 +25,7 @@ import numpy as np
 
 from pointcoord.effects.arithmetic import dot, ratio, root, times
 from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of
-from pointcoord.effects.corner import Corner, Wheel, contact_place, turning_of, velocity_at, wheels_of
+from pointcoord.effects.corner import Corner, Wheel, turning_of, velocity_at, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, lacks, no_radius, no_role, not_one_input
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.slopes import GAP, ByGap, ByLength, Way
@@ -166,14 +166,15 @@ def _forces(
         unit: 1 mm in the corners' unit. constant: converts plain numbers to their arithmetic.
     """
     topology, slopes = poses.mechanism.topology, cast("Mapping[Way, Any]", poses.slopes)
-    loaded = [(corner_of(poses, Wheel(topology, part)), load) for part, load in poses.axes.loads.items()]
+    corners = [(corner_of(poses, Wheel(topology, part)), load) for part, load in poses.axes.loads.items()]
+    loaded = [(one, one.seen.contact_place(), load) for one, load in corners]
     damped = [(wheel, corner_of(poses, wheel)) for wheel in _held(topology)]
 
     def along(way: Way) -> _Along:
         works = []
-        for one, (force, moment) in loaded:
+        for one, contact, (force, moment) in loaded:
             moving = one.moving(slopes[way])
-            works.append(dot(constant(force), velocity_at(moving, contact_place(moving))))
+            works.append(dot(constant(force), velocity_at(moving, contact)))
             for i in np.flatnonzero(moment).tolist():
                 # The knuckle's rotation about an axis: how far the next axis moves along the one after it.
                 turn = turning_of(moving, constant(AXES[i - 2]))

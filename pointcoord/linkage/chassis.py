@@ -24,7 +24,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosure
 from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.double_double import PAIRS
-from pointcoord.numerics.enclosure import Enclosed, within_a_turn
+from pointcoord.numerics.enclosure import Enclosed, stacked, within_a_turn
 from pointcoord.numerics.vectors import cross
 from pointcoord.time_functions import TimeFunction
 
@@ -115,7 +115,14 @@ class ChassisMotion:
             k, about = (v if v.ndim == 1 else v[..., None, :] for v in vectors)
             angle, *rates = (law[..., None] for law in laws[name])
             slopes = turn_slopes(np.cos(angle), np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2, rates)
-            states = _turned(states, about, partial(_about, k), slopes)
+            turned: list[dict[str, Array]] = [{} for _ in states]
+            for point in states[0]:
+                jet = [state[point] for state in states if point in state]
+                for state, found in zip(
+                    turned, _turned(jet, about, partial(_about, k), slopes), strict=False
+                ):
+                    state[point] = found
+            states = turned
         return states
 
     def taken_back(self, instants: Array, places: Array) -> Array:
@@ -159,13 +166,17 @@ class ChassisMotion:
             back: whether to rotate back, from the moved car to the chassis' frame.
         """
         names = [name for name in self.centres if name in laws]
+        if not names:
+            return points
+        # All points at once: these arrays are so small that calls take most of the time.
+        jet = [stacked([*of.values()]) for of in points]
         for name in reversed(names) if back else names:
             k, about = self._along(name), Enclosed.of(self.centres[name] / unit)
             angle, *rates = ((-law if back else law).spread_out for law in laws[name])
             cosine, sine = within_a_turn(angle).cosine_sine()
             slopes = turn_slopes(cosine, sine, Enclosed.of(1.0) - cosine, rates)
-            points = _turned(points, about, partial(_about_exactly, k), slopes)
-        return points
+            jet = _turned(jet, about, partial(_about_exactly, k), slopes)
+        return [dict(zip(of, stack.members, strict=True)) for of, stack in zip(points, jet, strict=True)]
 
     def _along(self, name: str) -> Enclosed:
         """A direction, enclosed: as given, or with the rounding of a cross product or of a unit length."""
@@ -175,29 +186,25 @@ class ChassisMotion:
 
 
 def _turned(
-    states: Sequence[Mapping[str, V]],
-    about: V,
-    axes: Callable[[V], tuple[V, V]],
-    slopes: Sequence[tuple[V, V]],
-) -> list[dict[str, V]]:
-    """Points and their time derivatives after a rotation.
+    jet: Sequence[V], about: V, axes: Callable[[V], tuple[V, V]], slopes: Sequence[tuple[V, V]]
+) -> list[V]:
+    """A point, or points in a stack, and the time derivatives after a rotation.
 
     Args:
+        jet: the place, and its time derivatives.
         axes: v -> k x v and k (k . v) - v.
         slopes: by derivative, the sine and the versine of the angle, differentiated.
     """
-    found: list[dict[str, V]] = [{} for _ in states]
-    for point, place in states[0].items():
-        jet: list[V] = [state[point] for state in states if point in state]
-        arm = list(jet)
-        arm[0] = place - about
-        parts = [axes(v) for v in arm]
-        for d, total in enumerate(jet):
-            # The product rule: (u v)'' = u v'' + 2 u' v' + u'' v.
-            for i in range(d + 1):
-                (sine, versine), (one, other) = slopes[i], parts[d - i]
-                total = total + times(comb(d, i), one * sine + other * versine)
-            found[d][point] = total
+    arm = list(jet)
+    arm[0] = jet[0] - about
+    parts = [axes(v) for v in arm]
+    found: list[V] = []
+    for d, total in enumerate(jet):
+        # The product rule: (u v)'' = u v'' + 2 u' v' + u'' v.
+        for i in range(d + 1):
+            (sine, versine), (one, other) = slopes[i], parts[d - i]
+            total = total + times(comb(d, i), one * sine + other * versine)
+        found.append(total)
     return found
 
 

@@ -25,7 +25,7 @@ its operands and a product 8 u^2 of itself; underflow costs less than TINY.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -206,6 +206,12 @@ class Enclosed:
         return first, second
 
     @property
+    def members(self) -> list[Enclosed]:
+        """The numbers that make up a stack (see `stacked`), as views."""
+        high, low, radius, change, reach = self.parts
+        return [Enclosed(high[i], low[i], radius[:, i], change[i], reach[i]) for i in range(len(self.high))]
+
+    @property
     def middle(self) -> Array:
         """high + low + change, rounded twice."""
         return np.asarray((self.high + self.low) + self.change)
@@ -272,6 +278,16 @@ def anchored(
     lost = np.where(2.0 * reach <= np.abs(high), 0.0, SUM_OF_CHANGES * reach)
     radius = both(proven + lost, np.broadcast_to(expected, reach.shape))
     return Enclosed(high, np.zeros_like(high), radius, change, reach)
+
+
+def stacked(numbers: Sequence[Enclosed]) -> Enclosed:
+    """Vectors of one shape in one enclosure, with a dimension for them in front; stored as by `both`."""
+
+    def joined(parts: Sequence[Array], axis: int = 0) -> Array:
+        return components_last(np.stack([components_first(part) for part in parts], axis=axis + 1))
+
+    high, low, radius, change, reach = zip(*(number.parts for number in numbers), strict=True)
+    return Enclosed(joined(high), joined(low), joined(radius, 1), joined(change), joined(reach))
 
 
 def aligned(a: Array, b: Array) -> tuple[Array, Array]:
