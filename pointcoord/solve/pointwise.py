@@ -34,7 +34,7 @@ from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import LONGEST, Pose, blocked, by_inputs, close_drawing, driven_to
 from pointcoord.solve.follower import follow
-from pointcoord.solve.proven_step import WHOLE, hidden, prove
+from pointcoord.solve.proven_step import hidden, prove_box
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -234,10 +234,14 @@ def _ahead(
     here, following = poses[:-1], poses[1:]
     with np.errstate(all="ignore"):
         series = _straight(system, factors, here, following[:, n:], 1)
-        rest = np.stack([system.residual(here), 2.0 * system.polar(here, series[:, 1])])
-        proof = prove(system, inverse, series, rest, WHOLE)
+        rest = np.abs(system.residual(here)) + np.abs(2.0 * system.polar(here, series[:, 1]))
+        half = 0.5 * series[:, 1]
+        middle = here + half
+        defect = np.abs(np.eye(n) - inverse @ system.jacobian(middle))
+        sizes, about = np.abs(series[:, 1])[None], np.stack([middle, half])
+        proof = prove_box(system, inverse, middle, about, slice(None), sizes, rest, defect)
         apart = np.abs(following - series.sum(axis=1))[:, :n] + left[:, None]
-        good = found & (proof.length == 1.0) & proof.within(apart)
+        good = found & proof.holds & proof.within(apart)
     count = _first_false(np.asarray(good))
     return count, y[:count], left[:count], work + Work(residuals=3 * len(good))
 

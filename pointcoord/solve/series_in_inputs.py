@@ -238,9 +238,10 @@ class _Boxed:
         places, edges = [*range(system.unknowns), *self.driven], powers(self.inputs, order).edges
         sizes = np.zeros((order, *y.shape))
         sizes[..., places] = np.add.reduceat(np.abs(moving), edges[1:-1], axis=0)
-        proof = prove_box(system, y, moving, places, sizes, system.residual(y))
+        begun = np.abs(system.residual(y))
+        proof = prove_box(system, factors.preconditioner, y, moving, places, sizes, begun)
         apart = np.abs(reached.y - ends)[..., : system.unknowns].swapaxes(0, 1)
-        good &= (proof.length == 1.0) & proof.within(apart).all(axis=0)
+        good &= proof.holds & proof.within(apart).all(axis=0)
         good &= confirmed(system, reached, self.settings.tolerance).all(axis=-1)
         work += reached.work
         coefficients, ranges = np.moveaxis(series, 0, -2), self.ranges

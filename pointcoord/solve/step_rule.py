@@ -124,14 +124,32 @@ def gone_on(logs: Array) -> Array:
     return np.stack([last[:, :-1].max(axis=-1) + fall, last.max(axis=-1)], axis=-1)
 
 
+def convergence_radius(logs: Array) -> Array:
+    """Estimated radius of convergence of series in their unit, (members,); infinite without later terms.
+
+    Args:
+        logs: logarithms of the coefficients, (members, orders).
+    """
+    rate = _rate(logs)
+    return np.where(np.isnan(rate), np.inf, np.exp(rate))
+
+
 def _fall(logs: Array) -> Array:
     """Fall of the logarithms of terms from one term to the next over the second half, (members,)."""
+    # Terms that do not fall, or that only begin in the second half, are not extrapolated: fall 0.
+    fall = _rate(logs)
+    return np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)
+
+
+def _rate(logs: Array) -> Array:
+    """Mean fall of the logarithms from the largest term of the first half to that of the second, (members,).
+
+    Infinite, with its sign, where a half has no terms; NaN where both have none.
+    """
     middle, members = logs.shape[-1] // 2, np.arange(len(logs))
     before, after = 1 + logs[:, 1:middle].argmax(axis=-1), middle + logs[:, middle:].argmax(axis=-1)
     with np.errstate(invalid="ignore"):
-        fall = (logs[members, before] - logs[members, after]) / (after - before)
-    # Terms that do not fall, or that only begin in the second half, are not extrapolated: fall 0.
-    return np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)
+        return np.asarray((logs[members, before] - logs[members, after]) / (after - before))
 
 
 def degrees_lacking(series: Array, inputs: int, order: int, rates: Array, settings: Settings) -> Array:

@@ -340,6 +340,7 @@ class _Course:
         """
         system, limit, tolerance = self.mechanism.map, self.next_break(joint.instant), self.settings.tolerance
         order, solved, work = np.arange(segment.order + 1.0), SOLVED * tolerance, Work()
+        begun = system.residual(segment.coefficients[..., 0, :])
         good = np.zeros(joint.y.shape[:-1], dtype=bool)
         while length >= self.shortest or joint.instant + length >= limit:
             end = limit if joint.instant + length >= limit else joint.instant + length
@@ -351,8 +352,8 @@ class _Course:
             good = confirmed(system, reached, tolerance, partial(self.law_noise, reached, end), leaving)
             work += reached.work
             if good.any():
-                proof = prove_segment(system, segment.coefficients, s)
-                good = good & (proof.length == 1.0)
+                proof = prove_segment(system, segment.coefficients, s, begun)
+                good = good & proof.holds
                 good = good & proof.within(np.abs(reached.y - guess)[..., : system.unknowns])
                 ahead, factorised = factors_at(system, reached, solved)
                 work += factorised

@@ -41,8 +41,9 @@ def test_a_box_is_proven_as_far_as_the_condition_holds(
         if exact is not None:
             patch.setattr(proven_step, "LARGE", 1)
             patch.setattr(proven_step, "EXACT_OF_LARGE", exact)
-        proof = prove_box(PARABOLA, series[None, 0], series[:, None], slice(None), sizes, np.zeros((1, 1)))
-    assert (proof.length == 1.0).tolist() == [condition < ROOM]
+        moving, inverse = series[:, None], np.full((1, 1, 1), 0.5 / u)
+        proof = prove_box(PARABOLA, inverse, moving[0], moving, slice(None), sizes, np.zeros((1, 1)))
+    assert proof.holds.tolist() == [condition < ROOM]
     # The other branch is twice as far as the fold, which is at least 1 - z of u away.
     assert proof.alone[0] * proof.weights[0, 0] <= (1.0 - z) * u * (1.0 + 1e-9) or condition > ROOM
 
@@ -55,7 +56,7 @@ def test_a_segment_is_proven_by_parts_as_far_as_the_last_one_is(share: float, s:
     end = ROOM / (half + ROOM * middle)
     assume(abs(share - end) > 1e-9)
     proof = prove_segment(PARABOLA, series, s)
-    assert bool(proof.length == 1.0) == (share < end)
+    assert bool(proof.holds) == (share < end)
     assert share >= end or proof.alone * proof.weights[0] <= 1.0 - share + 1e-9
 
 

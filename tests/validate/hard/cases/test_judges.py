@@ -112,8 +112,8 @@ def test_steps_too_long_lead_to_another_branch_where_that_is_not_proven(
     def found() -> set[str]:
         return {answer.outcome for answer in answers("turn-at-a-coarse-tolerance", *near)}
 
-    def blind(system: Any, series: Any, s: float) -> Proof:
-        return Proof(np.ones(()), np.array(np.inf), np.ones(system.unknowns))
+    def blind(system: Any, series: Any, s: float, lacking: Any) -> Proof:
+        return Proof(np.ones((), dtype=bool), np.array(np.inf), np.ones(system.unknowns))
 
     # Whatever pose Newton's method finds from the end of a series is taken.
     monkeypatch.setattr(taylor, "lengths_by_sizes", lambda *arguments: 4.0 * right(*arguments))
