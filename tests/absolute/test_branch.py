@@ -4,9 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from many_digits import DIGITS
 from mechanism_files import plain_scene
-from mpmath import mp
 from shipped import Array, Motion, error, exact, off, shipped
 
 import absolute
@@ -113,22 +111,6 @@ def test_poses_are_predicted_to_the_second_order_in_all_inputs_together(
     # Half of the path has an eighth of the third-order error.
     assert len(missed) == 1
     assert missed[0][1:] / missed[0][:-1] == pytest.approx(8.0, rel=0.2)
-
-
-def test_a_long_way_close_by_a_fold_does_not_cross_it() -> None:
-    # Straight to this goal the motion passes a fold so close that Newton converges beyond it: only
-    # the sign of a determinant tells.
-    goal = {"arm_angle": 0.5714841988334616, "rack": -27.604730159848856}
-    held = {name: np.array([[value, 0.0, 0.0]]) for name, value in goal.items()}
-    with mp.workdps(DIGITS):
-        table = [{"arm_angle": 0.8, "rack": 0.0}, {"arm_angle": 0.5714841988334616, "rack": 0.0}, goal]
-    ways = Motion(STRUT, {name: np.array([[one[name], 0.0, 0.0] for one in table]) for name in goal})
-    try:
-        solution = Motion(STRUT, held).solve(rates=False)
-    except absolute.UnreachableError:
-        return
-    for name, place in exact(ways)[-1][0].items():
-        assert error(solution.position[name][0], place) <= off(solution)[0], name
 
 
 def test_a_strut_that_closing_moves_as_far_as_the_car_is_large_is_refused() -> None:

@@ -1,4 +1,4 @@
-"""Effects: digits far from the origin, batches, and what they need.
+"""Effects: digits far from the origin, and what they need.
 
 tests/mechanisms tests their values for all mechanics.
 """
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mechanism_files import plain_scene
 from one_arm import CAR, DRAWN, plain
-from shipped import Motion, shipped
+from shipped import Motion
 
 import absolute
 from absolute.dual import arctan2, constant
@@ -32,17 +32,6 @@ def test_a_short_spin_axis_keeps_its_digits() -> None:
     assert abs(found["camber"] - np.arctan2(-0.25, 1.0)) < 1e-12
 
 
-def test_gradients_of_a_long_motion_are_those_of_its_instants_in_any_order() -> None:
-    # Instants are solved many at a time.
-    motion = shipped("bounce-and-steer", 81)
-    back = Motion(motion.plain, {name: law[::-1].copy() for name, law in motion.inputs.items()})
-    there, again = (
-        one.solve(rates=False, effects=["toe_by_rack", "caster_by_travel"]).effects for one in (motion, back)
-    )
-    assert np.ptp(there["caster_by_travel"]) > 1e-6
-    assert all(np.abs(there[name] - again[name][::-1]).max() <= 1e-13 for name in there)
-
-
 def test_half_a_turn_is_pi_with_either_zero() -> None:
     assert arctan2(constant(-0.0), constant(-1.0)).value == np.pi
 
@@ -58,16 +47,6 @@ def test_names_are_those_of_the_parts_and_of_both_wheels_of_an_axle() -> None:
 def lacking(*names: str, **changed: Any) -> dict[str, Any]:
     """The arm without some numbers of the car."""
     return plain(car={name: value for name, value in CAR.items() if name not in names} or None, **changed)
-
-
-def test_a_number_by_roll_needs_a_roll_that_is_driven() -> None:
-    still = {name: np.zeros((1, 3)) for name in plain()["inputs"]}
-    assert Motion(plain(), still).solve(effects=["toe_by_roll"]).effects["toe_by_roll"].size == 1
-    words = "needs exactly one driven input that rolls the chassis, and there are 0"
-    with pytest.raises(absolute.DescriptionError, match=f"effect 'toe_by_roll' {words}"):
-        Motion(plain(turns=()), {"turn": still["turn"], "steer": still["steer"]}).solve(
-            effects=["toe_by_roll"]
-        )
 
 
 def test_a_number_needs_nothing_of_the_others() -> None:

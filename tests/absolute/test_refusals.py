@@ -10,7 +10,6 @@ from changed_scenes import change
 from mechanism_files import plain_scene
 from one_arm import plain as one_arm
 from shipped import Motion
-from test_mechanisms import four_bar
 
 import absolute
 from absolute import DescriptionError, InputError
@@ -33,6 +32,22 @@ def crank(inputs: dict[str, Any]) -> dict[str, Any]:
         "inputs": inputs,
         **{"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0), "side": "left"},
     }
+
+
+def four_bar(tilt: float = 0.0, **more: Any) -> dict[str, Any]:
+    """Hinges along x at (0, 0), (40, 30), (160, 60), (150, 0) in y and z; the last one tilted."""
+    places = [(0, 0), (40, 30), (160, 60), (150, 0)]
+    points = {f"p{i}": (0, y, z) for i, (y, z) in enumerate(places)}
+    points |= {f"q{i}": (100, y + (100 * tilt if i == 3 else 0), z) for i, (y, z) in enumerate(places)}
+    bodies = {
+        "chassis": ["p0", "q0", "p3", "q3"],
+        "crank": ["p0", "q0", "p1", "q1"],
+        "coupler": ["p1", "q1", "p2", "q2"],
+        "rocker": ["p2", "q2", "p3", "q3"],
+    }
+    inputs = {"turn": {"angle": "crank", "from": "drawing", "on": "chassis"}}
+    axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0), "side": "left"}
+    return {"name": "four-bar", "bodies": bodies, "points": points, "inputs": inputs, **axes, **more}
 
 
 LOAD = {"force": [300.0, -900.0, 4000.0], "moment": [2e4, -5e4, 1e4]}
@@ -122,6 +137,25 @@ def test_one_coordinate_far_from_the_others_is_solved_or_refused_without_a_warni
         except (DescriptionError, absolute.PoseError):
             continue
         assert all(np.isfinite(array).all() for array in solution.acceleration.values())
+
+
+@pytest.mark.parametrize(
+    ("tilt", "turn", "rate", "effects", "kind", "words"),
+    [
+        (1e-2, [0.0], 0.0, [], absolute.DescriptionError, "hinge of.*overconstrained"),
+        (1e-9, [0.0, 0.5], 0.0, [], absolute.PoseError, "hinge of"),
+        (1e-10, [0.0], 1.0, [], absolute.AssemblyError, r"hinge of.*locked"),
+        (1e-10, [0.0], 0.0, ["toe_by_travel"], absolute.AssemblyError, r"hinge of.*locked"),
+    ],
+)
+def test_a_four_bar_whose_hinges_are_not_parallel_is_locked(
+    tilt: float, turn: list[float], rate: float, effects: list[str], kind: type[Exception], words: str
+) -> None:
+    bars = four_bar(tilt, roles={"wheel_axis": ["q1", "q2"]})
+    with pytest.raises(kind, match=words):
+        Motion(bars, {"turn": np.array([[value, rate, 0.0] for value in turn])}).solve(effects=effects)
+    if tilt == 1e-10:
+        assert Motion(bars, {"turn": np.zeros((1, 3))}).solve(effects=["toe"]).effects
 
 
 TWO = np.zeros((2, 3))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
 import pytest
 from effects_by_hand import numbers
 from mpmath import atan2, mpf, workdps
 from one_arm import CAR, DRAWN, tables
 from three_mechanics import DIGITS, assert_exact, assert_none, by_each, scene_of, solved_by
+from within_bounds import outside
 
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from validate.formulations.protocol import Solution
@@ -52,15 +52,9 @@ def test_braking_and_driving_lift_a_rear_axle_where_they_lower_a_front_one(who: 
 
 def same_numbers(changed: Solution, plain: Solution) -> set[str]:
     """The names of the numbers that are the same within both claims."""
-    same = set()
-    for name, number in NUMBERS_OF_THE_CAR.items():
-        quantity = number.quantity.name
-        if name in plain.numbers.get(quantity, {}):
-            found, wanted = (of.numbers[quantity][name] for of in (changed, plain))
-            off, own = (of.accuracy.claims[quantity][name] for of in (changed, plain))
-            if (np.abs(found - wanted) <= off + own).all():
-                same.add(name)
-    return same
+    claims = changed.accuracy.claims, plain.accuracy.claims
+    different = {name for _, name in outside(changed.numbers, plain.numbers, *claims)}
+    return {name for of in plain.numbers.values() for name in of} & {*NUMBERS_OF_THE_CAR} - different
 
 
 @by_each

@@ -8,6 +8,7 @@ from hypothesis import Phase, assume, example, given, note, settings
 from hypothesis import strategies as st
 from random_mechanisms import random_mechanism
 from scipy.spatial.transform import Rotation
+from three_mechanics import scene_of, solved_by
 
 from pointcoord import Scene, SceneError, simulate
 from pointcoord.numerics.arrays import Array
@@ -78,19 +79,12 @@ def carriage(off: float, **more: Any) -> tuple[dict[str, Array], dict[str, Any]]
         "beside": through + np.array([-60.0, 210.0, 130.0]),
     }
     rail = {"points": ["front", "rear"], "through": "through", "along": "rear", "turns": False}
-    content: dict[str, Any] = {
-        "mechanism": {
-            "points": {point: place.tolist() for point, place in points.items()},
-            "bodies": {"chassis": ["through"], "carriage": ["front", "rear", "above", "beside"], **more},
-            "slides": {"rail": rail},
-            "inputs": {"travel": {"travel": "rail"}},
-            **{"up": [0, 0, 1], "right": [0, 1, 0], "side": "left"},
-        },
-        "inputs": {"travel": {"polynomial": [120.0, 25.0]}},
-        "effects": [],
-        "time": {"start": 0.0, "stop": 1.0, "samples": 2},
+    return points, {
+        "points": {point: place.tolist() for point, place in points.items()},
+        "bodies": {"chassis": ["through"], "carriage": ["front", "rear", "above", "beside"], **more},
+        "slides": {"rail": rail},
+        "inputs": {"travel": {"travel": "rail"}},
     }
-    return points, content
 
 
 @pytest.mark.parametrize("off", [1e-13, 1e-3, 1.0])
@@ -98,17 +92,15 @@ def carriage(off: float, **more: Any) -> tuple[dict[str, Array], dict[str, Any]]
 def test_what_is_drawn_off_a_slide_that_does_not_turn_is_turned_onto_it_the_least(
     name: str, off: float
 ) -> None:
-    points, content = carriage(off)
+    points, mechanism = carriage(off)
     through = points["through"]
-    scene = Scene.from_mapping(content)
-    solve = reference_solution if name == "reference" else formulation(name).solve
-    solution = solve(scene)
+    solution = solved_by(name, scene_of(mechanism, [], travel=[120.0, 25.0]))
     own = points["rear"] - points["front"]
     own /= np.linalg.norm(own)
     axis = np.cross(own, LINE)
     sine = float(np.linalg.norm(axis))
     turn = Rotation.from_rotvec(axis * (np.arctan2(sine, own @ LINE) / sine))
-    for k, travel in enumerate((120.0, 145.0)):
+    for k, travel in enumerate((120.0, 132.5, 145.0)):
         for point in ("front", "rear", "above", "beside"):
             there = through + travel * LINE + turn.apply(points[point] - points["front"])
             found = solution.position[point][k]
@@ -117,36 +109,27 @@ def test_what_is_drawn_off_a_slide_that_does_not_turn_is_turned_onto_it_the_leas
 
 
 def test_a_slide_whose_points_are_those_of_a_hinge_does_not_say_which_body_is_kept_from_turning() -> None:
-    points, content = carriage(0.0, arm=["front", "rear", "tip"])
-    content["mechanism"]["points"]["tip"] = (points["above"] + 50.0).tolist()
+    points, mechanism = carriage(0.0, arm=["front", "rear", "tip"])
+    mechanism["points"]["tip"] = (points["above"] + 50.0).tolist()
     with pytest.raises(SceneError, match=r"of arm and of carriage, so the body kept from turning"):
-        Scene.from_mapping(content)
+        scene_of(mechanism, [], travel=120.0)
 
 
 @pytest.mark.parametrize("name", [*FORMULATIONS, "reference"])
 def test_an_angle_about_a_point_that_moves_is_measured_in_the_axes_of_the_car(name: str) -> None:
     arm = {"angle": "fore", "of": "tip", "about": "elbow", "from": "up"}
     points = {"hip": [0, 0, 0], "hip2": [90, 0, 0], "elbow": [0, 400, 0], "elbow2": [90, 400, 0]}
-    content: dict[str, Any] = {
-        "mechanism": {
-            "points": points | {"tip": [0, 600, 150]},
-            "bodies": {
-                "chassis": ["hip", "hip2"],
-                "upper": ["hip", "hip2", "elbow", "elbow2"],
-                "fore": ["elbow", "elbow2", "tip"],
-            },
-            "inputs": {"shoulder": {"angle": "upper", "from": "drawing"}, "fore": arm},
-            **{"up": [0, 0, 1], "right": [0, 1, 0], "side": "left"},
-        },
-        "inputs": {"shoulder": {"polynomial": [0.0, 0.5]}, "fore": {"polynomial": [0.75, 0.25]}},
-        "effects": [],
-        "time": {"start": 0.0, "stop": 1.0, "samples": 2},
+    bodies = {
+        "chassis": ["hip", "hip2"],
+        "upper": ["hip", "hip2", "elbow", "elbow2"],
+        "fore": ["elbow", "elbow2", "tip"],
     }
-    scene = Scene.from_mapping(content)
-    places = (reference_solution if name == "reference" else formulation(name).solve)(scene).position
-    for shoulder, fore, elbow, tip in zip(
-        (0.0, 0.5), (0.75, 1.0), places["elbow"], places["tip"], strict=True
-    ):
+    inputs = {"shoulder": {"angle": "upper", "from": "drawing"}, "fore": arm}
+    mechanism = {"points": points | {"tip": [0, 600, 150]}, "bodies": bodies, "inputs": inputs}
+    scene = scene_of(mechanism, [], shoulder=[0.0, 0.5], fore=[0.75, 0.25])
+    places = solved_by(name, scene).position
+    angles = (0.0, 0.25, 0.5), (0.75, 0.875, 1.0)
+    for shoulder, fore, elbow, tip in zip(*angles, places["elbow"], places["tip"], strict=True):
         upper = [0.0, 400.0 * np.cos(shoulder), 400.0 * np.sin(shoulder)]
         assert elbow == pytest.approx(upper, abs=1e-12)
         assert tip - elbow == pytest.approx([0.0, 250.0 * np.sin(fore), 250.0 * np.cos(fore)], abs=1e-11)

@@ -1,4 +1,4 @@
-"""The strut of the paper's table 1, and scenes of it or of another car, for all tests here."""
+"""The points of the paper's table 1, and scenes of its strut or of another car, for all tests here."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -8,8 +8,6 @@ from changed_scenes import scene_with
 from every_number import NUMBERS_OF_A_CAR, asking_for_all
 
 from pointcoord import Scene
-from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.simulation import scene_mechanism
 
 Points = Mapping[str, tuple[float, ...]]
 
@@ -18,12 +16,6 @@ Points = Mapping[str, tuple[float, ...]]
 def table() -> Points:
     """Table 1 of the paper, mm."""
     return Scene.load("bounce").mechanism.points
-
-
-@pytest.fixture(scope="session")
-def strut() -> Mechanism:
-    """The strut of table 1, axes x rearward, y right, z up."""
-    return scene_mechanism(Scene.load("bounce"))
 
 
 @pytest.fixture(scope="session")

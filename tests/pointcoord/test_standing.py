@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from sample_cars import by_drawn_car
+from three_mechanics import scene_of
 
 from pointcoord import Scene, simulate, standing
 from validate.formulations.reference_solution import design_of
@@ -65,8 +66,7 @@ def test_the_rod_that_comes_into_line_stops_a_wide_link() -> None:
         "inputs": {"pitman": {"angle": "pitman", "from": "drawing"}},
         "points": points,
     }
-    scene = Scene.from_mapping({"mechanism": mechanism, "inputs": {"pitman": {"constant": 0.0}}})
-    low = standing(scene).reach["pitman"][0]
+    low = standing(scene_of(mechanism, [], pitman=0.0)).reach["pitman"][0]
     inner = np.array([150.0 * np.cos(low.value), 250.0 + 150.0 * np.sin(low.value)])
     # In plan: the rod of 300 mm and the arm of the knuckle in one line.
     assert np.hypot(*(inner - [0.0, 600.0])) == pytest.approx(300.0 + np.hypot(150.0, 50.0), abs=1e-9)

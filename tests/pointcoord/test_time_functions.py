@@ -1,63 +1,18 @@
-"""Inputs as power series, against evaluations that share nothing with them."""
+"""Where laws of inputs stay over a span, and where they change.
+
+Their values and rates are held to exact ones in tests/pointcoord/numerics/test_enclosures.py.
+"""
 
 import warnings
 from math import factorial
 
-import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from pointcoord.numerics.infinitesimal import slope_of, with_slope
 from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction, cosine_and_sine
 
 EPS = np.finfo(float).eps
-ORDER = 12
-plain = settings(deadline=None)
-numbers = st.floats(-3.0, 3.0, allow_subnormal=False)
-
-
-@plain
-@given(coefficients=st.lists(numbers, min_size=1, max_size=7), t=numbers)
-def test_polynomial_series_holds_the_derivatives_over_factorials(coefficients: list[float], t: float) -> None:
-    function = np.polynomial.Polynomial(coefficients)
-    size = np.polynomial.Polynomial(np.abs(coefficients))
-    series = Polynomial(tuple(coefficients)).series(t, ORDER)
-    for k in range(ORDER + 1):
-        exact, whole = (f.deriv(k) if k else f for f in (function, size))
-        # Horner's rule: 2 n roundings of the polynomial of magnitudes, in both evaluations, n = 6; and
-        # the binomials or factorials before it.
-        tolerance = 2 * (2 * 6 + 4) * EPS * whole(abs(t)) / factorial(k)
-        assert abs(series[k] - exact(t) / factorial(k)) <= tolerance
-
-
-@plain
-@given(amplitude=numbers, frequency=numbers, phase=numbers, offset=numbers, t=numbers, h=st.floats(-1.0, 1.0))
-def test_sine_series_sums_to_the_sine(
-    amplitude: float, frequency: float, phase: float, offset: float, t: float, h: float
-) -> None:
-    order = 30
-    series = Sine(amplitude, frequency, phase, offset).series(t, order)
-    exact = offset + amplitude * np.sin(frequency * (t + h) + phase)
-    # Remainder of Taylor's formula; rounding of an angle up to 18 and of terms that sum to exp(|w h|).
-    remainder = abs(amplitude) * abs(frequency * h) ** (order + 1) / factorial(order + 1)
-    rounding = EPS * (abs(offset) + abs(amplitude)) * (18 + (order + 8) * np.exp(abs(frequency * h)))
-    assert abs(np.polynomial.polynomial.polyval(h, series) - exact) <= remainder + rounding
-
-
-@pytest.mark.parametrize("phase", [1e9, -1e16, 1e300])
-def test_a_large_phase_swallows_no_digit_of_time(phase: float) -> None:
-    frequency, instants = 3.7, np.array([0.0, 0.1, 1.7, 25.3])
-    series = Sine(2.0, frequency, phase).series(instants, 1)
-    with mpmath.workdps(400):
-        for t, (value, rate) in zip(instants.tolist(), series.tolist(), strict=True):
-            angle = mpmath.mpf(frequency) * mpmath.mpf(t) + mpmath.mpf(phase)
-            # Sine and cosine of both parts of the angle, two products and a sum: some four roundings. Of
-            # a phase so large that it takes no digit of w t, that is the low part, itself rounded.
-            spare = 4 * EPS + (EPS * frequency * t if abs(phase) > 1e16 else 0.0)
-            assert abs(value - 2 * mpmath.sin(angle)) <= spare * 2.0
-            assert abs(rate - 2 * frequency * mpmath.cos(angle)) <= (spare + 2 * EPS) * 2.0 * frequency
 
 
 @pytest.mark.parametrize("size", [1e306, 1e308, -1e308])
@@ -103,16 +58,31 @@ def test_over_a_span_a_law_stays_where_it_says_and_hardly_less(law: TimeFunction
     assert (high - low <= 1e-12).all()
 
 
-def test_a_sum_has_the_series_and_the_breaks_of_its_terms() -> None:
-    table = Table((0.0, 0.4, 0.7, 1.0), (0.0, 1.0, 3.0, 2.0))
-    terms = (Polynomial((1.0, -2.0)), Sine(0.3, 7.0, 0.2, 1.5), table)
-    instants = np.linspace(0.0, 1.0, 33)
-    # Two sums of three terms.
-    together = sum(term.series(instants, 3) for term in terms)
-    assert (np.abs(Sum(terms).series(instants, 3) - together) <= 2 * EPS * (np.abs(together) + 60.0)).all()
-    assert Sum(terms).breaks == table.breaks
-    assert not Sum(terms).still
-    assert Sum((Polynomial((1.0,)), Polynomial((2.0,)))).still
+RISING = Table((0.0, 1.0, 2.0, 3.0), (2.0, 2.0, 2.0, 2.5))
+
+
+@pytest.mark.parametrize(
+    ("law", "still"),
+    [
+        (Polynomial((3.0, 0.0, 0.0)), True),
+        (Polynomial((3.0, 0.0, 1e-300)), False),
+        (Sine(0.0, 5.0, 1.0, 2.0), True),
+        (Sine(2.0, 0.0, 1.0, 2.0), True),
+        (Sine(1e-300, 5.0), False),
+        (Table((0.0, 1.0, 2.0, 3.0), (2.0, 2.0, 2.0, 2.0)), True),
+        (RISING, False),
+        (Sum((Polynomial((1.0,)), Polynomial((2.0,)))), True),
+        (Sum((Polynomial((1.0,)), RISING)), False),
+    ],
+)
+def test_a_law_stands_still_by_its_form(law: TimeFunction, still: bool) -> None:
+    assert law.still is still
+    if still:
+        assert not law.series(np.linspace(0.0, 3.0, 31), 6)[:, 1:].any()
+
+
+def test_a_sum_has_the_breaks_of_its_terms() -> None:
+    assert Sum((Polynomial((1.0,)), RISING)).breaks == RISING.breaks
 
 
 def test_over_more_than_a_turn_a_sine_reaches_both_its_crests_as_they_are_rounded() -> None:

@@ -1,4 +1,4 @@
-"""Vectors of many digits."""
+"""Numbers and vectors of many digits."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 Array = NDArray[Any]
 Points = dict[str, Array]
 DIGITS = 45
+fractions = np.vectorize(Fraction, otypes=[object])
+"""Doubles of any shape as the numbers that they are."""
 
 
 def number(value: Any) -> Any:

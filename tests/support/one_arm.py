@@ -7,9 +7,9 @@ the arm is at  P + R(t) (p - P) + s d;  then the car turns.
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 from many_digits import vector
-from mpmath import cos, sin, sqrt
+from mechanism_closed_forms import turn
+from mpmath import sqrt
 
 RADIUS = 310.0
 CAR: dict[str, Any] = {
@@ -84,23 +84,17 @@ def plain(points: Mapping[str, Any] = DRAWN, turns: tuple[str, ...] = BOTH, **ch
     return {"name": "one arm", "up": (0, 0, 1), "right": (0, 1, 0), **tables(points, turns, **changed)}
 
 
-def turned(axis: Any, angle: Any, v: Any) -> Any:
-    """A vector turned about a direction."""
-    k = axis / sqrt(axis @ axis)
-    return v * cos(angle) + np.cross(k, v) * sin(angle) + k * (k @ v) * (1 - cos(angle))
-
-
 def place(name: str, values: Mapping[str, Any], turns: tuple[str, ...] = BOTH) -> Any:
     """Where a point is at values of the inputs, the car turned in this order."""
     p = vector(plain()["points"][name])
     pivot, end = vector(DRAWN["pivot"]), vector(DRAWN["pivot_end"])
     if name in RIDING:
-        p = pivot + turned(end - pivot, values["turn"], p - pivot)
+        p = turn((pivot, end), values["turn"])(p)
     if name not in ("stop", "stop_end", "damper_top"):
         way = vector(DRAWN["guide_end"]) - vector(DRAWN["guide"])
         p = p + way * (values["steer"] / sqrt(way @ way))
-    for turn in turns:
-        _, axis, about = TURNS[turn]
+    for name in turns:
+        _, axis, about = TURNS[name]
         middle = vector(plain()["points"][about])
-        p = middle + turned(vector(axis), values[turn], p - middle)
+        p = turn((middle, middle + vector(axis)), values[name])(p)
     return p

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from every_number import OF_A_WHEEL, asked
 from scipy.ndimage import maximum_filter1d
 from within_bounds import beyond_claims, differing
@@ -22,18 +23,12 @@ from pointcoord.results.by_series import ByChain
 from pointcoord.results.proof import Numbers, Proof
 
 
-def short(name: str, **changes: object) -> Scene:
-    scene = Scene.load(name)
-    time = scene.time.model_copy(update={"samples": 30})
-    return scene.model_copy(update={"time": time, **changes})
-
-
 def named(bounds: Numbers) -> dict[tuple[str, str], Array]:
     return {(quantity, name): array for quantity, part in bounds.items() for name, array in part.items()}
 
 
 def test_only_what_is_asked_for_is_bounded() -> None:
-    motion = simulate(short("bounce-and-steer", effects=("wheel_angles",)))
+    motion = simulate(scene_with("bounce-and-steer", samples=30, effects=["wheel_angles"]))
     assert not named(motion.proof().proven)
     assert {quantity for quantity, _ in named(motion.proof(rates=True).proven)} == {"position", "wheel"}
 
@@ -66,10 +61,8 @@ def test_a_wrong_number_is_proven_to_be_off_and_is_not_expected_to_be() -> None:
 
 def test_numbers_of_an_axle_that_turns_to_either_side_are_as_well_proven_as_expected() -> None:
     """Also near where the divisor of some is 0, where each instant is bounded alone."""
-    scene = Scene.load("axle-steer")
-    time = scene.time.model_copy(update={"samples": 2000})  # 16 of them share an inverse
-    effects = ("steer_angle", "ackermann", "axle")
-    motion = simulate(scene.model_copy(update={"time": time, "effects": effects}))
+    effects = ["steer_angle", "ackermann", "axle"]
+    motion = simulate(scene_with("axle-steer", samples=2000, effects=effects))  # 16 of them share an inverse
     turn = motion.wheel["left.steer_angle"]
     assert turn.min() < -0.1 < 0.1 < turn.max()
     proof = motion.proof(rates=True)

@@ -1,17 +1,19 @@
-"""A scene solves for what it reports: shown by counts of work and by numbers."""
+"""A scene solves for what it reports, by counts of work and by numbers; a note says where there are none."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from every_number import OF_A_WHEEL, every_effect
+from three_mechanics import scene_of
 from within_bounds import beyond_claims
 
 from pointcoord import AssemblyError, NotComputed, Scene, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS
 from pointcoord.simulation import effort, prepare_task, solve_by_series
-from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 from validate.formulations.asked_numbers import per_second
 
 STRUT = ("strut_lower", "strut_rod_end", "strut_top")
@@ -20,13 +22,6 @@ SAMPLES = 7
 SUBSETS: list[tuple[str, ...]] = [(), ("jerk",), ("velocity", "knuckle_rates"), OF_A_WHEEL]
 NEEDED = {n: max(per_second(q.name) for q in effect.quantities) for n, effect in EFFECTS.items()}
 OF_EVERY_POINT = {name for name, effect in EFFECTS.items() if effect.reports_states}
-
-
-def scene(name: str, points: Sequence[str] | None = None, effects: Sequence[str] | None = None) -> Scene:
-    """A built-in scene that reports some of its points, and other effects."""
-    found = Scene.load(name)
-    changes: dict[str, object] = {} if points is None else {"points": tuple(points)}
-    return found.model_copy(update=changes | ({} if effects is None else {"effects": tuple(effects)}))
 
 
 @pytest.mark.parametrize(
@@ -43,7 +38,7 @@ def scene(name: str, points: Sequence[str] | None = None, effects: Sequence[str]
 def test_only_the_blocks_that_are_needed_are_solved_for_as_the_plan_says(
     name: str, points: Sequence[str], unknowns: int, not_needed: int
 ) -> None:
-    asked = scene(name, points, [])
+    asked = scene_with(name, points=points, effects=[])
     work, plan = solve_by_series(prepare_task(asked, METHODS["series"])).solving, effort(asked)
     assert work.unknowns_solved / work.series_orders == plan.unknowns == unknowns
     assert plan.not_needed == not_needed
@@ -104,13 +99,13 @@ def test_an_effect_of_a_scene_that_reports_another_point_is_what_it_is_among_all
 
 
 def test_where_the_tie_rod_ends_the_motion_the_strut_goes_on_and_says_what_it_does_not_know() -> None:
-    far = {
+    far: dict[str, Any] = {
         "inputs": {"arm_angle": {"polynomial": [1.57, 0.1]}, "rack": {"polynomial": [0.0, 500.0]}},
         "time": {"start": 0.0, "stop": 1.0, "samples": 11},
     }
     with pytest.raises(AssemblyError):
-        simulate(scene("steer", None, []).model_copy(update=far))
-    motion = simulate(scene("steer", STRUT, []).model_copy(update=far))
+        simulate(scene_with("steer", effects=[], **far))
+    motion = simulate(scene_with("steer", effects=[], points=STRUT, **far))
     assert motion.status.complete
     assert any("tie_rod_outer" in note and "is not checked" in note for note in motion.notes)
     assert np.isfinite(motion.proof().bound).all()
@@ -118,19 +113,16 @@ def test_where_the_tie_rod_ends_the_motion_the_strut_goes_on_and_says_what_it_do
         motion.position["tie_rod_outer"]
 
 
-@pytest.mark.parametrize(
-    ("law", "still"),
-    [
-        (Polynomial((3.0, 0.0, 0.0)), True),
-        (Polynomial((3.0, 0.0, 1e-300)), False),
-        (Sine(0.0, 5.0, 1.0, 2.0), True),
-        (Sine(2.0, 0.0, 1.0, 2.0), True),
-        (Sine(1e-300, 5.0), False),
-        (Table((0.0, 1.0, 2.0, 3.0), (2.0, 2.0, 2.0, 2.0)), True),
-        (Table((0.0, 1.0, 2.0, 3.0), (2.0, 2.0, 2.0, 2.5)), False),
-    ],
-)
-def test_a_law_stands_still_by_its_form(law: TimeFunction, still: bool) -> None:
-    assert law.still is still
-    if still:
-        assert not law.series(np.linspace(0.0, 3.0, 31), 6)[:, 1:].any()
+def test_where_there_is_no_number_a_note_says_why() -> None:
+    """A trailing arm that stands straight up moves its wheel level."""
+    points = {"a": [0, 400, 0], "b": [0, 600, 0], "inner": [0, 650, -300], "centre": [0, 700, -300]}
+    mechanism = {
+        "bodies": {"chassis": ["a", "b"], "arm": ["a", "b", "inner", "centre"]},
+        "inputs": {"turn": {"angle": "arm", "from": "drawing"}},
+        "roles": {"knuckle": "arm", "wheel_axis": ["inner", "centre"]},
+        "side": "right",
+        "points": points,
+    }
+    motion = simulate(scene_of(mechanism, ["toe_by_travel"], turn=[0.0, 0.1]))
+    assert np.isfinite(motion.angle_gradient["toe_by_travel"]).tolist() == [False, True, True]
+    assert any("does not travel" in note for note in motion.notes)

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from many_digits import fractions
 
 from pointcoord import InputOutOfRange, Scene, simulate
 from pointcoord.linkage.chassis import ChassisMotion
@@ -48,7 +49,6 @@ def test_rearward_is_enclosed_as_the_exact_product_of_directions_that_are_rounde
     up, right = np.array([0.1, -0.7, 0.9]), np.array([0.3, 0.6, -0.2])
     vector = np.array([0.7, 1.1, -1.3])
     found = CarAxes(up, right, right).component(Enclosed.of(vector), "rearward")
-    u, r, v = ([Fraction(x) for x in each.tolist()] for each in (up, right, vector))
-    exact = sum(v[i] * (r[i - 2] * u[i - 1] - r[i - 1] * u[i - 2]) for i in range(3))
+    exact = np.cross(fractions(right), fractions(up)) @ fractions(vector)
     error = abs(exact - Fraction(float(found.high)) - Fraction(float(found.low)))
     assert error <= found.radius[0] < 1e-29

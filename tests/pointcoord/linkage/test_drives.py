@@ -1,19 +1,22 @@
-"""How an input becomes a known coordinate: against many digits, with all that is said of what is lost."""
+"""How an input becomes a known coordinate: against many digits, with all that is said of what is lost.
+
+Its rates are in every velocity (see tests/pointcoord/test_every_way.py).
+"""
 
 from collections.abc import Callable
-from math import factorial
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from mpmath import mpf
 
-from pointcoord import InputOutOfRange
+from pointcoord import InputOutOfRange, Scene, simulate
 from pointcoord.linkage.constraints.on_line import Line
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.drives import Drive, arm_angle, distance_of, travel, travel_along, turned_by
-from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.results.motion import Motion
 
 U = 2.0**-53
 UNIT = 256.0
@@ -62,19 +65,10 @@ def polynomial(terms: Any, t: Any) -> Any:
     return sum((term * t**k for k, term in enumerate(terms)), mpf(0))
 
 
-def laws(kind: str, terms: int, count: int = 20) -> list[list[float]]:
-    """Inputs with some derivatives, by instant."""
-    _, _, (least, most, half) = CASES[kind]
-    rng = np.random.default_rng(4)
-    value = rng.uniform(least, most, (count, 1))
-    rows: list[list[float]] = np.hstack([value, half * rng.uniform(-1.0, 1.0, (count, terms))]).tolist()
-    return rows
-
-
 @by_kind
 def test_a_coordinate_is_right_to_its_stated_doubt(kind: str) -> None:
-    drive, equation, (_, _, half) = CASES[kind]
-    for (x,) in laws(kind, 0):
+    drive, equation, (least, most, half) = CASES[kind]
+    for x in np.random.default_rng(4).uniform(least, most, 20).tolist():
         (value,) = drive.series(np.array([x]), DRAWING)
         lacks, doubt = (float(part) for part in drive.rounding(np.array(value), DRAWING, 0.0))
         with mpmath.workdps(50):
@@ -86,27 +80,6 @@ def test_a_coordinate_is_right_to_its_stated_doubt(kind: str) -> None:
             _, wide = drive.rounding(np.array(value), DRAWING, law)
             for off in (-law, law):
                 assert abs(equation(mpf(x) + off) - mpf(float(value)) - lacks) <= float(wide)
-
-
-@by_kind
-def test_the_derivatives_of_a_coordinate_are_those_of_its_equation(kind: str) -> None:
-    """As a series, alone and among others, and enclosed in twice the working precision."""
-    drive, equation, _ = CASES[kind]
-    rows = laws(kind, 4)
-    together = drive.series(np.array(rows), DRAWING)
-    rates = [Enclosed.of(factorial(order) * np.array(rows)[:, order]) for order in range(3)]
-    enclosed = drive.enclosed(rates, DRAWING)
-    for i, row in enumerate(rows):
-        with mpmath.workdps(60):
-            exact = mpmath.taylor(lambda t, row=row: equation(polynomial(row, t)), 0, 4)
-            for order, part in enumerate(enclosed):
-                found = mpf(float(part.high[i])) + mpf(float(part.low[i]))
-                assert abs(factorial(order) * exact[order] - found) <= float(part.radius[0, i]) + 1e-40
-                assert float(part.radius[0, i]) <= 1e-27
-        size = float(max(map(abs, exact)))
-        for series in (drive.series(np.array(row), DRAWING), together[i]):
-            # Sums of some twenty products, of terms that are larger than what is left of them.
-            assert np.abs(series - np.array(exact, dtype=float)).max() <= 1e3 * U * max(size, 1.0)
 
 
 @by_kind
@@ -156,3 +129,24 @@ def test_a_distance_that_is_not_positive_is_refused(distance: float) -> None:
     drive, _, _ = CASES["distance"]
     with pytest.raises(InputOutOfRange, match="a distance above 0 mm"):
         drive.series(np.array([[distance, 1.0]]), DRAWING)
+
+
+def turned_arm(polynomial: list[float]) -> Motion:
+    parts = {"time": {"start": 0.0, "stop": 1.0, "samples": 9}, "effects": ["velocity", "knuckle_rates"]}
+    return simulate(scene_with("semi-trailing-arm", inputs={"arm_turn": {"polynomial": polynomial}}, **parts))
+
+
+def test_a_turn_is_right_handed_about_the_hinge_and_goes_round_as_often_as_it_says() -> None:
+    points = Scene.load("semi-trailing-arm").mechanism.points
+    inner, outer = (np.array(points[f"pivot_{end}"]) for end in ("inner", "outer"))
+    hinge = (outer - inner) / np.linalg.norm(outer - inner)
+    motion = turned_arm([0.0, 8.0 * np.pi])
+    assert np.abs(motion.angular_velocity["arm"] - 8.0 * np.pi * hinge).max() < 1e-10
+    there = motion.position["wheel_centre"]
+    assert np.abs(there[-1] - there[0]).max() < 1e-9
+    # An eighth of four rounds is half of one: the centre is across the hinge.
+    arm = there[0] - inner
+    across = 2.0 * (arm @ hinge) * hinge - arm + inner
+    assert np.abs(there[1] - across).max() < 1e-9
+    # A motion that starts rounds away from the drawing goes there round by round.
+    assert np.abs(turned_arm([7.0 * np.pi]).position["wheel_centre"][0] - across).max() < 1e-9

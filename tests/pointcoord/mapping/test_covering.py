@@ -7,11 +7,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from sample_cars import by_drawn_car
 
 from pointcoord import NotCovered, Scene, kinematic_map, standing
 from pointcoord.drawing_stands import drawn_inputs
-from pointcoord.numerics.arrays import Array, Integers
 from pointcoord.patches import flood as flooding
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
@@ -29,16 +29,12 @@ SADDLE = (float(np.radians(35.118)), -0.0029)
 RANGES = {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)}
 
 
-def scene_of(car: str) -> Scene:
-    return Scene.load(car).model_copy(update={"effects": ()})
-
-
 STRUT = scene_mechanism(Scene.load("bounce"))
 
 
 @by_drawn_car
 def test_a_range_beyond_the_reach_is_covered_up_to_the_fold_and_refused_beyond(car: str) -> None:
-    scene = scene_of(car)
+    scene = scene_with(car, effects=[])
     stand = standing(scene)
     drawn = stand.inputs
     first, last = (end.value for end in stand.reach["rack"])
@@ -65,7 +61,7 @@ def test_near_a_saddle_where_branches_nearly_meet_the_branch_is_the_drawing_s() 
         "arm_angle": (SADDLE[0] - 0.004, SADDLE[0] + 0.004),
         "rack": (SADDLE[1] - 0.2, SADDLE[1] + 0.2),
     }
-    map = kinematic_map(scene_of("bounce"), ranges, 1e-6, halvings=5)
+    map = kinematic_map(scene_with("bounce", effects=[]), ranges, 1e-6, halvings=5)
     assert 0.2 < map.share_covered < 1.0
     low, high = np.array([*ranges.values()]).T
     values = np.random.default_rng(4).uniform(low, high, (400, 2))
@@ -88,21 +84,11 @@ def test_near_a_saddle_where_branches_nearly_meet_the_branch_is_the_drawing_s() 
         assert np.isfinite(map.evaluate(value)).all()
 
 
-def paper_domain() -> Domain:
-    return Domain(STRUT, RANGES, 6)
-
-
-def entry(domain: Domain, twice: tuple[int, int] = (64, 64)) -> tuple[Integers, Array]:
-    """The pose at a place of a domain."""
-    values = dict(zip(domain.free, domain.inputs_at(np.array(twice)), strict=True))
-    return np.array(twice), assemble(domain.mechanism, values).y
-
-
 def test_neighbours_are_the_same_assembly_if_either_is_alone_around_the_other_and_else_one_is_given_up(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    domain = paper_domain()
-    begun = entry(domain)
+    domain, middle = Domain(STRUT, RANGES, 6), np.array([64, 64])
+    begun = middle, assemble(STRUT, dict(zip(domain.free, domain.inputs_at(middle), strict=True))).y
     sound = flood(domain, Limits(1e-9), begun)
     kept = sound.patches
     assert sound.given_up == ()

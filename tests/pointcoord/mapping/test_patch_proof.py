@@ -8,10 +8,11 @@ zero but the first.
 from __future__ import annotations
 
 from fractions import Fraction
-from math import perm
 
 import numpy as np
 import pytest
+from many_digits import fractions
+from numpy.polynomial import polynomial
 
 from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.kantorovich import INFLATION
@@ -102,27 +103,6 @@ def random_series(generator: np.random.Generator) -> Array:
     return series * generator.choice([-1.0, 1.0], LOW_ORDER + 1) * generator.uniform(1.0, 2.0, LOW_ORDER + 1)
 
 
-def product(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
-    """Of two polynomials in one variable."""
-    found = [Fraction(0)] * (len(a) + len(b) - 1)
-    for i, one in enumerate(a):
-        for j, other in enumerate(b):
-            found[i + j] += one * other
-    return found
-
-
-def at_an_end(polynomial: list[Fraction], derivative: int, end: int) -> Fraction:
-    """A polynomial's derivative at -1 or 1."""
-    return sum(
-        (
-            perm(k, derivative) * end ** (k - derivative) * c
-            for k, c in enumerate(polynomial)
-            if k >= derivative
-        ),
-        Fraction(0),
-    )
-
-
 @pytest.mark.parametrize("doubtful", [False, True])
 def test_what_a_series_leaves_is_no_more_than_its_bound_says(doubtful: bool) -> None:
     """C(y(s)) and its derivatives at both ends, exactly; with errors of the known series at their most."""
@@ -143,19 +123,15 @@ def test_what_a_series_leaves_is_no_more_than_its_bound_says(doubtful: bool) -> 
         factors = factorise(system.jacobian(series[:1]))
         data = Jet.of(errors[None], powers(1, LOW_ORDER).exponents)
         found, _ = patch_proof._remaining(system, factors, series[None], LOW_ORDER, low[None], data)
-        exact = [
-            [Fraction(a) + Fraction(b) for a, b in zip(own, off, strict=True)]
-            for own, off in zip(series.T.tolist(), errors.T.tolist(), strict=True)
-        ]
-        for own, lacks in zip(exact, low.tolist(), strict=True):
-            own[0] += Fraction(lacks)
-        terms = [product(exact[term.left[0]], exact[term.right[0]]) for term in system.rows[0]]
-        rest = [one - other for one, other in zip(*terms, strict=True)]
+        exact = fractions(series) + fractions(errors)
+        exact[0] += fractions(low)
+        one, other = (np.convolve(exact[:, p.left[0]], exact[:, p.right[0]]) for p in system.rows[0])
         inverse = Fraction(float(factors.preconditioner[0, 0, 0]))
         bounds = (found.value[0, 0], found.first[0, 0, 0], found.second[0, 0, 0, 0])
         # The inflation of every bound is for the rounding of its own last operations.
         for d, bound in enumerate(INFLATION * np.array(bounds)):
-            left = max(abs(inverse * at_an_end(rest, d, end)) for end in (-1, 1))
+            rest = polynomial.polyder(one - other, d)
+            left = max(abs(inverse * polynomial.polyval(end, rest)) for end in (-1, 1))
             assert left <= Fraction(float(bound)), (seed, d)
             closest[d] = max(closest[d], float(left / Fraction(float(bound))) if bound else 0.0)
     assert (closest > 0.3).all(), closest

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from within_bounds import differing
 
 from pointcoord import (
@@ -175,6 +176,12 @@ def test_what_makes_no_map_is_refused_in_words(
 ) -> None:
     with pytest.raises(kind, match=words):
         kinematic_map(Scene.load("steer"), **{"ranges": RANGES, **settings})
+
+
+def test_a_map_takes_no_loads() -> None:
+    scene = scene_with("pushrod", {"loads": {"": {"force": [0.0, 0.0, 3e3]}}}, effects=["loads"])
+    with pytest.raises(MapError, match="without derivatives"):
+        kinematic_map(scene, dict.fromkeys(scene.inputs, (-1.0, 1.0)))
 
 
 def test_a_saved_map_comes_back_to_the_last_bit(steered: KinematicMap, tmp_path: Path) -> None:

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from changed_scenes import scene_with
+from changed_scenes import content_of, scene_with
+from three_mechanics import scene_of
 
 from pointcoord import (
     MechanismError,
@@ -33,13 +34,7 @@ def four_bar(tilt: float) -> Scene:
         "rocker": ["c", "c_far", "d", "d_far"],
     }
     inputs = {"turn": {"angle": "crank", "from": "drawing"}}
-    return Scene.from_mapping(
-        {
-            "mechanism": {"bodies": bodies, "inputs": inputs, "points": points},
-            "inputs": {"turn": {"polynomial": [0.0, 0.4]}},
-            "time": {"start": 0.0, "stop": 1.0, "samples": 5},
-        }
-    )
+    return scene_of({"bodies": bodies, "inputs": inputs, "points": points}, [], turn=[0.0, 0.4])
 
 
 @pytest.mark.parametrize("tilt", [1.0, 1e-6])
@@ -83,15 +78,9 @@ def test_one_of_two_rods_side_by_side_is_left_out() -> None:
     assert span == pytest.approx(np.hypot(40, 130) - np.hypot(90, 30), abs=1e-6)
 
 
-def bent_bricard() -> Scene:
-    """A hinge that is 1e-8 mm off: it closes, and its rows seem to depend on each other as drawn."""
-    content = Scene.load("bricard").model_dump(exclude_none=True)
-    content["mechanism"]["points"]["P1"] = [1000.0 + 1e-8, 0.0, 0.0]
-    return Scene.from_mapping(content)
-
-
 def test_a_violated_row_is_named_by_maps_poses_and_sweeps() -> None:
-    scene = bent_bricard()
+    # A hinge is 1e-8 mm off: it closes, and its rows seem to depend on each other as drawn.
+    scene = scene_with("bricard", {"points": {"P1": [1000.0 + 1e-8, 0.0, 0.0]}})
     # A map that is within 1e-9 mm could not tell.
     with pytest.raises(MechanismError, match=r"is locked: normal of the link_\d"):
         kinematic_map(scene, {"turn": (-0.3, 0.3)}, tolerance=1e-10)
@@ -117,3 +106,24 @@ def test_a_scene_keeps_its_mechanism_when_the_file_is_gone(tmp_path: Path) -> No
     again = pickle.loads(pickle.dumps(axle))
     assert again == axle
     assert again.mechanism.plain(again.mechanism.driven) == axle.mechanism.plain(axle.mechanism.driven)
+
+
+def test_a_mechanism_that_is_held_twice_has_no_forces() -> None:
+    content = content_of("bricard")
+    plain = Scene.from_mapping(content).mechanism.structure.plain(content["inputs"])
+    body = next(body for body in plain["bodies"] if body != "chassis")
+    content["mechanism"] |= {key: plain[key] for key in ("bodies", "rods", "slides", "inputs")}
+    content["mechanism"] |= {"type": None, "wheel_radius": 300.0, "loads": {"": {"force": [0.0, 0.0, 3e3]}}}
+    content["mechanism"]["roles"] = {"knuckle": body, "wheel_axis": plain["bodies"][body][:2]}
+    with pytest.raises(SceneError, match="follow from the others"):
+        Scene.from_mapping({**content, "effects": ["loads"]})
+
+
+def test_a_tripod_of_rods_is_refused_as_a_structure() -> None:
+    mechanism = {
+        "bodies": {"chassis": ["a", "b", "c"]},
+        "rods": {"r1": ["a", "p"], "r2": ["b", "p"], "r3": ["c", "p"]},
+        "points": {"a": [0, 0, 0], "b": [300, 0, 0], "c": [0, 300, 10], "p": [100, 100, 300]},
+    }
+    with pytest.raises(SceneError, match="structure that nothing moves"):
+        scene_of(mechanism, [])

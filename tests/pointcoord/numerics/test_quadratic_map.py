@@ -5,11 +5,13 @@ Where the numbers are small integers every operation of the map is exact, so equ
 
 from fractions import Fraction
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from many_digits import fractions
 
 from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
@@ -40,18 +42,16 @@ def integers(rng: np.random.Generator, *shape: int) -> Array:
     return rng.integers(-1000, 1000, size=(*shape, SIZE)).astype(float)
 
 
-def exact_rows(system: QuadraticMap, y: list[Fraction]) -> list[Fraction]:
+def exact_rows(system: QuadraticMap, y: Any) -> Any:
     """sum c (y_a - y_b)(y_c - y_d) from the definition."""
-    return [
-        sum(
-            (
-                Fraction(p.coefficient) * (y[p.left[0]] - y[p.left[1]]) * (y[p.right[0]] - y[p.right[1]])
-                for p in row
-            ),
-            Fraction(0),
-        )
+    terms = (
+        [
+            Fraction(p.coefficient) * (y[p.left[0]] - y[p.left[1]]) * (y[p.right[0]] - y[p.right[1]])
+            for p in row
+        ]
         for row in system.rows
-    ]
+    )
+    return np.array([sum(row) for row in terms], dtype=object)
 
 
 @plain
@@ -65,11 +65,10 @@ def test_uncertainty_bounds_the_error_of_the_residual_against_exact_arithmetic(
     y = np.where(rng.random(SIZE) < 0.5, 1.0 + rng.normal(size=SIZE) * 1e-8, rng.normal(size=SIZE) * 100.0)
     data = doubt * rng.integers(0, 3, size=SIZE)
     for share in (rng.choice([-1.0, 1.0], size=SIZE), rng.integers(-4, 5, size=SIZE) / 4.0):
-        true = [Fraction(v) + Fraction(d) * Fraction(s) for v, d, s in zip(y, data, share, strict=True)]
-        computed, bound = system.residual(y), system.uncertainty(y, data)
-        for value, limit, exact in zip(computed, bound, exact_rows(system, true), strict=True):
-            # The bound itself is evaluated in fewer than 16 roundings.
-            assert abs(Fraction(value) - exact) <= Fraction(limit) * (1 + Fraction(16 * U))
+        exact = exact_rows(system, fractions(y) + fractions(data) * fractions(share))
+        # The bound itself is evaluated in fewer than 16 roundings.
+        limit = fractions(system.uncertainty(y, data)) * (1 + Fraction(16 * U))
+        assert (np.abs(fractions(system.residual(y)) - exact) <= limit).all()
 
 
 @plain

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from changed_scenes import content_of, scene_with
 
-from pointcoord import Scene, built_in_scenes, simulate
+from pointcoord import PointcoordError, Scene, built_in_scenes, simulate
 
 STRUT, WISHBONE = "off-axis-strut", "double-wishbone"
 
@@ -24,6 +24,14 @@ def test_a_car_in_another_unit_is_doubted_and_solved(factor: float, length: str)
     assert f"the car is {length} long" in motion.notes[0]
     count = len(motion.notes)  # a tolerance of 1e-9 mm is too fine for a car of half a kilometre
     assert repr(motion).endswith(f"; {count} note{'s' if count > 1 else ''}>")
+
+
+@pytest.mark.parametrize("factor", [0.0, 1e-112, 1e300])
+def test_a_mechanism_without_a_usable_size_is_refused(factor: float) -> None:
+    places = content_of("slider-crank")["mechanism"]["points"]
+    points = {name: np.multiply(factor, place).tolist() for name, place in places.items()}
+    with pytest.raises(PointcoordError, match="the points span"):
+        simulate(scene_with("slider-crank", {"points": points}))
 
 
 # Where points are drawn: at a place, or at that of another.

@@ -20,20 +20,15 @@ CAR: dict[str, Any] = {
 }
 LOAD = {"force": [700.0, -400.0, 3000.0], "moment": [2e4, -1e5, 3e4]}
 # A scene of one wheel, whose rack a steering wheel may move.
-STEERED = ("pushrod-by-damper",)
+STEERED = "pushrod-by-damper"
 
 
 def plain(name: str) -> dict[str, Any]:
     content = Scene.load(name).model_dump(exclude_none=True)
     content["mechanism"] |= {"wheel_radius": 300.0, "car": CAR}
-    if name in STEERED:
+    if name == STEERED:
         content["mechanism"] |= {"rack_per_turn": 44.0, "loads": {"": LOAD}}
     return content
-
-
-def of_length(name: str) -> set[str]:
-    structure = Scene.load(name).mechanism.structure
-    return {input for input, one in structure.inputs.items() if one.unit == "mm"}
 
 
 def numbers(plain: Any) -> list[float]:
@@ -51,16 +46,15 @@ def test_every_length_of_a_scene_is_in_its_units_and_nothing_else_is(
 ) -> None:
     content, factor = plain(name), UNITS[units]
     # Written in the other unit, by the same rule backwards: a length is divided, all else stays.
-    lengths = of_length(name)
+    inputs = Scene.load(name).mechanism.structure.inputs
+    lengths = {input for input, one in inputs.items() if one.unit == "mm"}
     written: dict[str, Any] = {**content, "units": units, "tolerance": content["tolerance"] / factor}
     part = written["mechanism"] = dict(content["mechanism"])
     part["points"] = {n: as_given([c / factor for c in p]) for n, p in part["points"].items()}
     part["wheel_radius"] = 300.0 / factor
-    if name in STEERED:
-        part |= {"rack_per_turn": 44.0 / factor}
-        part["loads"] = {
-            "": {"force": LOAD["force"], "moment": as_given([m / factor for m in LOAD["moment"]])}
-        }
+    if name == STEERED:
+        moment = as_given([m / factor for m in LOAD["moment"]])
+        part |= {"rack_per_turn": 44.0 / factor, "loads": {"": {**LOAD, "moment": moment}}}
     part["car"] = CAR | {n: CAR[n] / factor for n in ("wheelbase", "centre_of_gravity_height")}
 
     def divided(value: Any, of: str = "") -> Any:

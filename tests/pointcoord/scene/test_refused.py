@@ -7,7 +7,6 @@ from changed_scenes import change, content_of, scene_with
 from mechanism_files import mechanism_file
 
 from pointcoord import PointcoordError, Scene, SceneError, simulate, standing
-from validate.cli import main
 from validate.toml_written import written
 
 LINES = Path(__file__).with_name("refused.txt").read_text(encoding="utf-8").splitlines()
@@ -42,22 +41,6 @@ def test_a_fault_names_the_file_the_key_and_what_is_meant(
     assert source in told
     assert "\n" not in told
     assert [word for word in words.split(" & ") if word not in told.replace(source, "")] == [], told
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ("inputs.rack gone", "inputs: the double_wishbone has 2 freedoms, and 1 is driven"),
-        ('mechanism.side = "left"', "mechanism: wheel_centre lies"),
-    ],
-)
-def test_a_fault_ends_a_command_in_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], changes: str, words: str
-) -> None:
-    path = written_file(tmp_path / "car.toml", change(content_of("double-wishbone"), changes))
-    assert main(["plan", path]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"pointcoord: {path}: {words}")
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,10 @@
 """A drawing that lies on a fold, to within rounding, is closed on its own side or not at all."""
 
 from collections.abc import Mapping
-from fractions import Fraction
 
 import numpy as np
 import pytest
+from many_digits import fractions
 from sample_cars import CARS
 from scipy.spatial.transform import Rotation
 
@@ -24,14 +24,12 @@ by_part = pytest.mark.parametrize("part", CLOSING, ids=lambda part: part.type)
 def steering_side(part: MechanismPart, points: Mapping[str, Array]) -> int:
     """The exact sign of (k x inner end of the tie rod) . outer end, from the lower end of the kingpin k."""
     lower, upper = part.topology.role("steering_axis")
-    exact = {name: [Fraction(float(x)) for x in place] for name, place in points.items()}
     k, inner, outer = (
-        [x - y for x, y in zip(exact[name], exact[lower], strict=True)]
+        fractions(points[name]) - fractions(points[lower])
         for name in (upper, "tie_rod_inner", "tie_rod_outer")
     )
-    crossed = (k[i - 2] * inner[i - 1] - k[i - 1] * inner[i - 2] for i in range(3))
-    product = sum(c * x for c, x in zip(crossed, outer, strict=True))
-    return (product > 0) - (product < 0)
+    product = np.cross(k, inner) @ outer
+    return int(product > 0) - int(product < 0)
 
 
 def drawn_with_a_dead_tie_rod(part: MechanismPart, sine: float, turn: Rotation) -> dict[str, Array]:

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from parabola import AT_ONE, PARABOLA
+from parabola import PARABOLA
 
 from pointcoord.numerics.arrays import Array
 from pointcoord.solve import proven_step
-from pointcoord.solve.follower import SMALLEST_STEP, follow
 from pointcoord.solve.proven_step import PARTS, ROOM, prove_box, prove_segment
 
 
@@ -58,20 +57,3 @@ def test_a_segment_is_proven_by_parts_as_far_as_the_last_one_is(share: float, s:
     proof = prove_segment(PARABOLA, series, s)
     assert bool(proof.holds) == (share < end)
     assert share >= end or proof.alone * proof.weights[0] <= 1.0 - share + 1e-9
-
-
-def path_to(w: float) -> tuple[float, float]:
-    """The share done of the path from w = 1, and u at its end."""
-    path = follow(PARABOLA, AT_ONE, np.array([w, 0.0, 1.0]))
-    return float(path.done), float(path.y[0])
-
-
-@pytest.mark.parametrize("beyond", [1.0, 1e-3, 1e-9])
-def test_a_path_into_a_fold_stops_where_its_steps_are_the_smallest(beyond: float) -> None:
-    done, u = path_to(-beyond)
-    # Left of the way to the fold, as a share of the path. A step is at most the way to the fold and at
-    # least a tenth of it, so the last one that is taken leaves at most ten smallest steps and at least a
-    # tenth of one. u^2 says the same as long as the path's own rounding, 1e-16 of it, is far smaller.
-    left = 1.0 / (1.0 + beyond) - done
-    assert 0.1 * SMALLEST_STEP <= left <= 10.0 * SMALLEST_STEP
-    assert abs(u * u / (1.0 + beyond) - left) <= 1e-15

@@ -1,33 +1,24 @@
 """Poses and rates at instants: which are proven to continue each other, and the paper's algorithm."""
 
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 import pytest
 from parabola import AT_ONE, PARABOLA
 from sample_cars import by_car
 
-from pointcoord import AssemblyError, Scene, simulate
+from pointcoord import Scene, simulate
 from pointcoord.drawing_stands import drawn_inputs
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import MAP, METHODS, NEWTON, Method
 from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.linear import factorise
-from pointcoord.simulation import pose_tolerance, prepare_task
+from pointcoord.simulation import pose_tolerance, prepare_task, scene_mechanism
 from pointcoord.solve import pointwise
-from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.follower import follow
-from pointcoord.solve.pointwise import solve_instants
 from pointcoord.solve.proven_step import ROOM
-from pointcoord.time_functions import Sine, TimeFunction
 
-solve_by_chord = partial(solve_instants, chord=True)
-SWING: dict[str, TimeFunction] = {"arm_angle": Sine(0.2, 2.0, 0.0, 1.5), "rack": Sine(10.0, 3.0)}
-
-
-def start_of(mechanism: Mechanism, functions: dict[str, TimeFunction]) -> Pose:
-    return assemble(mechanism, {name: f.series(0.0, 0)[..., 0] for name, f in functions.items()})
+STRUT = scene_mechanism(Scene.load("bounce"))
+EPS = np.finfo(float).eps
 
 
 @pytest.mark.parametrize(
@@ -58,29 +49,27 @@ def test_what_a_kept_inverse_leaves_is_no_less_than_the_error(tolerance: float) 
     assert (np.abs(y[:, 0] - np.sqrt(w)) <= left + 4.0 * EPS).all()
 
 
-def test_one_factorisation_serves_many_instants_by_chord(strut: Mechanism) -> None:
-    times = np.linspace(0.0, 1.0, 400)
-    solved = solve_by_chord(strut, SWING, start_of(strut, SWING), times, 0)
-    assert len(solved.times) == 400
-    assert solved.work.factorisations < 40
-
-
-EPS = np.finfo(float).eps
+def test_one_factorisation_serves_many_instants_by_chord(make_scene: Callable[..., Scene]) -> None:
+    arm = {"sine": {"amplitude": 0.2, "angular_frequency": 2.0, "offset": 1.5}}
+    rack = {"sine": {"amplitude": 10.0, "angular_frequency": 3.0}}
+    motion = simulate(make_scene(arm, rack, stop=1.0, samples=400, effects=()), "chord")
+    assert len(motion.times) == 400
+    assert motion.work.factorisations < 40
 
 
 # So near a fold no patch of a map can be proven.
 @pytest.mark.parametrize("method", [name for name in METHODS if name != MAP.name])
 @pytest.mark.parametrize("short", [1e-5, 1e-8])
 def test_rates_near_a_lock_are_those_of_the_pose_that_is_reported(
-    make_scene: Callable[..., Scene], strut: Mechanism, method: Method, short: float
+    make_scene: Callable[..., Scene], method: Method, short: float
 ) -> None:
     # A Jacobian of Newton's last but one place, off by more than the pose's error, gave velocities that
     # stretched the links of the reported pose.
     scene = make_scene((np.pi / 2,), (0.0, 130.10076831981567 * (1 - short)), stop=1.0, samples=2)
     motion = simulate(scene, method)
     p, v = motion.position, motion.velocity
-    fast = max(np.abs(v[name]).max() for name in strut.layout.moving)
-    for start, end in (ends for one in strut.topology.constraints for ends in one.squared_lengths):
+    fast = max(np.abs(v[name]).max() for name in STRUT.layout.moving)
+    for start, end in (ends for one in STRUT.topology.constraints for ends in one.squared_lengths):
         stretch = (p[start][-1] - p[end][-1]) @ (v[start][-1] - v[end][-1])
         # r . v = 0 for every link. LU leaves some eps of the matrix times the solution, here 8; both factors
         # are rounded, coordinates up to 600 mm; three products.
@@ -103,27 +92,6 @@ def plainly(scene: Scene) -> tuple[Array, float, float]:
             break
         poses.append(path.y)
     return np.array(poses), allowed, float(mechanism.unit)
-
-
-def past_a_fold(make_scene: Make) -> Scene:
-    """Two instants between which no pose exists: the arm goes a way that a fold cuts off at this rack."""
-    return make_scene([np.radians(40.0), np.radians(-7.0)], [-0.1, 0.1], stop=1.0, samples=2, effects=())
-
-
-def test_no_pose_is_reached_across_poses_that_do_not_exist(
-    make_scene: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    scene = past_a_fold(make_scene)
-    plain, _, _ = plainly(scene)
-    with pytest.raises(AssemblyError):
-        simulate(scene, "newton")
-    assert len(plain) == 1
-    # There is an assembly at the second instant, which Newton's method finds: only the proof refuses it.
-    task = prepare_task(scene, NEWTON)
-    mechanism = task.readout.mechanism
-    known = mechanism.known_series({n: f.series(scene.instants, 0) for n, f in task.functions.items()})[1, 0]
-    guess = pointwise._guessed(mechanism.map, task.start.factors, task.start.y, known[None])
-    assert pointwise.newton_refine(mechanism.map, guess).converged.all()
 
 
 @by_car

@@ -10,7 +10,7 @@ from sample_cars import CARS
 
 from pointcoord import Scene
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.arrays import Array, Indices
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
@@ -85,30 +85,3 @@ def test_most_paths_inside_the_range_take_a_few_steps(mechanism: Mechanism) -> N
         path = follow(mechanism.map, closed.y, known_at(mechanism, angle, rack), steps=8)
         assert path.done == 1.0
         assert np.abs(path.y[n:] - known_at(mechanism, angle, rack)).max() == 0.0
-
-
-@by_mechanism
-def test_a_law_leads_where_the_straight_path_leads(mechanism: Mechanism) -> None:
-    """Also from a pose that is not closed: what it lacks is taken back along either path."""
-    bow, off = 0.05, 1e-3
-    start, end = at(mechanism, 1.5, 0.0), at(mechanism, 1.2, 20.0)
-    n, y = mechanism.layout.unknowns, start.y.copy()
-    y[:n] += off * np.random.default_rng(8).uniform(-1.0, 1.0, n)
-    first, last = y[n:], end.y[n:]
-
-    def law(members: Indices, shares: Array, order: int) -> Array:
-        assert set(members.tolist()) == {0}
-        known = np.zeros((1, order + 1, len(first)))
-        share = float(shares[0])
-        known[0, 0] = last if share == 1.0 else first + (share + bow * share * (1.0 - share)) * (last - first)
-        if order:
-            known[0, 1] = (1.0 + bow * (1.0 - 2.0 * share)) * (last - first)
-            known[0, 2] = -bow * (last - first)
-        return known
-
-    for path in (
-        follow(mechanism.map, y, last),
-        follow(mechanism.map, y[None], law, longest=0.3).reshaped(()),
-    ):
-        assert path.done == 1.0
-        assert np.abs(path.y - end.y).max() <= 4 * np.finfo(float).eps * float(end.condition)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from within_bounds import beyond_claims
 
-from pointcoord import AssemblyError, Motion, Scene, simulate
+from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.bounds.summed import Summed
 from pointcoord.results.by_series import ByChain
 from pointcoord.solve.step_rule import last_magnitudes
@@ -17,10 +17,6 @@ EPS = np.finfo(float).eps
 # Where the tie rod locks at a level arm, mm; between 130.100768 and 130.100769 by its circle's closed form.
 RACK_END = 130.10076831981567
 Make = Callable[..., Scene]
-
-
-def gap(one: Motion, other: Motion) -> float:
-    return max(float(np.abs(place - other.position[name]).max()) for name, place in one.position.items())
 
 
 def test_no_series_goes_on_where_the_pieces_of_a_table_meet(make_scene: Make) -> None:
@@ -45,7 +41,8 @@ def test_no_tolerance_lets_a_motion_cross_to_a_branch_that_it_only_touches(
     scene = make_scene((np.pi / 2,), rack, stop=np.pi, samples=21, tolerance=tolerance, effects=[])
     # Newton's method takes steps that are proven to keep the branch. The series keep ten times the coarsest
     # truncation, 1e-6 of 512 mm; at the turn rounding is magnified by the inverse root of `short`.
-    apart = gap(simulate(scene), simulate(scene, "newton"))
+    places, others = (simulate(scene, method).position for method in ("auto", "newton"))
+    apart = max(float(np.abs(place - others[name]).max()) for name, place in places.items())
     assert apart <= 10 * 1e-6 * 512 + 16 * EPS * 512 / np.sqrt(short)
 
 

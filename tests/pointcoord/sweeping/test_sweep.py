@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from within_bounds import beyond_claims
 
 from pointcoord import (
     InputOutOfRange,
     PointcoordError,
-    Scene,
     SceneError,
     Sweep,
     SweepError,
@@ -25,21 +25,14 @@ from pointcoord.numerics.arrays import Flags
 from pointcoord.solve import series_in_inputs, taylor
 from pointcoord.sweeping import solving
 
-WISHBONE = Scene.load("double-wishbone")
-STRUT = Scene.load("off-axis-strut")
-PAPER = Scene.load("steer")
+WISHBONE, STRUT, PAPER = (
+    scene_with(name, samples=7) for name in ("double-wishbone", "off-axis-strut", "steer")
+)
 # Offsets of lower_ball_joint.z, mm: with the last two the car cannot be where the scene begins.
 HEIGHTS = (-20.0, 0.0, 7.5, 150.0, 160.0)
 SOUND = 3
 # With this one it stops 0.15 s into the motion.
 STOPS = 125.0
-
-
-def few_instants(scene: Scene, samples: int = 7) -> Scene:
-    return scene.model_copy(update={"time": scene.time.model_copy(update={"samples": samples})})
-
-
-WISHBONE, STRUT, PAPER = (few_instants(scene) for scene in (WISHBONE, STRUT, PAPER))
 
 
 def assert_right(found: Sweep, number: int) -> None:
@@ -48,7 +41,7 @@ def assert_right(found: Sweep, number: int) -> None:
 
 
 def test_a_point_of_a_part_is_varied_by_its_whole_name() -> None:
-    axle = few_instants(Scene.load("axle-opposed"), 3).model_copy(update={"effects": ("toe",)})
+    axle = scene_with("axle-opposed", samples=3, effects=["toe"])
     found = sweep(axle, offsets={"left.tie_rod_outer.z": [0.0, 2.0]})
     change = {side: np.abs(np.diff(found.wheel[f"{side}.toe"], axis=0)).max() for side in ("left", "right")}
     # 2 mm of bump steer at one wheel; the other one stays to rounding.
@@ -186,7 +179,7 @@ def test_blocks_are_the_sweep_in_parts() -> None:
 
 def test_blocks_take_no_more_memory_than_is_stated() -> None:
     samples, count, memory = 1001, 40, 30e6
-    scene = few_instants(WISHBONE, samples)
+    scene = scene_with("double-wishbone", samples=samples)
     designs = designs_of(scene, offsets={"lower_ball_joint.z": np.linspace(-3.0, 3.0, count)})
     next(sweep_blocks(designs_of(scene)))  # what is made once stays
     tracemalloc.start()
@@ -201,7 +194,7 @@ def test_blocks_take_no_more_memory_than_is_stated() -> None:
 
 
 def test_a_law_that_all_share_is_refused_as_alone() -> None:
-    scene = STRUT.model_copy(update={"inputs": {**STRUT.inputs, "arm_angle": {"constant": 9.0}}})
+    scene = scene_with("off-axis-strut", laws={"arm_angle": {"constant": 9.0}})
     with pytest.raises(InputOutOfRange, match="arm_angle"):
         sweep(scene, offsets={"strut_top.y": [0.0, 1.0]})
 
@@ -238,8 +231,7 @@ def test_a_law_of_more_swings_than_a_chain_can_follow_is_followed_by_its_inputs_
     monkeypatch.setattr(series_in_inputs, "INPUTS", inputs)
     monkeypatch.setattr(taylor, "MOST_SEGMENTS", 20)
     swings = {"sine": {"amplitude": 5.0, "angular_frequency": 300.0}}
-    laws = {"inputs": {**STRUT.inputs, "rack": swings}, "effects": ()}
-    scene = few_instants(STRUT).model_copy(update=laws)
+    scene = scene_with("off-axis-strut", laws={"rack": swings}, samples=7, effects=[])
     found = sweep(scene, offsets={"strut_top.y": [1.0]})
     assert found.solved.all()
     assert [note.count for note in found.notes if note.kind == "alone"] == ([] if inputs else [1])
