@@ -104,6 +104,8 @@ WAYS: dict[str, Way] = {
     "as coarse poses": partial(as_poses, copies=80, tolerance=1e-3),
 }
 MAPPED = tuple(way for way in WAYS if way.endswith(" map"))
+# Patches give positions only: asked for a gradient, each pose takes a path of its own.
+PATCHED = ("as many poses", "as coarse poses")
 # No way asks which mechanism it solves, so each is tried with every third one. Those of the most numbers
 # share the ways; one of them has more inputs than a map.
 COSTLY = ("axle-roll" + ASKEW, "axle-steer", TURNED + FAR)
@@ -115,7 +117,12 @@ CASES += [(f"bounce-on-a-heaving-chassis{ASKEW}", "newton")]
 
 
 def given(effect: str, way: str) -> bool:
-    """What a way is asked for: no loads, few of the derivatives of points, and of a map no gradients."""
+    """What a way is asked for: no loads, few of the derivatives of points, and of a map no gradients.
+
+    Of poses on patches, positions alone.
+    """
+    if way in PATCHED:
+        return False
     late = STATES[3:] if way in MAPPED else STATES[len(NAMED) + 1 :]
     few = () if way.startswith("as a design") else ("loads",)
     return effect not in (*few, *late) and not (way in MAPPED and EFFECTS[effect].way)
