@@ -8,7 +8,6 @@ solved first.
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
-from itertools import combinations
 
 import numpy as np
 
@@ -121,24 +120,12 @@ def _predicted(
 ) -> tuple[Array, Array, Array]:
     """Along units (N, inputs): the straight part s and the curve c, (N, bodies, 2, 3), of a step l s + l^2 c,
     and the largest l within the limits of a step's length and curve.
-
-    s is linear in the unit and c a quadratic form, so both follow from single inputs and pairs of inputs.
     """
-    scale = np.abs(units).max(axis=0)
-    moving = np.flatnonzero(scale)
-    many, alone, shares = len(moving), np.diag(scale)[moving], units[:, moving] / scale[moving]
-    one, other = np.array([*combinations(range(many), 2)], dtype=np.intp).reshape(-1, 2).T
-    pushes = np.concatenate((alone, alone[one] + alone[other]))
-    straight, second = rates(mechanism, pose, *targets(pushes, 0.0 * pushes)[1:])
+    ways, of = np.unique(units, axis=0, return_inverse=True)
+    straight, second = (each[of] for each in rates(mechanism, pose, *targets(ways, 0.0 * ways)[1:]))
     # A step turns with the body, so its curve is o'' - w x o'.
     second[:, :, 0] -= cross(straight[:, :, 1], straight[:, :, 0])
     curve = 0.5 * second
-    curve[many:] -= curve[one] + curve[other]
-    products = np.concatenate((shares * shares, shares[:, one] * shares[:, other]), axis=1)
-    straight, curve = (
-        (parts @ of.reshape(len(of), 6 * of.shape[1])).reshape(-1, *of.shape[1:])
-        for parts, of in ((shares, straight[:many]), (products, curve))
-    )
     size, bent = lengths(straight), lengths(curve)
     # Solves l^2 bent = LARGEST_CURVE l size + rounding.
     half = 0.5 * LARGEST_CURVE * size

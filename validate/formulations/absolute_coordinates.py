@@ -13,7 +13,7 @@ from validate.arrays import Array
 from validate.extras import needing
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.modelled import Problem, require_the_drawn_car
-from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
+from validate.formulations.protocol import AccuracyError, Numbers, Solution, refusing
 
 with needing("absolute"):
     import absolute
@@ -35,14 +35,8 @@ class AbsoluteCoordinates:
         def solution(solved: absolute.Solution) -> Solution:
             return problem.solution(self.name, found_of(solved, asked), solved.accuracy)
 
-        try:
+        with refusing(self.name, absolute.AbsoluteError, SceneError, AccuracyError, partial=solution):
             return solution(solver_of(scene)(problem.laws))
-        except absolute.AbsoluteError as error:
-            before = error.partial
-            partial = None if before is None else (lambda: solution(before))
-            raise FormulationError(self.name, error, partial) from error
-        except (SceneError, AccuracyError) as error:
-            raise FormulationError(self.name, error) from error
 
 
 def solver_of(scene: Scene) -> Callable[[Mapping[str, Array]], absolute.Solution]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from functools import partial as bind
 from typing import Any, Protocol
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.scene_file import Scene
 from validate.arrays import Array, Flags, Indices
+from validate.errors import NoAnswer
 
 NOTHING = 1e150
 """The error bound of a number without a known bound: larger than any number, and its square is finite."""
@@ -212,9 +214,27 @@ class FormulationError(Exception):
         """
         if callable(self._partial):
             before, self._partial = self._partial, None
-            with suppress(AccuracyError, FormulationError):
+            with suppress(AccuracyError, FormulationError, NoAnswer):
                 self._partial = before()
         return self._partial
+
+
+@contextmanager
+def refusing(
+    formulation: str, *kinds: type[Exception], partial: Callable[[Any], Solution] | None = None
+) -> Iterator[None]:
+    """Raise errors of these kinds as refusals of a formulation.
+
+    Args:
+        partial: makes the solution at the first instants from the `partial` of an error, if that is not None.
+    """
+    try:
+        yield
+    except kinds as error:
+        before = getattr(error, "partial", None)
+        if partial is None or before is None:
+            raise FormulationError(formulation, error) from error
+        raise FormulationError(formulation, error, bind(partial, before)) from error
 
 
 def reason_of(error: Exception) -> Exception:

@@ -8,7 +8,7 @@ coordinates; `exact_sides` then turns this check off.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
@@ -24,19 +24,19 @@ from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from validate.arrays import Array
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.input_rates import laws_of
-from validate.formulations.protocol import Accuracy, FormulationError, Numbers, Solution, largest_at
+from validate.formulations.protocol import Accuracy, Solution, largest_at, refusing
 from validate.formulations.stated_accuracy import accuracy_at
 from validate.reference import Design, Instant, NoReferenceError, instants_of
 from validate.reference.effects.at_pose import numbers_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.exact import as_fraction
+from validate.reference.instant import derivative_called
+from validate.reference.loads import FORCES
 from validate.reference.route import CLEAR
 
 Arrays = dict[str, Array]
+OF_BODIES = ("angular_velocity", "angular_acceleration")
 
-# The reference is proven to 60 digits of the greatest number of its kind; ten digits are a margin for the
-# estimate of this greatest number.
-DUST = 1e-50
 ANGLE = NUMBERS_OF_THE_CAR[ANGLES[0]].quantity.name
 DIGITS = 60
 Inputs = Mapping[str, Sequence[float]]
@@ -105,73 +105,46 @@ def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None =
     solution. Any other number of the car is NaN where it is missing: the wheels are not steered to one side,
     or a centre is at infinity.
     """
-    times, first = scene.instants if times is None else times, instants[0]
-    present = [
-        number.name
-        for number in numbers_of(design_of(scene), effects_of(scene))
-        if all(number.name in i.effects for i in instants)
-        or NUMBERS_OF_THE_CAR[number.effect.name].quantity.name != ANGLE
-    ]
-    numbers = {
-        "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
-        **{
-            name: _rounded([i.derivatives[order] for i in instants], of)
-            for order, (name, of) in enumerate(zip(STATES, first.derivatives, strict=False))
-            if order
-        },
-        "angular_velocity": _rounded([i.angular_velocity for i in instants], first.angular_velocity),
-        "angular_acceleration": _rounded([i.angular_acceleration for i in instants], first.angular_velocity),
-    }
-    for quantity in filter(is_force, QUANTITIES):
-        rows: list[Mapping[str, Any]] = [getattr(i, quantity) for i in instants]
-        forces = (name for name in rows[0] if all(name in row for row in rows))
-        numbers[quantity] = {n: np.array([row[n] for row in rows], dtype=float) for n in forces}
-    asked: dict[str, Iterable[str]] = {ANGLE: (), **asked_numbers(scene)}
-    asked[ANGLE] = dict.fromkeys((*ANGLES, *asked[ANGLE]))
-    for quantity, names in asked.items():
-        if QUANTITIES[quantity].of == "car" and not is_force(quantity):
-            there = [name for name in names if name in present]
-            numbers[quantity] = {n: np.array([float(i.effects.get(n, nan)) for i in instants]) for n in there}
-    dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
+    times, asked = scene.instants if times is None else times, asked_numbers(scene)
+    asked[ANGLE] = tuple(dict.fromkeys((*ANGLES, *asked.get(ANGLE, ()))))
+    car, orders = filter(_is_effect, asked), len(instants[0].derivatives)
+    had = {number.name for number in numbers_of(design_of(scene), effects_of(scene))}
+    numbers: dict[str, Arrays] = {}
+    for quantity in (*STATES[:orders], *OF_BODIES, *FORCES, *car):
+        rows = [exact_numbers(instant, quantity) for instant in instants]
+        names = [name for name in asked[quantity] if name in had] if _is_effect(quantity) else [*rows[0]]
+        if quantity == ANGLE or is_force(quantity):
+            names = [name for name in names if all(name in row for row in rows)]
+        numbers[quantity] = {n: np.array([row.get(n, nan) for row in rows], dtype=float) for n in names}
+    proven = {quantity: proven_error(instants, quantity) for quantity in numbers}
     swept = {
-        q: {n: np.where(np.abs(array) <= dust[q], 0.0, array) for n, array in arrays.items()}
+        q: {n: np.where(np.abs(array) <= proven[q], 0.0, array) for n, array in arrays.items()}
         for q, arrays in numbers.items()
     }
     claims = {
-        q: {n: UNIT_ROUNDOFF * np.abs(np.nan_to_num(array)) + dust[q] for n, array in arrays.items()}
+        q: {n: UNIT_ROUNDOFF * np.abs(np.nan_to_num(array)) + proven[q] for n, array in arrays.items()}
         for q, arrays in swept.items()
     }
     return Solution("reference", times, swept, Accuracy(np.ones(len(times)), claims, proven=True))
 
 
-def scales(numbers: Numbers) -> dict[str, float]:
-    """The greatest number of each kind; for accelerations with terms that may cancel, speed^2 / size."""
-    corners = np.stack(list(numbers["position"].values()))
-    size = float((corners.max(axis=0) - corners.min(axis=0)).max())
-    fastest, hardest = _largest(numbers["velocity"]), _largest(numbers["acceleration"])
-    push = hardest + fastest * (fastest / size)
-    higher, before = dict[str, float](), push
-    for name in STATES[3:]:
-        before = _largest(numbers[name]) + before * (fastest / size) if numbers.get(name) else 0.0
-        higher[name] = before
-    lengths = {"mm": size, "mm/rad": size, "rad/mm": 1.0 / size}
-    return {
-        **{q.name: lengths.get(q.unit, 1.0) for q in QUANTITIES.values()},
-        "position": float(np.abs(corners).max()),
-        "velocity": fastest,
-        "acceleration": push,
-        **higher,
-        "angular_velocity": fastest / size,
-        "angular_acceleration": push / size,
-    }
+def exact_numbers(instant: Instant, quantity: str) -> Mapping[str, Any]:
+    """The reference's exact numbers of a quantity of pointcoord at an instant, by name."""
+    if quantity in STATES:
+        return instant.derivatives[STATES.index(quantity)]
+    return instant.effects if _is_effect(quantity) else getattr(instant, quantity)
 
 
-def _largest(vectors: Mapping[str, Array]) -> float:
-    return max(float(np.abs(array).max()) for array in vectors.values())
+def proven_error(instants: Sequence[Instant], quantity: str) -> float:
+    """The largest proven error of a quantity of pointcoord at some instants, in the quantity's unit."""
+    name = "effects" if _is_effect(quantity) else quantity
+    if quantity in STATES:
+        name = derivative_called(STATES.index(quantity))
+    return max(float(instant.error_bound[name]) for instant in instants)
 
 
-def _rounded(rows: Sequence[Mapping[str, Any]], names: Iterable[str]) -> Arrays:
-    return {n: np.array([[float(x) for x in row[n]] for row in rows]) for n in names}
+def _is_effect(quantity: str) -> bool:
+    return QUANTITIES[quantity].of == "car" and not is_force(quantity)
 
 
 def off_by(found: float, exact: Any) -> float:
@@ -210,10 +183,8 @@ class ManyDigits:
         Raises:
             FormulationError: an instant has no pose, or no pose can be proven.
         """
-        try:
+        with refusing(self.name, NoReferenceError):
             found = reference_solution(scene)
-        except NoReferenceError as error:
-            raise FormulationError(self.name, error) from error
         places = found.numbers["position"]
         off = EPS * float(np.ptp([place[0] for place in places.values()], axis=0).max())
         rounded = accuracy_at(scene, off, places, laws_of(scene, scene.instants), solves_rates=True)

@@ -75,9 +75,9 @@ from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import NOTHING, Accuracy
 from validate.reference import Design
-from validate.reference.car_data import KNUCKLE, RACK, TIME
+from validate.reference.car_data import KNUCKLE, TIME
 from validate.reference.design import Known, values_only
-from validate.reference.effects.at_pose import car_at, drawn_car, drivers, numbers_of
+from validate.reference.effects.at_pose import drawn_car, driven_along, numbers_of
 from validate.reference.effects.car import Car
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.in_doubles import (
@@ -233,14 +233,12 @@ class _Held:
         orders = range(known.derivatives + 1)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in orders]
         ways = {(prefix, number.effect.along) for number in self.of_car for prefix in number.corners}
-        # Derivatives by an input are the rates of a motion with this input at rate 1 and all others at rest.
-        along = {
-            (prefix, way): motion
-            if way == TIME
-            else _Motion.of(self._driven_along(prefix, way, laws), values, inverse, missed)
-            for prefix, way in ways
-            if way is not None
-        }
+        along = {}
+        for prefix, way in ways:
+            if way is not None:
+                driven = driven_along(self.design, known, prefix, way, float)
+                moving = driven is not known
+                along[prefix, way] = _Motion.of(driven, values, inverse, missed) if moving else motion
         claims = self._claims(off, motion, growth, along)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
         said = {
@@ -251,13 +249,6 @@ class _Held:
             for q, of in claims.items()
         }
         return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
-
-    def _driven_along(self, prefix: str, along: str, laws: Mapping[str, Array]) -> Known:
-        """All inputs at their values, with one moving at rate 1; a rack at one unit of the design."""
-        held = {n: np.stack([law[:, 0], np.zeros(len(law))], axis=-1) for n, law in laws.items()}
-        driver = held[drivers(self.design, prefix)[along]]
-        driver[:, 1] = self.unit if along == RACK else 1.0
-        return known_in_doubles(self.design, held, len(driver))
 
     def _pose(self, places: Mapping[str, Array], known: Known) -> tuple[list[Array], Array, Array, Flags]:
         """The unknowns, the inverse of their Jacobian, the Jacobian, and the instants without a pose nearby.
@@ -436,7 +427,7 @@ class _Held:
             lines.append(apart(line, i, off * length, rate * length))
         frame = (lines[0], lines[1]) if lines else None
         chassis = known.chassis.still() if per_length is None else known.chassis.with_slopes()
-        return car_at(self.drawn[prefix], chassis, held, frame)
+        return self.drawn[prefix].at(chassis, held, frame)
 
 
 def _height(a: Array, b: Array, c: Array) -> float:

@@ -14,7 +14,7 @@ from pointcoord import Scene, SceneError
 from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import Problem, require_the_drawn_car
-from validate.formulations.protocol import AccuracyError, FormulationError, Solution
+from validate.formulations.protocol import AccuracyError, Solution, refusing
 from validate.peers.motion import Poses
 from validate.peers.motion import numbers as numbers_of
 from validate.peers.program import Program
@@ -69,13 +69,7 @@ class InTree:
                 found = numbers_of(tree, laws, poses, rates, asked_of_the_car(scene))
             return problem.solution(self.name, found, tree.accuracy(poses.last_step))
 
-        def partial(before: Poses | None) -> Solution | None:
-            try:
-                return None if before is None else solution(before)
-            except NoAnswer:
-                return None
-
-        try:
+        with refusing(self.name, NoAnswer, SceneError, AccuracyError, partial=solution):
             program, closed = closed_in(self.program, scene, TOLERANCE)
             tree, laws = program.tree, {name: law[:, :3] for name, law in problem.laws.items()}
             series = tree.series(laws)
@@ -83,8 +77,3 @@ class InTree:
             with np.errstate(over="ignore", invalid="ignore"):
                 poses = program.poses(series[..., 0], TOLERANCE, closed)
             return solution(poses)
-        except NoAnswer as error:
-            before = error.partial
-            raise FormulationError(self.name, error, lambda: partial(before)) from error
-        except (SceneError, AccuracyError) as error:
-            raise FormulationError(self.name, error) from error

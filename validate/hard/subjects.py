@@ -15,7 +15,6 @@ import numpy as np
 from pointcoord import Scene, built_in_scenes
 from pointcoord.drawing_stands import drawn_inputs
 from validate.cars.car import Car, Law, any_rotation, content_of
-from validate.cars.paper_car import PAPER as PAPER_POINTS
 from validate.formulations.reference_solution import reference_instant
 
 Content = dict[str, Any]
@@ -33,7 +32,7 @@ def as_given(scene: Scene) -> Car:
 def _cars() -> dict[str, Car]:
     """The paper's strut, a double wishbone, and their variants in `cars.toml`."""
     cars = {
-        "paper": Car(PAPER_POINTS, closure="collinear"),
+        "paper": Car(Scene.load("bounce").mechanism.points, closure="collinear"),
         "wishbone": as_given(Scene.load("double-wishbone")),
     }
     rows = tomllib.loads(files("validate.hard").joinpath("cars.toml").read_text(encoding="utf-8"))

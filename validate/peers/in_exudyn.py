@@ -1,7 +1,7 @@
 """A mechanism in Exudyn: a kinematic tree whose loops are closed by Exudyn's spherical joints.
 
-Exudyn's static solver gives the residuals of these constraints and their Jacobian, and its sensors give the
-motion of any point of the tree (`program` uses both). A ball joint of the tree is three revolute joints in
+Exudyn's static solver gives the Jacobian of these constraints, and its sensors give the positions and rates
+of the sites (`program` uses both). A ball joint of the tree is three revolute joints in
 series, about the car's axes right, forward and up as drawn; the middle angle, a body's camber, must not reach
 90 deg. A rod's ball joint is two revolute joints across the rod, because a spin about the rod has no effect.
 The first one's axis is as nearly as possible that of the mechanism's first hinge that is not along the rod,
@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from validate.arrays import Array
+from validate.arrays import Array, Indices
 from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree, axes_along, car_directions
@@ -27,35 +27,23 @@ with needing("exudyn"):
     items: Any = import_module("exudyn.itemInterface")
 
 TURNS = (exudyn.JointType.RevoluteX, exudyn.JointType.RevoluteY, exudyn.JointType.RevoluteZ)
-MOVES = ("Velocity", "Acceleration", "AngularVelocity", "AngularAcceleration")
+READ = ("Position", "Velocity", "AngularVelocity", "Acceleration", "AngularAcceleration")
 
 
 class InExudyn(Program):
     """A mechanism as an Exudyn system; the pose that was computed last is the system's."""
 
     def __init__(self, tree: SpanningTree) -> None:
-        self.tree = tree
         self.container = exudyn.SystemContainer()
         self.system = system = self.container.AddSystem()
         self.last: dict[str, int] = {}  # the link that has the points of a body, by body
         self.frames: dict[str, tuple[Array, Array]] = {CHASSIS: (np.zeros(3), np.eye(3))}
-        self.links = self._links()
-        points = tree.moving.values()
-        self.places_of = [self._sensor(place, "Position") for place in points]
-        bodies = [Place(body, self.frames[body][0]) for body in tree.knuckles]
-        self.moves_of = [
-            [
-                *(self._sensor(place, of_point) for place in points),
-                *(self._sensor(place, of_body) for place in bodies),
-            ]
-            for of_point, of_body in zip(MOVES[:2], MOVES[2:], strict=True)
-        ]
-        self.ends = []
+        self.links = self._links(tree)
         for loop in tree.loops:
-            sides = (loop.first, loop.second)
-            markers = [self._marker(side) for side in sides]
+            markers = [self._marker(side) for side in (loop.first, loop.second)]
             system.AddObject(items.ObjectJointSpherical(markerNumbers=markers))
-            self.ends.append([self._sensor(side, "Acceleration") for side in sides])
+        self.sites = range(len(tree.sites))
+        self.sensors = {what: [self._sensor(place, what) for place in tree.sites] for what in READ}
         system.Assemble()
         self.solver, self.settings = exudyn.MainSolverStatic(), exudyn.SimulationSettings()
         self.settings.solution.file.write = False
@@ -63,10 +51,10 @@ class InExudyn(Program):
         self.solver.InitializeSolver(system, self.settings)
         self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
         self.nothing = np.zeros((self.size + rows, self.size + rows))
-        self.as_drawn = np.zeros(self.size)
-        self.driven = np.array([self.last[driven.body] for driven in tree.driven])
-        self.driven_at = self.driven
-        self.unknown = np.array([i for i in range(self.size) if i not in self.driven], dtype=np.intp)
+        super().__init__(tree, self.size, rods_spin=False)
+
+    def joint(self, body: str) -> tuple[int, int]:
+        return self.last[body], self.last[body]
 
     @property
     def coordinates(self) -> Array:
@@ -78,35 +66,28 @@ class InExudyn(Program):
     def move(self, step: Array) -> None:
         self.put(self.coordinates + step)
 
-    def misses(self) -> tuple[Array, Array]:
-        solver, size = self.solver, self.size
-        solver.ComputeAlgebraicEquations(self.system)
-        solver.SetSystemJacobian(self.nothing)
-        solver.ComputeJacobianAE(self.system)
-        jacobian = np.asarray(solver.GetSystemJacobian())
-        return np.asarray(solver.GetSystemResidual())[size:], jacobian[size:, :size]
+    def positions(self, sites: Indices) -> Array:
+        return self._read("Position", sites)
 
-    def places(self) -> Array:
-        return self._read(self.places_of)
+    def gap_jacobian(self) -> Array:
+        self.solver.SetSystemJacobian(self.nothing)
+        self.solver.ComputeJacobianAE(self.system)
+        # Exudyn's constraints are second - first.
+        return -np.asarray(self.solver.GetSystemJacobian())[self.size :, : self.size]
 
-    def apart(self, rates: Array, accelerations: Array) -> Array:
+    def set_rates(self, rates: Array, accelerations: Array) -> None:
         self.system.systemData.SetODE2Coordinates_t(rates)
         self.system.systemData.SetODE2Coordinates_tt(accelerations)
-        parts = [self._read([two])[0] - self._read([one])[0] for one, two in self.ends]
-        # There is no loop where each joint is driven.
-        return np.concatenate([np.zeros(0), *parts])
 
-    def moving(self, rates: Array, accelerations: Array) -> tuple[Array, Array]:
-        self.system.systemData.SetODE2Coordinates_t(rates)
-        self.system.systemData.SetODE2Coordinates_tt(accelerations)
-        first, second = (self._read(sensors) for sensors in self.moves_of)
-        return first, second
+    def rates_of(self, sites: Indices, order: int) -> Array:
+        kinds = READ[1:3] if order == 1 else READ[3:]
+        return np.stack([self._read(what, sites) for what in kinds], axis=1)
 
-    def _links(self) -> int:
+    def _links(self, tree: SpanningTree) -> int:
         """Exudyn's number of the tree; each link has one coordinate and mass 1 (no result depends on it)."""
         kinds, parents, turns, offsets = list[object](), list[int](), list[Array](), list[Array]()
-        for joint in self.tree.joints:
-            axes, own = _axes_and_turns(self.tree, joint)
+        for joint in tree.joints:
+            axes, own = _axes_and_turns(tree, joint)
             origin, parent = self.frames[joint.parent]
             first, others = len(kinds), len(own) - 1
             turns += [parent.T @ axes, *[np.eye(3)] * others]
@@ -138,15 +119,16 @@ class InExudyn(Program):
         origin, axes = self.frames[place.body]
         return {"linkNumber": self.last[place.body], "localPosition": axes.T @ (place.at - origin)}
 
-    def _read(self, sensors: Sequence[int | None]) -> Array:
-        """Values of sensors, (sensors, 3); zero for the chassis, which has no sensor and is at rest."""
-        system, still = self.system, np.zeros(3)
-        return np.array([still if s is None else system.GetSensorValues(s) for s in sensors])
+    def _read(self, what: str, sites: Indices) -> Array:
+        """Values of the sensors of some sites, (sites, 3)."""
+        sensors = [self.sensors[what][site] for site in sites.tolist()]
+        values = [self.system.GetSensorValues(s) if isinstance(s, int) else s for s in sensors]
+        return np.reshape(values, (-1, 3))
 
-    def _sensor(self, place: Place, what: str) -> int | None:
-        """A sensor at a place of a body; None for the chassis."""
+    def _sensor(self, place: Place, what: str) -> int | Array:
+        """A sensor at a place of a body; the value itself for the chassis, which is at rest."""
         if place.body == CHASSIS:
-            return None
+            return place.at if what == "Position" else np.zeros(3)
         kind = getattr(exudyn.OutputVariableType, what)
         sensor = items.SensorKinematicTree(
             objectNumber=self.links, outputVariableType=kind, writeToFile=False, **self._place(place)

@@ -44,7 +44,7 @@ def mjcf_of(plain: Mapping[str, Any], title: str) -> str:
         NoAnswer: it is not a mechanism.
     """
     tree = _in_metres(_with_joints_driven(_z_up(plain)))
-    spec = spec_of(tree, tree.points, ())
+    spec = spec_of(tree, tree.points)
     spec.modelname = title
     _drawn(spec, tree)
     actuators: dict[str, str] = {}

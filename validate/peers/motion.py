@@ -9,10 +9,10 @@ from fractions import Fraction
 import numpy as np
 
 from validate.arrays import Array
-from validate.reference.car_data import PAIR, corners
+from validate.reference.car_data import corners
 from validate.reference.chassis import ChassisMotion
-from validate.reference.effects.at_pose import car_at, pair_of
-from validate.reference.effects.car import DrawnCar
+from validate.reference.effects.at_pose import numbers_with
+from validate.reference.effects.car import Car
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_rates
@@ -110,23 +110,22 @@ def _of_wheels(
     Args:
         drawn, near: the points as drawn, and at the poses relative to the chassis, in the tree's unit.
     """
-    plain, sides, cars = tree.plain, corners(tree.plain), {}
+    sides, cars = corners(tree.plain), dict[str, Car]()
     for part in sides:
-        car = DrawnCar.of(plain, part, drawn, _components(tree.origin), tree.unit, float)
-        if car.ends:
-            cars[part] = car_at(car, chassis, {name: _components(near[name]) for name in car.points})
-    pair = pair_of(sides) if len(cars) == 2 else ()
+        car = Car.of(tree.plain, part, drawn, _components(tree.origin), tree.unit, float)
+        cars[part] = car.at(chassis, {name: _components(near[name]) for name in car.points})
+    of_positions = [n for n in (name.rpartition(".")[2] for name in names) if _needs_positions(n)]
+    had = {part: {*car.ends, *car.data} for part, car in cars.items()}
     found = {}
-    for name in dict.fromkeys(name.rpartition(".")[2] for name in names):
-        effect = EFFECTS.get(name)
-        if effect is None or effect.along is not None:
-            continue
-        of_both = PAIR in effect.needs
-        for parts in [pair] if of_both and pair else [] if of_both else [(part,) for part in cars]:
-            each = [cars[part] for part in parts]
-            if all(effect.of({PAIR, *car.drawn.ends, *car.drawn.data}) for car in each):
-                found[name if of_both else parts[0] + name] = effect.evaluate(*each) * tree.unit**effect.power
+    for number in numbers_with(sides, had, of_positions):
+        value = number.effect.evaluate(*(cars[part] for part in number.corners))
+        found[number.name] = value * tree.unit**number.effect.power
     return found
+
+
+def _needs_positions(name: str) -> bool:
+    """Whether a name is that of a number that needs positions only."""
+    return name in EFFECTS and EFFECTS[name].along is None
 
 
 def _components(array: Array) -> Vector:

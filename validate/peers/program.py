@@ -1,7 +1,8 @@
 r"""A mechanism in another program: the program gives the residuals of the loops, Newton's method closes them.
 
-A program places its bodies from its joints' coordinates q. It gives the gap between the two sides of each
-loop, r, and the Jacobian J of r by the joints' rates. With u the unknown and d the driven joints,
+A program places its bodies from its joints' coordinates q. It gives the positions of the two sides of each
+loop, r is their difference, and the Jacobian J of r by the joints' rates. With u the unknown and d the driven
+joints,
 
     J_u dq = -r,    J_u v_u = -J_d v_d,    J_u a_u = -J_d a_d - (dJ/dt) v.
 
@@ -26,7 +27,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.linalg import qr
-from scipy.linalg.lapack import dgecon, dgesv
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
@@ -66,31 +66,57 @@ FREE = "as many inputs as degrees of freedom, and a drawing that is not singular
 class Program(ABC):
     """A mechanism in a program. It keeps the last pose, so it is not safe for several threads.
 
+    A program numbers the sites of the tree (see `SpanningTree.sites`) in any way.
+
     Attributes:
+        sites: the program's number of each site.
+        points, ends, bodies: those of the moving points, of the first and then the second sides of the loops,
+            and of the knuckles' origins.
         as_drawn: coordinates of the joints in the drawing.
         driven_at: indices of the driven joints among the coordinates.
         driven, unknown: indices of the driven and of the free joints among the joints' rates.
         rows: the rows that are solved.
         blocks: rows and columns of the diagonal blocks of J_u.
         drawn: signs of the determinants of these blocks as drawn.
+        tolerance, counted: of the present call of `closed` or `poses`: limit of the last correction, effort.
         jacobian: J of the last Newton step.
         way: direction of the path at the last pose.
         begun: condition number at the start of the path.
         nearest: the largest condition number on the path, if it is larger than `begun`.
     """
 
-    tree: SpanningTree
-    as_drawn: Array
-    driven_at: Indices
-    driven: Indices
-    unknown: Indices
+    sites: Sequence[int]
     rows: slice | Integers = slice(None)
     blocks: Sequence[tuple[Integers, Integers]] = ()
     drawn: Array
+    tolerance: float
+    counted: Counter[str]
     jacobian: Array
     way: Array
     begun: float = 1.0
     nearest: float = 1.0
+
+    def __init__(self, tree: SpanningTree, rates: int, rods_spin: bool = True) -> None:
+        """Number the joints of a program's model, which is made before.
+
+        Args:
+            rates: number of rates of all joints.
+            rods_spin: whether the joint of a rod has three rates, the last one about the rod.
+        """
+        self.tree, self.as_drawn = tree, self.coordinates
+        points, ends = len(tree.moving), 2 * len(tree.loops)
+        self.points, self.ends, self.bodies = np.split(
+            np.array(self.sites, dtype=np.intp), [points, points + ends]
+        )
+        driven = np.array([self.joint(driven.body) for driven in tree.driven], dtype=np.intp)
+        self.driven_at, self.driven = driven.reshape(-1, 2).T
+        # The spin of a rod has no effect: its rate is fixed at 0.
+        idle = [self.joint(rod)[1] + 2 for rod in tree.rods] if rods_spin else []
+        self.unknown = np.setdiff1d(np.arange(rates), [*self.driven, *idle])
+
+    @abstractmethod
+    def joint(self, body: str) -> tuple[int, int]:
+        """Index of the first coordinate and of the first rate of the joint that carries a body."""
 
     @property
     @abstractmethod
@@ -106,24 +132,33 @@ class Program(ABC):
         """Move all joints by a small step, as their rates would in a unit of time."""
 
     @abstractmethod
+    def positions(self, sites: Indices) -> Array:
+        """Place all bodies. The positions of some sites, (sites, 3)."""
+
+    @abstractmethod
+    def gap_jacobian(self) -> Array:
+        """Place all bodies. The derivative of first - second of each loop by the rates, (rows, rates)."""
+
+    @abstractmethod
+    def set_rates(self, rates: Array, accelerations: Array) -> None:
+        """Set rates and accelerations of the joints at the pose of the last call of `gap_jacobian`."""
+
+    @abstractmethod
+    def rates_of(self, sites: Indices, order: int) -> Array:
+        """Linear and angular velocity of some sites, or their accelerations for order 2, (sites, 2, 3)."""
+
     def misses(self) -> tuple[Array, Array]:
-        """Place all bodies. The residual of the loops, (rows,), and its Jacobian by the joints' rates."""
+        """The residual of the loops, (rows,), and its Jacobian by the joints' rates."""
+        return _apart(self.positions(self.ends)), self.gap_jacobian()
 
-    @abstractmethod
-    def places(self) -> Array:
-        """Place all bodies. The positions of the moving points, (points, 3)."""
-
-    @abstractmethod
     def apart(self, rates: Array, accelerations: Array) -> Array:
-        """Relative acceleration of the two sides of the loops, (rows,), for these rates and accelerations of
-        the joints at the pose of the last call of `misses`.
-        """
+        """Relative acceleration of the two sides of the loops, (rows,), for these rates of the joints."""
+        self.set_rates(rates, accelerations)
+        return _apart(self.rates_of(self.ends, 2)[:, 0])
 
-    @abstractmethod
-    def moving(self, rates: Array, accelerations: Array) -> tuple[Array, Array]:
-        """Velocities and accelerations of all moving points, then angular ones of the knuckles, (points +
-        knuckles, 3) each; for the same arguments.
-        """
+    def places(self) -> Array:
+        """The positions of the moving points, (points, 3)."""
+        return self.positions(self.points)
 
     def closed(self, tolerance: float) -> Poses:
         """The drawing, closed at its own inputs: one pose.
@@ -133,7 +168,7 @@ class Program(ABC):
         Raises:
             NoAnswer: its inputs do not drive the mechanism, or it does not close in the drawn assembly.
         """
-        counted, drawn = Counter[str](), self.tree.drawn_inputs
+        self.tolerance, self.counted, drawn = tolerance, Counter(), self.tree.drawn_inputs
         self.put(self.as_drawn)
         self._at(drawn)
         jacobian = self.misses()[1]
@@ -142,8 +177,7 @@ class Program(ABC):
         if len(rows) < count:
             words = f"is free to move as drawn: {len(rows)} independent rows for {count} unknowns"
             raise NoAnswer("the mechanism", words, FREE)
-        both = np.concatenate([self.unknown, self.driven])
-        if len(independent_rows(jacobian[:, both])) > count:
+        if len(independent_rows(jacobian[:, [*self.unknown, *self.driven]])) > count:
             raise NoAnswer("an input", "does not move the mechanism in addition to the others", FREE)
         self.rows = slice(None) if len(rows) == len(jacobian) else rows
         if count:  # an arm on one hinge, which is driven, has no loop
@@ -151,13 +185,13 @@ class Program(ABC):
             moved = (np.abs(unknown) > TURNED).reshape(-1, 3, count).any(axis=1)
             self.blocks = diagonal_blocks(np.repeat(moved, 3, axis=0)[self.rows])
         self.drawn = self.signs(unknown[self.rows])
-        step = self._newton(drawn, tolerance, counted, shorten=True)
+        step = self._newton(drawn, shorten=True)
         if step is None:
             raise self._refusal("cannot be closed in the drawn assembly", None, drawn, drawn)
         condition, _ = self._folded()
         if not condition < FOLDED:
             raise self._refusal("lies on a fold", None, drawn, drawn)
-        return self._named(drawn[None], self.coordinates[None], self.places()[None], [step], counted)
+        return self._named(drawn[None], self.coordinates[None], self.places()[None], [step])
 
     def poses(self, inputs: Array, tolerance: float, start: Poses) -> Poses:
         """Solve at inputs, each pose from the one before.
@@ -169,7 +203,7 @@ class Program(ABC):
         Raises:
             NoAnswer: a pose is not reached without meeting another assembly; `partial` has those before.
         """
-        counted, count = Counter[str](), len(inputs)
+        self.tolerance, self.counted, count = tolerance, Counter(), len(inputs)
         coordinates = np.empty((count, start.coordinates.shape[1]))
         places, steps = np.empty((count, len(self.tree.moving), 3)), np.empty(count)
         here = start.inputs[-1]
@@ -178,11 +212,11 @@ class Program(ABC):
 
         def refusal(problem: str, i: int, reached: Array) -> NoAnswer:
             error = self._refusal(problem, i, inputs[i], reached)
-            error.partial = self._named(inputs, coordinates, places, steps, counted).first(i) if i else None
+            error.partial = self._named(inputs, coordinates, places, steps).first(i) if i else None
             return error
 
         for i in range(count):
-            done, step = self._go(here, inputs[i], tolerance, counted)
+            done, step = self._go(here, inputs[i])
             if done < 1.0:
                 raise refusal("cannot be reached", i, here + done * (inputs[i] - here))
             here, steps[i], places[i], coordinates[i] = inputs[i], step, self.places(), self.coordinates
@@ -191,7 +225,7 @@ class Program(ABC):
                 if not missed <= HELD + step**2:
                     words = f"violates closures that are dependent in the drawing by {missed:.3g}"
                     raise refusal(words, i, inputs[i])
-        return self._named(inputs, coordinates, places, steps, counted)
+        return self._named(inputs, coordinates, places, steps)
 
     def rates(self, poses: Poses, series: Array) -> Rates:
         """Velocities and accelerations of poses.
@@ -202,7 +236,7 @@ class Program(ABC):
             NoAnswer: the rates are not determined at a pose; `partial` has those before.
         """
         count, names, bodies = len(poses.inputs), list(self.tree.moving), self.tree.knuckles
-        first, second = (np.empty((count, len(names) + len(bodies), 3)) for _ in range(2))
+        linear, angular = (np.empty((2, count, len(of), 3)) for of in (names, bodies))
         driven = self.tree.coordinates(series[:count])
         for i in range(count):
             self.put(poses.coordinates[i])
@@ -217,11 +251,14 @@ class Program(ABC):
                 raise error from None
             velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ driven[i, :, 1])
             acceleration[self.unknown] = -inverse @ self.apart(velocity, acceleration)[self.rows]
-            first[i], second[i] = self.moving(velocity, acceleration)
+            self.set_rates(velocity, acceleration)
+            for order in range(2):
+                linear[order, i] = self.rates_of(self.points, order + 1)[:, 0]
+                angular[order, i] = self.rates_of(self.bodies, order + 1)[:, 1]
         found: Rates = {}
-        for quantity, array in (("velocity", first), ("acceleration", second)):
-            found[quantity] = {name: array[:, k] for k, name in enumerate(names)}
-            found[f"angular_{quantity}"] = {body: array[:, k] for k, body in enumerate(bodies, len(names))}
+        for order, quantity in enumerate(("velocity", "acceleration")):
+            found[quantity] = {name: linear[order, :, k] for k, name in enumerate(names)}
+            found[f"angular_{quantity}"] = {body: angular[order, :, k] for k, body in enumerate(bodies)}
         return found
 
     def signs(self, jacobian: Array) -> Array:
@@ -237,7 +274,7 @@ class Program(ABC):
         coordinates[self.driven_at] = self.tree.coordinates(series)[:, 0]
         self.put(coordinates)
 
-    def _go(self, start: Array, goal: Array, tolerance: float, counted: Counter[str]) -> tuple[float, float]:
+    def _go(self, start: Array, goal: Array) -> tuple[float, float]:
         """Follow the inputs to a goal, by halves where Newton's method would step too far.
 
         Returns:
@@ -251,7 +288,7 @@ class Program(ABC):
         while done < 1.0:
             kept, share = self.coordinates, min(share, 1.0 - done)
             there = start + (done + share) * (goal - start) if done + share < 1.0 else goal
-            step = self._newton(there, tolerance, counted)
+            step = self._newton(there)
             if step is not None:
                 way, condition = self._way(there, goal - start)
             if step is None or self._turns_off(way, condition):
@@ -279,42 +316,33 @@ class Program(ABC):
             The rates, NaN at a singular pose, and the condition number of J_u.
         """
         driven = self.tree.coordinates(np.stack([inputs, rates, np.zeros(len(rates))], axis=-1))[:, 1]
-        jacobian, count = self.jacobian[self.rows], len(self.unknown)
-        if not count:
-            return driven, 1.0
+        jacobian = self.jacobian[self.rows]
         square = jacobian[:, self.unknown]
-        factors, _, unknown, info = dgesv(square, -jacobian[:, self.driven] @ driven)
-        if info:
-            return np.full(count + len(driven), np.nan), np.inf
-        inverse, _ = dgecon(factors, float(np.abs(square).sum(axis=0).max()))
-        return np.concatenate([unknown, driven]), 1.0 / max(inverse, UNIT_ROUNDOFF)
+        try:
+            unknown = np.linalg.solve(square, -jacobian[:, self.driven] @ driven)
+            condition = float(np.linalg.cond(square, 1)) if len(unknown) else 1.0
+        except np.linalg.LinAlgError:
+            return np.full(len(self.unknown) + len(driven), np.nan), np.inf
+        return np.concatenate([unknown, driven]), min(condition, 1.0 / UNIT_ROUNDOFF)
 
-    def _newton(
-        self, inputs: Array, tolerance: float, counted: Counter[str], shorten: bool = False
-    ) -> float | None:
+    def _newton(self, inputs: Array, shorten: bool = False) -> float | None:
         """Close the loops at inputs; the last step, None if it fails.
 
         Args:
             shorten: whether a step that is too long is shortened; if not, it fails.
         """
         self._at(inputs)
-        unknown, previous = self.unknown, np.inf
-        if not len(unknown):
-            self.jacobian = self.misses()[1]
-            return 0.0
-        step: Array | None = None
+        previous = np.inf
         for number in range(LIMIT):
-            missed, jacobian = self.misses()
-            self.jacobian = jacobian
-            if step is None:
-                step = np.zeros(jacobian.shape[1])
-            counted.update(factorisations=1, jacobians=1, residuals=1)
-            square = jacobian[self.rows][:, unknown]
-            _, _, solved, info = dgesv(square, -missed[self.rows])
-            if info:
+            missed, self.jacobian = self.misses()
+            step = np.zeros(self.jacobian.shape[1])
+            self.counted.update(factorisations=1, jacobians=1, residuals=1)
+            square = self.jacobian[self.rows][:, self.unknown]
+            try:
+                step[self.unknown] = np.linalg.solve(square, -missed[self.rows])
+            except np.linalg.LinAlgError:
                 return None
-            step[unknown] = solved
-            size = float(np.abs(solved).max())
+            size = float(np.abs(step).max())
             if not size <= LONGEST_STEP:
                 if not (shorten and np.isfinite(size)):
                     return None
@@ -322,8 +350,8 @@ class Program(ABC):
             elif number == 1 and size > CONTRACTED * previous and size > ROUNDING_STEP and not shorten:
                 return None
             self.move(step)
-            counted["newton_steps"] += 1
-            if size <= tolerance or (size < ROUNDING_STEP and size >= 0.5 * previous):
+            self.counted["newton_steps"] += 1
+            if size <= self.tolerance or (size < ROUNDING_STEP and size >= 0.5 * previous):
                 return size if (self.signs(square) == self.drawn).all() else None
             previous = size
         return None
@@ -365,15 +393,16 @@ class Program(ABC):
         )
 
     def _named(
-        self,
-        inputs: Array,
-        coordinates: Array,
-        places: Array,
-        steps: Sequence[float] | Array,
-        counted: Counter[str],
+        self, inputs: Array, coordinates: Array, places: Array, steps: Sequence[float] | Array
     ) -> Poses:
         named = {name: places[:, k] for k, name in enumerate(self.tree.moving)}
-        return Poses(inputs, coordinates, named, np.asarray(steps), dict(counted))
+        return Poses(inputs, coordinates, named, np.asarray(steps), dict(self.counted))
+
+
+def _apart(ends: Array) -> Array:
+    """First minus second side of each loop, (rows,), from vectors of all first and then all second sides."""
+    first, second = ends.reshape(2, -1)
+    return np.asarray(first - second)
 
 
 def independent_rows(jacobian: Array) -> Integers:

@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from flint import arb
 
 from validate.reference.car_data import car_data, corners
 from validate.reference.chassis import ChassisMotion
@@ -60,10 +59,11 @@ class Known:
         """Number of known time derivatives of the inputs."""
         return max((len(jet.parts) for jet in self.inputs.values()), default=3) - 1
 
-    def driven_at(self, name: str, rate: arb) -> Known:
-        """This instant with one input at a rate, rad/s or mm/s, and the others at rest; in balls."""
-        inputs = {one: Jet(jet.value, rate if one == name else arb(0)) for one, jet in self.inputs.items()}
-        return Known.of(self.mechanism, self.equations, inputs, as_ball)
+    def driven_at(self, name: str, rate: Scalar, exact: Exact) -> Known:
+        """This instant with one input at a rate, rad/s or mm/s, and the others at rest."""
+        rates = dict.fromkeys(self.inputs, rate * 0) | {name: rate}
+        inputs = {one: Jet(jet.value, jet.value * 0 + rates[one]) for one, jet in self.inputs.items()}
+        return Known.of(self.mechanism, self.equations, inputs, exact)
 
     def points_of(self, unknown: Sequence[Scalar]) -> dict[str, Vector]:
         """Position of every point, after the motion of the chassis."""

@@ -71,8 +71,6 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
             mechanism.row(name, products[i] - product)
     sine, cosine = mechanism.number(), mechanism.number()
     mechanism.row(name, products[0] * sine - products[1] * cosine)
-    # At the right angle theta, g1 cos(theta) + g2 sin(theta) / |n| is positive; half a turn off, negative.
-    mechanism.positive.append(products[0] * cosine * nn + products[1] * sine)
 
     def numbers(value: Jet, _: object, exact: Exact) -> list[Jet]:
         sin, cos = value.sin_cos()
@@ -162,7 +160,6 @@ def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
         return [lean, root(exact(r * r) - lean * lean * exact(share2))]
 
     lean, drop = mechanism.unknowns(2, read)
-    mechanism.positive.append(drop)
     mechanism.row(f"lean of {name}", lean - dot(minus(mechanism.place(centre), mechanism.place(inner)), seen))
     mechanism.row(f"contact of {name}", drop * drop + lean * lean * share2 - r * r)
     mechanism.row(name, dot(mechanism.place(centre), seen) + lift - drop - mechanism.number())

@@ -34,7 +34,7 @@ from flint import arb
 from validate.reference.car_data import DAMPER, KNUCKLE, RADIUS, TRAVEL, WHEEL
 from validate.reference.design import Design, Known
 from validate.reference.drives import compiled
-from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
+from validate.reference.effects.at_pose import drawn_car, drivers, provided
 from validate.reference.equations import equations_in
 from validate.reference.exact import as_ball
 from validate.reference.jet import Dual, slope_of
@@ -80,7 +80,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
     work, scale = [arb(0)] * mechanism.size, arb(0)
     for prefix, (force, moment) in design.loads.items():
         f, m = each(as_ball, force), times(each(as_ball, moment), as_ball(1 / design.unit))
-        car = car_at(drawn_car(design, as_ball, prefix), chassis, places)
+        car = drawn_car(design, as_ball, prefix).at(chassis, places)
         spoke = minus(car.contact, car.wheel.end)
         centre, body = design.role(prefix + WHEEL)[1], design.role(prefix + KNUCKLE)
         for j in range(mechanism.size):

@@ -20,6 +20,9 @@ and the rows are
                                                          R u . R' v - R v . R' u = 0, u, v across the line
     and the rows of the inputs: see `drives`
 
+The rows also hold for a hinge that is mounted the wrong way round, an angle that is off by half a turn, and a
+mirrored body. No path of regular poses leads there from the drawing.
+
 A point shared with an earlier body places a body, so its position is not an unknown, unless every joint is
 to have rows (see `loads`). The numbers w are functions of the inputs. All data of the drawing are exact.
 """
@@ -39,7 +42,7 @@ from validate.reference.car_data import directions
 from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
-from validate.reference.polynomial import Polynomial, ordered, polynomial
+from validate.reference.polynomial import Polynomial, polynomial
 from validate.reference.vectors import (
     Exact,
     Scalar,
@@ -110,9 +113,6 @@ class Mechanism:
         count: number of the numbers w.
         rows: C(y, w), each row with a name.
         frames: two vectors fixed in each moving body, not parallel.
-        positive: products that are positive in an assembly; otherwise a hinge is mounted the wrong way round,
-            or an angle is off by half a turn. Along a path no product passes zero at a regular pose. No
-            matrix R becomes a mirror image, because its rows hold from the drawing on.
         readers: functions that read the unknowns from assembled points, one after the other.
         drives: the inputs, without those that move the chassis.
         driving: for each of these, the last row with its numbers w.
@@ -142,7 +142,6 @@ class Mechanism:
         self.size, self.count = 0, 0
         self.rows: list[tuple[str, Polynomial]] = []
         self.readers: list[Reader] = []
-        self.positive: list[Polynomial] = []
         self.frames: dict[str, tuple[Vector, Vector]] = {}
         self.drives: dict[str, Drive] = {}
         self.driving: dict[str, int] = {}
@@ -194,11 +193,6 @@ class Mechanism:
         """The unknowns from the points as drawn, exact; the drawing need not satisfy the rows."""
         places = {name: each(as_ball, place) for name, place in self.table.items()}
         return [arb(number).mid() for number in self.unknown_of(places, self.drawn_numbers, as_ball)]
-
-    def handed(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> bool:
-        """Whether no hinge is the wrong way round in a solution, proven; see `positive`."""
-        values = ordered(unknown, numbers)
-        return all(polynomial(one).of_kind(as_ball).at(values) > 0 for one in self.positive)
 
     def unknowns(self, count: int, read: Reader) -> list[Polynomial]:
         """Add unknowns; `read` gives their values from points, earlier unknowns and the numbers w."""
@@ -284,7 +278,6 @@ class Mechanism:
         self.closing[both[1]] = len(self.rows), first, second
         for side in (first, second):
             self.row(f"hinge of {name} and {other}", dot(side, apart))
-        self.positive.append(dot(self.bodies[other].turned(axis), self.bodies[name].turned(axis)))
 
     def _hinged(self, name: str, a: str, b: str) -> Columns:
         """The columns of R of a body on a hinge of the chassis."""
@@ -388,7 +381,6 @@ class Mechanism:
         # The axis of the rotation between the bodies has no component along the line: a body drawn off the
         # line is rotated onto it by the smallest rotation.
         self.row(f"turn of {name}", dot(u, v2) - dot(v, u2))
-        self.positive.append(dot(u, u2))
 
 
 def of_kind(vector: Vector, number: Exact) -> Vector:

@@ -71,10 +71,7 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
             what = "the distance of the drawing from another assembly"
             allowed = f"at least {clearness:.3g} of the mechanism's size; {REMEDY}"
             raise NoReferenceError(what, f"is {clear:.3g}", allowed, clear)
-        pose = _led(path, pose, design, "closing the drawing")
-        if not mechanism.handed(pose.box, numbers):
-            raise NotDecidedError("the handedness of the solution found", "not positive", "> 0")
-        return Assembly({}, pose)
+        return Assembly({}, _led(path, pose, design, "closing the drawing"))
 
     return with_more_digits(attempt, DIGITS)
 

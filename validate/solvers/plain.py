@@ -43,7 +43,7 @@ from pointcoord.wording import meant, shown
 from validate.arrays import Array
 from validate.errors import UsageError
 from validate.formulations.asked_numbers import asked_numbers, known_names
-from validate.formulations.protocol import Accuracy, FormulationError, Solution
+from validate.formulations.protocol import Accuracy, FormulationError, Solution, refusing
 from validate.plain_text import named
 
 Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
@@ -155,16 +155,10 @@ class PlainSolver:
             FormulationError: the solver raises an error (SolverFailed), or does not return a mapping.
         """
         given = given_to_solver(scene)
-        try:
-            answer = self.function(given)
-        except SolverFailed as error:
-            raise FormulationError(self.name, error) from error
-        except (Exception, SystemExit) as error:
-            raise FormulationError(self.name, SolverFailed(named(error), raised_at(error))) from error
-        if not isinstance(answer, Mapping):
-            raise FormulationError(self.name, SolverFailed(no_mapping(answer)))
+        with refusing(self.name, SolverFailed):
+            answer = self._answer(given)
+            times = _times(answer, scene)
         numbers, notes, faults = _numbers(self.name, answer, scene)
-        times = self._times(answer, scene)
         accuracy, why_not = self._accuracy(scene)
         # Times that are not instants of the scene are not compared.
         places = np.clip(np.searchsorted(scene.instants, times), 0, len(scene.instants) - 1)
@@ -182,21 +176,29 @@ class PlainSolver:
             note = f"no tolerance can be derived for {self.name}, so nothing is tested: {error}"
             return Accuracy(np.ones(len(every)), blind=every, stated=self.accuracy), (note,)
 
-    def _times(self, answer: Mapping[str, Any], scene: Scene) -> Array:
-        if INSTANTS not in answer:
-            return scene.instants
+    def _answer(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
         try:
-            times = np.asarray(answer[INSTANTS], dtype=float)
-        except (ValueError, TypeError) as error:
-            raise FormulationError(
-                self.name, SolverFailed(f"its {INSTANTS} are not numbers ({error})")
-            ) from error
-        if times.ndim != 1 or not np.isin(times, scene.instants).any():
-            problem = f"its {INSTANTS} have the shape {times.shape} and include no instant of the scene"
-            raise FormulationError(
-                self.name, SolverFailed(f"{problem}; needed: shape (M,), with instants that were given")
-            )
-        return times
+            answer = self.function(given)
+        except SolverFailed:
+            raise
+        except (Exception, SystemExit) as error:
+            raise SolverFailed(named(error), raised_at(error)) from error
+        if not isinstance(answer, Mapping):
+            raise SolverFailed(no_mapping(answer))
+        return answer
+
+
+def _times(answer: Mapping[str, Any], scene: Scene) -> Array:
+    if INSTANTS not in answer:
+        return scene.instants
+    try:
+        times = np.asarray(answer[INSTANTS], dtype=float)
+    except (ValueError, TypeError) as error:
+        raise SolverFailed(f"its {INSTANTS} are not numbers ({error})") from error
+    if times.ndim != 1 or not np.isin(times, scene.instants).any():
+        problem = f"its {INSTANTS} have the shape {times.shape} and include no instant of the scene"
+        raise SolverFailed(f"{problem}; needed: shape (M,), with instants that were given")
+    return times
 
 
 def _numbers(

@@ -146,37 +146,15 @@ class _Cutter:
             for p in slide["points"]:
                 if p in self.free:
                     self.at[p] = self._foot(slide, p)
-        self.sliding_rods = self._sliding_rods()
         self.rods_made: dict[str, Array] = {}
         self.loops: list[Loop] = []
         self.driven: list[Driven] = []
 
-    def _sliding_rods(self) -> dict[str, tuple[str, str, str, Array]]:
-        """Rods along a slide's line with one end at a point of a body: the rod slides with its other end.
-
-        Returns:
-            For each rod its slide, the end at the body, the other end, and the first end's foot on the line.
-        """
-        found: dict[str, tuple[str, str, str, Array]] = {}
-        for rod, ends in self.rods.items():
-            for p, q in (ends, reversed(ends)):
-                on = [name for name, slide in self.slides.items() if q in slide["points"]]
-                taken = {(name, held) for name, held, _, _ in found.values()}
-                if len(on) != 1 or q not in self.free or p in self.free or (on[0], p) in taken:
-                    continue
-                slide = self.slides[on[0]]
-                if p in slide["points"]:
-                    reach, axis = self.drawn[q] - self.drawn[p], self._line(slide)[1]
-                    foot, length = self._foot(slide, p), float(np.linalg.norm(reach))
-                    found[rod] = on[0], p, q, foot
-                    self.at[q] = foot + math.copysign(length, float(reach @ axis)) * axis
-        return found
-
     def tree(self) -> SpanningTree:
         edges = self._edges()
         self.taken = self._taken(edges)
-        self.hung = self._joints()
-        self.joints = list(self.hung)
+        self.made: dict[tuple[str, frozenset[str]], list[Joint]] = {}
+        self.joints = self._joints()
         depth = {CHASSIS: 0}
         for joint in self.joints:
             depth[joint.body] = depth[joint.parent] + COORDINATES[joint.kind]
@@ -280,7 +258,7 @@ class _Cutter:
         return [edge for edge in ways if _merge(groups, *edge.bodies)]
 
     def _joints(self) -> list[Joint]:
-        """Joints from the chassis outwards."""
+        """Joints from the chassis outwards; `made` has those of each edge, by its slide and its bodies."""
         joints: list[Joint] = []
         reached = [CHASSIS]
         while True:
@@ -290,7 +268,9 @@ class _Cutter:
                     if child is not None and child not in reached:
                         names = [*(f"{child} slide" for _ in edge.kinds[1:]), child]
                         links = zip(names, edge.kinds, repeat(edge.axis))  # as many as names
-                        joints += _in_a_row(parent, self.at[edge.points[0]], links)
+                        made = _in_a_row(parent, self.at[edge.points[0]], links)
+                        self.made[edge.slide, frozenset(edge.bodies)] = made
+                        joints += made
                         reached.append(child)
             left = [body for body in self.bodies if body not in reached]
             if not left:
@@ -327,18 +307,14 @@ class _Cutter:
                     self._on_line(f"closure {number} {p}", p, first, second, edge.axis)
                 else:
                     self.loops.append(Loop(p, first, second))
-        on_rods = {(slide, p) for slide, p, _, _ in self.sliding_rods.values()}
         for name, slide in self.slides.items():
             axis = self._line(slide)[1]
             through = Place(slide["body"], self.at[slide["through"]])
             for body, points in self._sliding(slide).items():
-                if self._hangs_by(name, body):
+                if (name, frozenset((slide["body"], body))) in self.made:
                     continue
                 for p in points[:2]:
-                    if (name, p) not in on_rods:
-                        self._on_line(
-                            f"closure {next(numbers)} {p}", p, Place(body, self.at[p]), through, axis
-                        )
+                    self._on_line(f"closure {next(numbers)} {p}", p, Place(body, self.at[p]), through, axis)
                 if len(points) > 1 and not slide["turns"]:
                     # Two places of the body stay level: its frame's origin, and one along u, rotated by the
                     # smallest rotation of the slide's line onto the body's line.
@@ -348,12 +324,8 @@ class _Cutter:
                     ends = Place(body, start), Place(body, start + turned_least(u, axis, own))
                     self._level(f"closure {next(numbers)} {name}", name, slide["body"], v, *ends)
         for name, (one, other) in self.rods.items():
-            length, number = self._distance(one, other, f"{name} has no length"), next(numbers)
-            if name in self.sliding_rods:
-                _, p, q, foot = self.sliding_rods[name]
-                self.loops.append(Loop(p, self.points[p], Place(self.free[q], foot)))
-            else:
-                self._rod(f"closure {number} {name}", name, self.points[one], self.points[other], length)
+            length = self._distance(one, other, f"{name} has no length")
+            self._rod(f"closure {next(numbers)} {name}", name, self.points[one], self.points[other], length)
 
     def _distance(self, one: str, other: str, without: str) -> float:
         length = float(np.linalg.norm(self.drawn[one] - self.drawn[other]))
@@ -427,21 +399,10 @@ class _Cutter:
             length = self._distance(q, p, f"{name} has no direction")
             self._rod(label, name, self.points[p], self.points[q], length, True)
 
-    def _hangs_by(self, slide: str, body: str) -> bool:
-        """Whether the joint of a body on a slide is in the tree."""
-        return any(edge.slide == slide and body in edge.bodies for edge in self.taken)
-
-    def _between(self, kind: Kind, one: str, other: str) -> Joint | None:
-        """The joint of a kind between two bodies, if it is in the tree."""
-        for joint in self.hung:
-            if joint.kind == kind and {joint.body.removesuffix(" slide"), joint.parent} == {one, other}:
-                return joint
-        return None
-
     def _turn(self, name: str, given: Mapping[str, Any]) -> None:
         body, on = given["angle"], given.get("on", CHASSIS)
-        joint = self._between("hinge", body, on)
-        if joint is None:
+        (joint,) = self.made.get(("", frozenset((body, on))), [None])
+        if joint is None or joint.kind != "hinge":
             words = f"turns {body} on {on}, which is not a hinge of the tree"
             raise NoAnswer(name, words, "a hinge in no closed loop")
         p, q = (p for p in self.bodies[body] if p in self.bodies[on])
@@ -462,11 +423,12 @@ class _Cutter:
         through, size = self.drawn[slide["through"]], float(axis @ axis)
         drawn = float((self.drawn[p] - through) @ axis) / size
         holder = next(iter(self._sliding(slide)))
-        joint = self._between("slide", holder, body) if self._hangs_by(slide_name, holder) else None
-        if joint is None:
+        made = self.made.get((slide_name, frozenset((holder, body))))
+        if made is None:
             ends = Place(holder, self.at[p]), Place(body, through)
             self._height(label, name, "length", ends, axis, body, size, drawn, per_input)
             return
+        joint = made[0]  # the slide, before a hinge
         # Its coordinate is measured from the reference pose.
         scale = (1.0 if joint.parent == body else -1.0) / float(np.linalg.norm(axis))
         start = float((self.at[p] - through) @ axis)

@@ -118,7 +118,7 @@ class SpanningTree:
     origin: Array
     unit: float
 
-    @property
+    @cached_property
     def moving(self) -> dict[str, Place]:
         """The points that are not of the chassis."""
         return {name: place for name, place in self.points.items() if place.body != CHASSIS}
@@ -128,6 +128,13 @@ class SpanningTree:
         """The bodies that carry a wheel, whose rotation is reported."""
         roles = self.plain["roles"]
         return tuple(dict.fromkeys(roles[role] for role in roles if role.rpartition(".")[2] == "knuckle"))
+
+    @cached_property
+    def sites(self) -> tuple[Place, ...]:
+        """The moving points, the first and the second sides of all loops, and the origins of the knuckles."""
+        first, second = ([getattr(loop, side) for loop in self.loops] for side in ("first", "second"))
+        bodies = (Place(body, self.frames[body][0]) for body in self.knuckles)
+        return (*self.moving.values(), *first, *second, *bodies)
 
     @cached_property
     def frames(self) -> Mapping[str, tuple[Array, Array]]:

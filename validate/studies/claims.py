@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from pointcoord import SceneError
@@ -20,11 +21,11 @@ from validate.cars.random_scenes import SEED, random_scene
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import FormulationError
 from validate.formulations.reference_solution import (
-    DUST,
     as_solution,
+    exact_numbers,
     off_by,
+    proven_error,
     reference_motion,
-    scales,
     told_by,
 )
 from validate.formulations.registry import formulation
@@ -62,16 +63,15 @@ def scene_rows(task: Task, name: str) -> list[Row]:
     reference = as_solution(scene, instants)
     rows: list[Row] = []
     for quantity, names in told_by(reference, scene).items():
-        # The error of the reference is relative to the largest numbers from which a number is computed.
-        dust, of_car = DUST * scales(reference.numbers)[quantity], QUANTITIES[quantity].of == "car"
+        proven = proven_error(instants, quantity)
         for one in (n for n in solution.numbers[quantity] if n in names):
             numbers = solution.numbers[quantity][one].reshape(len(instants), -1)
             claimed = solution.accuracy.claims[quantity][one].reshape(len(instants), -1)
             for ours, claim, instant in zip(numbers, claimed, instants, strict=True):
-                exact = [instant.effects[one]] if of_car else list(getattr(instant, quantity)[one])
+                exact = np.ravel(np.array(exact_numbers(instant, quantity)[one], dtype=object))
                 errors = [off_by(a, b) for a, b in zip(ours, exact, strict=True)]
                 rows += [
-                    {**of_all, "quantity": quantity, "error": e if e > dust else 0.0, "claim": float(c)}
+                    {**of_all, "quantity": quantity, "error": e if e > proven else 0.0, "claim": float(c)}
                     for e, c in zip(errors, claim, strict=True)
                 ]
     return rows or [of_all]

@@ -30,7 +30,7 @@ from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.results import proof
-from validate.formulations.reference_solution import DUST, inputs_at, reference_instant
+from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.reference.exact import as_fraction
 
 # u u + 2 u p = q: one unknown, whose error counts by its square, and two known numbers.
@@ -139,9 +139,9 @@ def scene_holds(name: str) -> bool:
                 reported, bounds, expected = (np.atleast_1d(array[k]).tolist() for array in kept)
                 for value, bound, most, x in zip(reported, bounds, expected, own[part], strict=True):
                     # A double less a fraction would be rounded to a double: both are made fractions.
-                    # The reference has some 60 digits, and a proof rounds by some u^2.
+                    # The reference has 60 digits, and a proof rounds by some u^2.
                     right = as_fraction(x, part)
-                    off = abs(Fraction(value) - right) - Fraction(DUST) * (1 + abs(right))
+                    off = abs(Fraction(value) - right) - Fraction(1, 10**50) * (1 + abs(right))
                     if not off <= bound <= most + 1e-24:
                         return False
     return True

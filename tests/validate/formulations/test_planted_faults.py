@@ -104,7 +104,7 @@ def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
 
 def _loops_at_rest(patch: pytest.MonkeyPatch) -> None:
     """What the loops' sides accelerate apart by is left out: no Coriolis terms."""
-    patch.setattr(InPinocchio, "apart", lambda program, *_: np.zeros(3 * len(program.sides[0])))
+    patch.setattr(InPinocchio, "apart", lambda program, *_: np.zeros(3 * len(program.tree.loops)))
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,11 @@ from pointcoord.method import Method
 from pointcoord.results.proof import Proof
 from validate.cars.car import Car
 from validate.cars.input_ends import end
-from validate.cars.paper_car import PAPER
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
 
-STRUT = Car(dict(PAPER), "left", closure="collinear")
+STRUT = Car(Scene.load("bounce").mechanism.points, "left", closure="collinear")
 
 
 def rack_to_its_end(short: float, tolerance: float = 1e-9) -> Scene:

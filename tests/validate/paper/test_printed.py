@@ -12,7 +12,6 @@ from pointcoord.mechanism import mechanism_file
 from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.numerics.arrays import Array
 from pointcoord.solve.pointwise import square_velocity_term
-from validate.cars.paper_car import PAPER
 from validate.paper.printed import (
     PRINTED,
     QUOTIENTS,
@@ -21,6 +20,7 @@ from validate.paper.printed import (
     printed_square_velocity_term,
 )
 
+PAPER = Scene.load("bounce").mechanism.points
 COLLINEAR = mechanism_file("macpherson").topology(PAPER, "collinear")
 
 EPS = np.finfo(float).eps

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 
 from flint import arb
 
 from validate.reference.car_data import KNUCKLE, LINES, PAIR, RACK, ROLL, TIME, TRAVEL
-from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
 from validate.reference.drives import travel_per_radian
-from validate.reference.effects.car import Car, DrawnCar, Effect, Line, lines_of
+from validate.reference.effects.car import Car, Effect
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import value_of
 from validate.reference.kinematics import Solved, with_rates
-from validate.reference.vectors import Exact, Vector
+from validate.reference.vectors import Exact
 
 
 @dataclass(frozen=True)
@@ -41,16 +41,24 @@ def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
     Raises:
         NoReferenceError: there is no such effect.
     """
+    for name in names:
+        if name.rpartition(".")[2] not in EFFECTS:
+            raise NoReferenceError("effect", f"is {name!r}", "a name of `effects.registry`")
+    return numbers_with(design.corners, {part: provided(design, part) for part in design.corners}, names)
+
+
+def numbers_with(
+    corners: Mapping[str, int], has: Mapping[str, Collection[str]], names: Iterable[str]
+) -> tuple[Number, ...]:
+    """The numbers of these names for which parts, by prefix, have what is needed (see `Effect.needs`)."""
     found: dict[str, Number] = {}
     for name in names:
         part, dot, base = name.rpartition(".")
-        if base not in EFFECTS:
-            raise NoReferenceError("effect", f"is {name!r}", "a name of `effects.registry`")
-        effect, pair = EFFECTS[base], pair_of(design.corners)
+        effect, pair = EFFECTS[base], pair_of(corners)
         of_both = ((name, pair),) if pair else ()
-        of_each = ((prefix + base, (prefix,)) for prefix in ([part + dot] if dot else design.corners))
+        of_each = ((prefix + base, (prefix,)) for prefix in ([part + dot] if dot else corners))
         for label, prefixes in of_both if PAIR in effect.needs else of_each:
-            if all(effect.of(provided(design, prefix) | {PAIR}) for prefix in prefixes):
+            if all({*effect.needs} <= {*has[prefix], PAIR} for prefix in prefixes):
                 found[label] = Number(label, effect, prefixes)
     return tuple(found.values())
 
@@ -61,9 +69,9 @@ def pair_of(corners: Mapping[str, int]) -> tuple[str, ...]:
     return both if [corners[prefix] for prefix in both] == [-1, 1] else ()
 
 
-def drawn_car(design: Design, number: Exact, prefix: str = "") -> DrawnCar:
+def drawn_car(design: Design, number: Exact, prefix: str = "") -> Car:
     """The corner of a part as drawn, local; `number` converts a fraction to the poses' kind of number."""
-    return DrawnCar.of(design.plain, prefix, design.table, design.origin, design.unit, number)
+    return Car.of(design.plain, prefix, design.table, design.origin, design.unit, number)
 
 
 def drivers(design: Design, prefix: str = "") -> dict[str, str]:
@@ -85,23 +93,20 @@ def provided(design: Design, prefix: str = "") -> frozenset[str]:
     return frozenset({*lines, *drivers(design, prefix), *design.car, *knuckle})
 
 
-def car_at(
-    drawn: DrawnCar,
-    chassis: ChassisMotion,
-    places: Mapping[str, Vector],
-    knuckle: tuple[Vector, Vector] | None = None,
-) -> Car:
-    """The car at a pose, local.
+def driven_along(design: Design, known: Known, prefix: str, along: str, exact: Exact) -> Known:
+    """The motion by which a number of a part is differentiated (see `Effect.along`); by time, the given one.
 
     Args:
-        chassis: its motion, with slopes if the places have slopes.
-        places: positions of the lines' points, relative to the chassis.
-        knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
+        known: as jets of any kind of number; `exact` converts a fraction to this kind.
     """
-    turning, lines = replace(chassis, rise=None), lines_of(drawn.ends, places)
-    turned = {role: Line(turning.moved(one.start), turning.moved(one.end)) for role, one in lines.items()}
-    frame = None if knuckle is None else (turning.turned(knuckle[0]), turning.turned(knuckle[1]))
-    return Car(drawn, turned, lines, frame)
+    if along == TIME:
+        return known
+    # A slide is driven in the design's unit of length, which is also the car's.
+    driver = drivers(design, prefix)[along]
+    rate = exact(design.unit if along == RACK else Fraction(1))
+    if "steers" in design.plain["inputs"][driver]:
+        rate /= travel_per_radian(design.plain, exact)
+    return known.driven_at(driver, rate, exact)
 
 
 def effects_at(
@@ -122,18 +127,11 @@ def effects_at(
         drawn, body = drawn_car(design, as_ball, prefix), design.role(prefix + KNUCKLE)
         if along is None:
             places = equations.points_of(enclosure, drawn.points)
-            return car_at(drawn, known.chassis.still(), places)
-        driven = known
-        if along != TIME:
-            # A slide is driven in the design's unit of length, which is also the car's.
-            driver = drivers(design, prefix)[along]
-            rate = unit if along == RACK else arb(1)
-            if "steers" in design.plain["inputs"][driver]:
-                rate /= travel_per_radian(design.plain)
-            driven = known.driven_at(driver, rate)
+            return drawn.at(known.chassis.still(), places)
+        driven = driven_along(design, known, prefix, along, as_ball)
         pose = with_rates(enclosure, driven, solver, 1)
         frame = equations.frame_of(pose, body) if body in equations.frames else None
-        return car_at(drawn, driven.chassis.with_slopes(), equations.points_of(pose, drawn.points), frame)
+        return drawn.at(driven.chassis.with_slopes(), equations.points_of(pose, drawn.points), frame)
 
     found = {}
     for number in numbers:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 from validate.reference.car_data import LENGTHS, LINES, RADIUS, WHEEL, car_data, corners
+from validate.reference.chassis import ChassisMotion
 from validate.reference.vectors import Exact, Scalar, Vector, cross, dot, each, length, minus, times
 
 
@@ -40,10 +41,6 @@ class Effect:
         above, below = (int(part in ("mm", "N")) for part in f"{self.unit}/".split("/")[:2])
         return above - below
 
-    def of(self, has: Collection[str]) -> bool:
-        """Whether a car with these properties has the number."""
-        return {*self.needs} <= {*has}
-
 
 @dataclass(frozen=True)
 class Line:
@@ -59,25 +56,32 @@ class Line:
 
 
 @dataclass(frozen=True)
-class DrawnCar:
-    """A corner as drawn, with data of the car; all lengths in one unit.
+class Car:
+    """A corner of the car, as drawn or at a pose; all lengths in one unit, without the chassis' displacement.
 
     Attributes:
         ends: the two points of each of `LINES` that a role names: inner point and centre of the wheel, lower
             and upper point of the steering axis, ends of the damper.
-        lines: the lines as drawn, before closing.
-        up, forward, outboard: unit vectors; forward is up x right, outboard leads away from the car's middle.
+        lines: these lines, after the turns of the chassis.
+        on_chassis: the lines before the turns of the chassis.
+        up, forward, outboard: unit vectors, which do not turn with the chassis; forward is up x right,
+            outboard leads away from the car's middle.
         origin: origin of the user's coordinates, a point of the car's middle plane.
         data: data of the whole car, see `car_data`.
+        knuckle: two vectors fixed in the wheel's carrier, after the turns of the chassis; None if not given.
+        drawing: the corner as drawn, before closing; None if this is it.
     """
 
     ends: Mapping[str, tuple[str, str]]
     lines: Mapping[str, Line]
+    on_chassis: Mapping[str, Line]
     up: Vector
     forward: Vector
     outboard: Vector
     origin: Vector
     data: Mapping[str, Scalar]
+    knuckle: tuple[Vector, Vector] | None = None
+    drawing: Car | None = None
 
     @classmethod
     def of(
@@ -88,8 +92,8 @@ class DrawnCar:
         origin: Vector,
         unit: Any,
         number: Exact,
-    ) -> DrawnCar:
-        """The corner of a description whose names have a prefix.
+    ) -> Car:
+        """The corner of a description whose names have a prefix, as drawn.
 
         Args:
             points: as drawn, (p - origin) / unit.
@@ -97,11 +101,12 @@ class DrawnCar:
         """
         named = {role: plain["roles"].get(prefix + role) for role in LINES}
         ends = {role: (points[0], points[1]) for role, points in named.items() if points is not None}
-        drawn = {name: each(number, points[name]) for both in ends.values() for name in both}
+        lines = {role: Line(*(each(number, points[name]) for name in both)) for role, both in ends.items()}
         up, right = plain["up"], plain["right"]
         return cls(
             ends=ends,
-            lines=lines_of(ends, drawn),
+            lines=lines,
+            on_chassis=lines,
             up=each(number, up),
             forward=each(number, cross(up, right)),
             outboard=each(number, times(right, corners(plain)[prefix])),
@@ -109,47 +114,34 @@ class DrawnCar:
             data={k: number(x / unit if k in LENGTHS else x) for k, x in car_data(plain).items()},
         )
 
+    def at(
+        self,
+        chassis: ChassisMotion,
+        places: Mapping[str, Vector],
+        knuckle: tuple[Vector, Vector] | None = None,
+    ) -> Car:
+        """The drawn corner at a pose.
+
+        Args:
+            chassis: its motion, with slopes if the places have slopes.
+            places: positions of the lines' points, relative to the chassis.
+            knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
+        """
+        turning = replace(chassis, rise=None)
+        lines = {role: Line(places[start], places[end]) for role, (start, end) in self.ends.items()}
+        turned = {role: Line(turning.moved(one.start), turning.moved(one.end)) for role, one in lines.items()}
+        frame = None if knuckle is None else (turning.turned(knuckle[0]), turning.turned(knuckle[1]))
+        return replace(self, lines=turned, on_chassis=lines, knuckle=frame, drawing=self)
+
+    @property
+    def drawn(self) -> Car:
+        """The corner as drawn."""
+        return self if self.drawing is None else self.drawing
+
     @property
     def points(self) -> tuple[str, ...]:
         """The points of its lines."""
         return tuple(dict.fromkeys(point for ends in self.ends.values() for point in ends))
-
-    @property
-    def contact(self) -> Vector:
-        """The contact point as drawn."""
-        return contact_of(self, self.lines[WHEEL])
-
-
-@dataclass(frozen=True)
-class Car:
-    """A pose of a corner. Its lines do not include the displacement of the chassis.
-
-    Attributes:
-        drawn: the corner in the drawing; its unit vectors do not turn with the chassis.
-        lines: the lines after the turns of the chassis.
-        on_chassis: the lines before the turns of the chassis.
-        knuckle: two vectors fixed in the wheel's carrier, after the turns of the chassis; None if not given.
-    """
-
-    drawn: DrawnCar
-    lines: Mapping[str, Line]
-    on_chassis: Mapping[str, Line]
-    knuckle: tuple[Vector, Vector] | None = None
-
-    @property
-    def up(self) -> Vector:
-        """Unit vector."""
-        return self.drawn.up
-
-    @property
-    def forward(self) -> Vector:
-        """Unit vector."""
-        return self.drawn.forward
-
-    @property
-    def outboard(self) -> Vector:
-        """Unit vector."""
-        return self.drawn.outboard
 
     @property
     def is_right(self) -> bool:
@@ -163,20 +155,15 @@ class Car:
 
     @property
     def contact(self) -> Vector:
-        """The contact point, see `contact_of`."""
-        return contact_of(self.drawn, self.wheel)
+        """The contact point."""
+        return self.contact_of(self.wheel)
 
+    def contact_of(self, wheel: Line) -> Vector:
+        """The lowest point of the wheel as a thin disc about a spin axis a: c = W - R m / |m| with
+        m = up (a . a) - a (a . up).
 
-def lines_of(ends: Mapping[str, tuple[str, str]], points: Mapping[str, Vector]) -> dict[str, Line]:
-    """The lines through these points."""
-    return {role: Line(points[start], points[end]) for role, (start, end) in ends.items()}
-
-
-def contact_of(drawn: DrawnCar, wheel: Line) -> Vector:
-    """The lowest point of a thin disc about a spin axis a: c = W - R m / |m|, m = up (a . a) - a (a . up).
-
-    m is the component of `up` in the disc's plane, times a . a.
-    """
-    a, up = wheel.along, drawn.up
-    across = minus(times(up, dot(a, a)), times(a, dot(a, up)))
-    return minus(wheel.end, times(across, drawn.data[RADIUS] / length(across)))
+        m is the component of `up` in the disc's plane, times a . a.
+        """
+        a, up = wheel.along, self.up
+        across = minus(times(up, dot(a, a)), times(a, dot(a, up)))
+        return minus(wheel.end, times(across, self.data[RADIUS] / length(across)))

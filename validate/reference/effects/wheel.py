@@ -15,7 +15,7 @@ from math import nan
 import numpy as np
 
 import validate.reference.car_data as data
-from validate.reference.effects.car import Car, Effect, contact_of
+from validate.reference.effects.car import Car, Effect
 from validate.reference.jet import angle, slope_of, value_of
 from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, plus, root, times
@@ -62,7 +62,7 @@ def _travel(car: Car) -> Scalar:
 
 def _contact_travel(car: Car) -> Scalar:
     """(c - drawn c) . up, before the turns of the chassis."""
-    return dot(minus(contact_of(car.drawn, car.on_chassis[data.WHEEL]), car.drawn.contact), car.up)
+    return dot(minus(car.contact_of(car.on_chassis[data.WHEEL]), car.drawn.contact), car.up)
 
 
 def _contact_moved(car: Car, along: Vector) -> Scalar:
@@ -129,10 +129,15 @@ def _turning(car: Car) -> Vector:
     return body_rates(*car.knuckle, 1)[0]
 
 
-def velocity_of_contact(car: Car) -> Vector:
-    """v = W' + omega x (c - W)."""
-    arm = minus(_values(car.contact), _values(car.wheel.end))
+def _velocity(car: Car, place: Vector) -> Vector:
+    """Of the carrier's point at a place p: W' + omega x (p - W)."""
+    arm = minus(_values(place), _values(car.wheel.end))
     return plus(_slopes(car.wheel.end), cross(_turning(car), arm))
+
+
+def velocity_of_contact(car: Car) -> Vector:
+    """v."""
+    return _velocity(car, car.contact)
 
 
 def _roll_centre(car: Car, v: Vector) -> Scalar:
@@ -147,11 +152,11 @@ def _roll_centre(car: Car, v: Vector) -> Scalar:
 
 def _arm_roll_centre_height(car: Car) -> Scalar:
     """The roll centre with an added turn f k about the steering axis that makes the motion a pure rotation:
-    (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
+    (omega + f k) . u = 0 with u the velocity at the axis' lower point.
     """
     axis, omega = car.lines[data.STEERING], _turning(car)
     lower, k = _values(axis.start), _values(axis.along)
-    u = plus(_slopes(car.wheel.end), cross(omega, minus(lower, _values(car.wheel.end))))
+    u = _velocity(car, axis.start)
     turn = minus(omega, times(k, dot(omega, u) / dot(k, u)))
     return _roll_centre(car, plus(u, cross(turn, minus(_values(car.contact), lower))))
 
