@@ -7,7 +7,7 @@ by row: a pair of a quantity and a point, body or angle.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -19,7 +19,7 @@ from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import finest_tolerance
-from validate.arrays import Array, Flags, Indices
+from validate.arrays import Array, Flags
 from validate.comparison.compare import Outcome
 from validate.comparison.given import given_by_both
 from validate.comparison.pair import SMALLEST, Pair, gaps_between
@@ -65,6 +65,8 @@ WouldBe = tuple[Array, Array]
 CLEAR = 4.0
 FEW = 25  # number of instants of a first look
 DECIMALS = 7  # a round number has fewer decimals
+# A tolerance of numbers that may be anything; finite, because it is multiplied by zeros of a matrix.
+ANY = 1e100
 # Differences below this share of a quantity's largest number are rounding, whatever the error bounds are.
 ROUNDING = 64.0 * EPS
 
@@ -152,7 +154,6 @@ class Evidence:
         over_time: whether the instants are times; otherwise they are rows of a file over inputs or travels.
         other_cars: whether the instants are those of the scene, so that other cars can be solved there.
         own: further errors of the given numbers, such as their rounding, in their unit; added to `allowed`.
-        known: positions of points, (N, 3), in addition to the rows.
         units: unit of given amounts in words, and its factor to our unit, if not that of the quantity.
         labels: the instants in words, such as lines of a file; their times if empty.
     """
@@ -167,7 +168,6 @@ class Evidence:
     over_time: bool = True
     other_cars: bool = True
     own: Rows = field(default_factory=dict)
-    known: Mapping[str, Array] = field(default_factory=dict)
     units: Mapping[Row, tuple[str, float]] = field(default_factory=dict)
     labels: Sequence[str] = ()
 
@@ -186,48 +186,29 @@ class Evidence:
         wrong = tuple(row for row in rows if row in disagree)
         return cls(scene, times, theirs, trusted, allowed, wrong, Solved(scene))
 
-    def at(self, places: slice | Indices, theirs: slice | None = None) -> Evidence:
-        """The evidence at some instants; the given numbers are taken at `theirs` instead, if given."""
-
-        def of(rows: Rows, some: slice | Indices = places) -> Rows:
-            return {row: array[some] for row, array in rows.items()}
-
-        return replace(
-            self,
-            times=self.times[places],
-            given=of(self.given, places if theirs is None else theirs),
-            held=of(self.held),
-            allowed=of(self.allowed),
-            own=of(self.own),
-            known={point: path[places] for point, path in self.known.items()},
-        )
-
     @cached_property
     def few(self) -> Evidence:
         """The evidence at a few evenly chosen instants, for a first look."""
         last = len(self.times) - 1
-        return self.at(np.unique(np.linspace(0, last, min(FEW, last + 1)).astype(np.intp)))
+        places = np.unique(np.linspace(0, last, min(FEW, last + 1)).astype(np.intp))
+
+        def of(rows: Rows) -> Rows:
+            return {row: array[places] for row, array in rows.items()}
+
+        return replace(
+            self,
+            times=self.times[places],
+            given=of(self.given),
+            held=of(self.held),
+            allowed=of(self.allowed),
+            own=of(self.own),
+        )
 
     def after(self, rows: Mapping[Row, WouldBe], wrong: tuple[Row, ...]) -> Evidence:
         """The evidence with other trusted numbers for some rows, and other rows to explain."""
         held = {**self.held, **{row: value for row, (value, _) in rows.items()}}
         allowed = {**self.allowed, **{row: width for row, (_, width) in rows.items()}}
         return replace(self, held=held, allowed=allowed, wrong=wrong)
-
-    def undone(self, rows: Collection[Row], undo: Callable[[Row, Array], Array]) -> Evidence:
-        """The evidence with a fault undone in the given numbers of some rows, and in the vectors of their
-        quantities.
-
-        Its wrong rows are those that still disagree.
-        """
-        quantities = {row.quantity for row in rows if row.of != "car"}
-        given = {
-            row: undo(row, array) if row in rows or row.quantity in quantities else array
-            for row, array in self.given.items()
-        }
-        there = replace(self, given=given)
-        wrong = (row for row, held in self.held.items() if there.left(row, held, self.allowed[row]) > 1.0)
-        return replace(there, wrong=tuple(wrong))
 
     def unit_of(self, row: Row) -> tuple[str, float]:
         """The unit in which amounts of a row are reported, and its factor to our unit."""
@@ -294,7 +275,9 @@ class Evidence:
         counts = []
         for numbers in (held, given):
             # Two numbers are distinct if they differ by more than both their tolerances.
-            step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(numbers).max(initial=0.0)))
+            step = max(
+                4.0 * float(allowed[off].max(initial=0.0)), 1e-9 * float(np.abs(numbers).max(initial=0.0))
+            )
             apart = (axis[there & np.isfinite(axis)] for axis, there in zip(numbers.T, off.T, strict=True))
             counts.append(sum(max(len(np.unique(np.floor(some / step))) - 1, 0) for some in apart))
         return min(counts)
@@ -318,9 +301,9 @@ class Evidence:
     def places(self, point: str) -> Array | None:
         """The position of a point, (N, 3), even if the scene does not report it; None if not solvable."""
         (row,) = (row for quantity in QUANTITIES if (row := Row(quantity, point)).is_place)
-        if point in self.known or row in self.held:
-            return self.known.get(point, self.held.get(row))
-        motion = self.solved.motion if self.over_time else None
+        if row in self.held:
+            return self.held[row]
+        motion = self.solved.motion if self.other_cars else None
         return None if motion is None else np.asarray(motion.at(self.times).numbers[row.quantity][point])
 
 
@@ -341,7 +324,6 @@ class Hypothesis:
         looser: whether the fault only widens the tolerance, such as rounding to printed digits.
         whole: whether it concerns the whole car, so that rows that agree must also agree with the fault.
         rests: whether it concerns points at rest, for which a single number is enough.
-        undo: removes the fault from given numbers of a row, if all numbers may have it besides another fault.
         kind: the kind of fault; two kinds are joined by "and".
         explains: once it is tested, the disagreeing rows that it explains.
         leftover: the largest remaining difference / tolerance of these rows.
@@ -356,7 +338,6 @@ class Hypothesis:
     looser: bool = False
     whole: bool = False
     rests: bool = False
-    undo: Callable[[Row, Array], Array] | None = None
     kind: str = ""
     explains: tuple[Row, ...] = ()
     leftover: float = np.nan

@@ -9,8 +9,7 @@ tolerances, which alone could explain the difference.
 
 Kinds of faults that need only arithmetic come first, then kinds that solve other cars; each is tried on the
 rows that are not yet explained. Pairs of faults are searched greedily: a further fault in the numbers of
-another car; two arithmetic faults in the same numbers; and another car after a common fault of all numbers
-(other axes, signs or units, a shift, all rows one late) is undone.
+another car, and two arithmetic faults in the same numbers.
 """
 
 from __future__ import annotations
@@ -27,9 +26,6 @@ from validate.comparison.compare import Explanation, Outcome
 from validate.diagnosis.evidence import Evidence, Hypothesis, Kind, Row, Stage, together
 from validate.diagnosis.kinds import KINDS
 
-# Limits of the number of instants for which a shift by one sample is tried together with another car: one
-# instant can be left out, and the two further searches take a second or two.
-FEWEST_LATE, MOST_LATE = 8, 2000
 # An unexplained row is reported as wrong in part if it agrees at least at this share of the instants.
 LEAST_RIGHT = 0.25
 
@@ -53,12 +49,6 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     if not evidence.wrong or not len(evidence.times):
         return ()
     found = _explained(evidence)
-    if _open(evidence, found):
-        for kind, words, undone in _undone(evidence, found):
-            for one in _ranked(_supposed(undone, "drawing")) if undone.wrong else ():
-                if not _open(undone, [one]):
-                    both = replace(one, words=f"{one.words}, and {words}", kind=f"{one.kind} and {kind}")
-                    return (_in_words(undone, both),)
     return (*(_in_words(evidence, one) for one in found), *_wrong_in_part(evidence, found))
 
 
@@ -172,42 +162,6 @@ def _pairs(evidence: Evidence) -> Iterator[Hypothesis]:
                         )
                         if found := _tested(evidence, both):
                             yield found
-
-
-def _undone(evidence: Evidence, found: Iterable[Hypothesis]) -> Iterator[tuple[str, str, Evidence]]:
-    """Kind and words of a common fault of all numbers that may hide another car, and the evidence without it.
-
-    A fault is undone if some numbers show it. A fault of all angles, such as another unit, is undone if it
-    reduces their differences. A shift by one sample is always tried.
-    """
-    opening = (one for kind in KINDS if kind.opens for one in _merged(kind, evidence))
-    hidden = (one for one in opening if _may_hide(evidence, one))
-    for fault in (*found, *hidden):
-        if fault.undo is not None:
-            yield fault.kind, fault.words, evidence.undone(fault.rows, fault.undo)
-    for words, undone in _without_a_late_sample(evidence):
-        yield "sample", words, undone
-
-
-def _may_hide(evidence: Evidence, fault: Hypothesis) -> bool:
-    """Whether a fault reduces the differences of all wrong angles, of which there are at least two."""
-    angles = [row for row in evidence.wrong if row.of == "car" and row.unit == "rad"]
-    return len(angles) > 1 and all(
-        row in fault.rows
-        and evidence.left(row, *fault.rows[row])
-        < evidence.left(row, evidence.held[row], evidence.allowed[row])
-        for row in angles
-    )
-
-
-def _without_a_late_sample(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
-    """The evidence with given numbers shifted by one row, in words; only if every moving number is wrong."""
-    moving = {row for row, values in evidence.held.items() if np.ptp(values, axis=0).max(initial=0.0) > 0.0}
-    few = FEWEST_LATE < len(evidence.times) <= MOST_LATE
-    if not (few and evidence.over_time) or len(evidence.wrong) < 2 or not moving <= {*evidence.wrong}:
-        return
-    yield "one sample late", evidence.at(slice(None, -1), slice(1, None))
-    yield "one sample early", evidence.at(slice(1, None), slice(None, -1))
 
 
 def _ranked(found: Iterable[Hypothesis]) -> list[Hypothesis]:

@@ -8,6 +8,7 @@ from functools import cache
 from itertools import combinations
 
 import numpy as np
+from scipy.optimize import root_scalar
 
 from pointcoord import Motion, Scene, simulate
 from pointcoord.numerics.rounding import EPS
@@ -30,10 +31,7 @@ LIKELY = 0.5
 # A fit is accepted if it leaves at most this share of the difference, or if every number is within so many
 # times its tolerance; then a rounder amount, such as the intended one, may fit better.
 PROMISING, NEARLY = 0.1, 2.0
-# The search ends with a step that leaves more than this share of the difference: near the solution a step
-# reduces it by a large factor, down to the remainder.
-MANIFOLD = 0.5
-PARTS = (1.0, 0.25)  # shares of a step; the first that reduces the difference is taken
+MOST_STEPS = 12
 # A rounder amount may leave so many times the difference of the fitted one. A least-squares fit of
 # rounded numbers leaves less than the intended amount: with 5 numbers, less by a root of 5/4 on average.
 KEPT = 1.5
@@ -149,15 +147,16 @@ def _fitted(change: Change, evidence: Evidence, looked: Sequence[Row]) -> tuple[
     else:
         beside = change.read(evidence, looked, start - change.slope)
         slope = np.zeros_like(ours) if beside is None else (ours - beside) / change.slope
-    amount, more = start, _step(slope, gap_at(start))
-    if not np.linalg.norm(gap_at(start) + more * slope) <= LIKELY * left(start):
+    square = float(slope @ slope)
+    step = -float(slope @ gap_at(start)) / square if square > 0.0 else 0.0
+    if not np.linalg.norm(gap_at(start) + step * slope) <= LIKELY * left(start):
         return None
-    while gone := next((part * more for part in PARTS if left(amount + part * more) < left(amount)), 0.0):
-        before, amount = amount, amount + gone
-        if left(amount) > MANIFOLD * left(before):
-            break
-        slope = (gap_at(amount) - gap_at(before)) / gone
-        more = _step(slope, gap_at(amount))
+
+    def along(amount: float) -> float:
+        # A missing number stops the search.
+        return float(slope @ gap_at(amount)) if np.isfinite(gap_at(amount)).all() else 0.0
+
+    amount = root_scalar(along, method="secant", x0=start, x1=start + step, maxiter=MOST_STEPS).root
     least = left(amount)
 
     def kept(one: Array) -> bool:
@@ -168,12 +167,6 @@ def _fitted(change: Change, evidence: Evidence, looked: Sequence[Row]) -> tuple[
     elif least > PROMISING * left(start):
         return None
     return amount, left(amount)
-
-
-def _step(slope: Array, gap: Array) -> float:
-    """The step to the least gap, if the gap were linear in the value."""
-    square = float(slope @ slope)
-    return -float(slope @ gap) / square if square > 0.0 else 0.0
 
 
 def otherwise(

@@ -81,15 +81,12 @@ class Problem:
             accuracy: error of the file's numbers in addition to their rounding, in the unit of each.
         Raises:
             UnknownName: a point or axis does not exist.
-            UsageError: a coordinate is given twice, or bounds, prior or accuracy is out of range.
+            UsageError: a coordinate is given twice, or the accuracy is out of range.
             FileError: no number of the file can be used, or a travel cannot be followed.
             PointcoordError: the scene as drawn cannot be solved.
         """
-        for name, value in (("bounds", bounds), ("prior", prior), ("accuracy", accuracy)):
-            zero = name == "accuracy"
-            if not (math.isfinite(value) and (value > 0.0 or (zero and value == 0.0))):
-                allowed = f"a finite number {'from 0 up' if zero else 'above 0'}"
-                raise UsageError(f"--{name} is {value:g}; allowed: {allowed}")
+        if not 0.0 <= accuracy < math.inf:
+            raise UsageError(f"--accuracy is {accuracy:g}; allowed: a finite number from 0 up")
         # Only the numbers that the file has are computed.
         driven = Driven.of(scene.model_copy(update={"effects": ()}), measured)
         coordinates = coordinates_of(scene, free)

@@ -6,8 +6,7 @@ standard deviations (see `problem`). In the linear problem the sum of squares le
 
     |r|^2 - g_S . (J_S^T J_S + 1 / prior^2)^-1 g_S,    g_S = J_S^T r.
 
-For each size the sets with the smallest value are fitted: of all sets, with the Jacobian of the car as drawn;
-and of the best sets of the previous size with one more coordinate, with the Jacobian at the end of their fit.
+For each size the sets with the smallest value are fitted.
 
 A set explains the file if rounding alone exceeds its sum of squares in at least one of LEVEL files, and no
 number is off by more than TWICE its rounding. The second condition is needed because least squares do not
@@ -35,9 +34,7 @@ from validate.fitting.problem import Problem
 LARGEST = 3  # coordinates of a set: all of one misread point
 LEVEL = 1000.0
 TWICE = 2.0 * math.sqrt(3.0)  # in standard deviations: twice the half unit of a rounded number
-# Number of sets of a size that are fitted: so many from the drawing, and so many from the best smaller sets.
-CANDIDATES = 12
-STARTS = 3  # number of best sets to which one more coordinate is added
+CANDIDATES = 24  # number of sets of a size that are fitted
 SHOWN = 8  # number of nearest sets kept if none explains the file
 
 
@@ -121,13 +118,10 @@ def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspe
         return found
     slopes = problem.slopes(problem.start)
     seen = [i for i, size in enumerate(np.linalg.norm(slopes, axis=0)) if size * problem.bounds >= 1.0]
-    fits, refused, tried, best = list[Fit](), list[str](), list[tuple[int, int]](), list[Fit]()
+    fits, refused, tried = list[Fit](), list[str](), list[tuple[int, int]]()
     for size in range(1, min(LARGEST, len(seen), count - 1) + 1):
         most = len(seen) if size == 1 else CANDIDATES
-        sets = _ranked(first, slopes, seen, size, problem.prior)[:most]
-        for start in best:
-            sets += _beside(problem, start, seen)[: CANDIDATES // STARTS]
-        sets, here = list(dict.fromkeys(sets)), list[Fit]()
+        sets, here = _ranked(first, slopes, seen, size, problem.prior)[:most], list[Fit]()
         for chosen in sets:
             names = [free[i] for i in chosen]
             told(f"{', '.join(names)} is fitted", len(fits) + len(here) + len(refused) + 1)
@@ -139,7 +133,6 @@ def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspe
         fits += here
         if any(map(_explained, here)):
             break
-        best = sorted(here, key=lambda one: one.left)[:STARTS]
     return replace(
         found,
         fits=tuple(sorted(fits, key=lambda one: one.left)),
@@ -158,23 +151,3 @@ def _ranked(
     step = np.linalg.solve(square[sets[:, :, None], sets[:, None, :]], along[sets][..., None])[..., 0]
     order = np.argsort(-np.sum(step * along[sets], axis=1), kind="stable")
     return [tuple(one) for one in sets[order].tolist()]
-
-
-def _beside(problem: Problem, start: Fit, seen: Sequence[int]) -> list[tuple[int, ...]]:
-    """The sets of a fitted set and one more coordinate, by the Jacobian at the end of the fit, best first."""
-    free = problem.free
-    chosen = [free.index(name) for name in start.coordinates]
-    amounts = np.zeros(len(free))
-    amounts[chosen] = [one.correction for one in start.coordinates.values()]
-    try:
-        design = problem.solved(amounts)
-        misfit, slopes = problem.misfit(design), problem.slopes(design)
-    except PointcoordError:
-        return []
-    if not np.isfinite(misfit).all():
-        return []
-    others = [i for i in seen if i not in chosen]
-    # The columns of the set are projected out, so that each other coordinate is ranked by its own effect.
-    basis, _ = np.linalg.qr(slopes[:, chosen])
-    rest = slopes - basis @ (basis.T @ slopes)
-    return [tuple(sorted((*chosen, *one))) for one in _ranked(misfit, rest, others, 1, problem.prior)]

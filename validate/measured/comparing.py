@@ -17,9 +17,7 @@ from validate.diagnosis.evidence import Evidence, Row, Solved
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured
-from validate.measured.meanings import PLACES
 from validate.measured.poses import Driven, row_by_row
-from validate.measured.supposed import meant_otherwise
 from validate.measured.tolerances import NO_NUMBERS, OURS, Held, held_of, rounded
 from validate.plain_text import shown
 
@@ -27,6 +25,7 @@ TOO_COARSE = (
     "the independent column is rounded so coarsely that any value would agree, even that of a constant curve"
 )
 FEWEST = 5  # least number of rows for which other cars are solved
+MOST = 200  # largest number over several columns: a motion that turns at many rows takes minutes to solve
 
 
 @dataclass(frozen=True)
@@ -91,9 +90,8 @@ def compare_results(
     solutions = _solution(measured, by_row), ours
     outcome = Outcome(name, rows, solutions, notes, lacking, compared, factor, faults=faults)
     if wrong := [row for row, one in zip(by_row, rows, strict=True) if one.verdict == "disagrees"]:
-        other = meant_otherwise(driven, measured, held, accuracy, factor, wrong)
-        others = _explained(driven, measured, by_row, ours, wrong, factor)
-        outcome = replace(outcome, explanations=others if other is None else (other, *others))
+        found = _explained(driven, measured, by_row, wrong, factor)
+        outcome = replace(outcome, explanations=found)
     one, *more = measured.independent
     over = "row" if more else f"{one.column} [{one.meaning.unit}]"
     return DataOutcome(outcome, over, absent, accuracy or 0.0, tuple(held), measured.rows)
@@ -154,7 +152,6 @@ def _explained(
     driven: Driven,
     measured: Measured,
     by_row: Mapping[Row, Sequence[Held]],
-    ours: Solution,
     wrong: Sequence[Row],
     factor: float,
 ) -> tuple[Explanation, ...]:
@@ -186,7 +183,6 @@ def _explained(
         own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
         units={row: (columns[0].series.unit, columns[0].series.factor) for row, columns in whole.items()},
         labels=[measured.rows[place] for place in places],
-        known={} if driven.over_time else {n: a[places] for n, a in ours.numbers[PLACES].items()},
     )
     try:
         return explain_evidence(evidence)
@@ -208,7 +204,8 @@ def _side_by_side(row: Row, columns: Sequence[Held], number: Callable[[Held], Ar
 def _as_motion(driven: Driven, measured: Measured, rows: Indices) -> tuple[Indices, Scene | None]:
     """Some rows of a file in order, and a scene with a motion through them, for solving other cars.
 
-    The scene is None if times are not in even steps, or with several independent columns or too few rows.
+    The rows of one independent column are sorted by it; those of several stay in the order of the file. The
+    scene is None if times are not in even steps, if there are too few rows, or too many of several columns.
     """
     at = measured.instants[rows]
     if driven.over_time:
@@ -218,11 +215,11 @@ def _as_motion(driven: Driven, measured: Measured, rows: Indices) -> tuple[Indic
         there = driven.scene.model_copy(update={"time": driven.scene.time.model_copy(update=ends)})
         even = np.abs(there.instants - at).max() <= 1e-12 * float(np.ptp(at))
         return rows, there if at[-1] > at[0] and even else None
-    if len(driven.columns) > 1 or len(rows) < FEWEST:
+    if len(rows) < FEWEST or (len(rows) > MOST and len(driven.columns) > 1):
         return rows, None
     rows = rows[np.argsort(at, kind="stable")]
     still = [n for n in driven.scene.effects if not EFFECTS[n].derivative and not EFFECTS[n].way]
-    inputs, _ = driven.inputs([measured.instants[rows]])
+    inputs, _ = driven.inputs([s.values[rows] for s in measured.independent])
     return rows, row_by_row(driven.scene.model_copy(update={"effects": tuple(still)}), inputs)
 
 

@@ -1,8 +1,8 @@
 r"""Our own numbers at the rows of a file: over time from the motion, over inputs and travels pose by pose.
 
 A travel is treated as an input of the same car: the height of its point is driven, instead of the input that
-moves the point most. So rows over travels are rows over inputs. The pose of a row is the pose that is reached
-from the drawing; beyond an extreme of the travel there is no pose.
+moves the wheel up and down. So rows over travels are rows over inputs. The pose of a row is the one that is
+reached from the drawing; beyond an extreme of the travel there is no pose.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from pointcoord import Motion, Scene, designs_of, simulate
+from pointcoord.effects.car_number import BY_TRAVEL
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.file import MECHANISMS, read_tables
@@ -34,7 +35,6 @@ Numbers = dict[str, dict[str, Array]]
 # Largest range of an input to either side of the drawing: an angle, and a length relative to the car's size.
 # No suspension moves farther, and a mistyped row must not cause a long search.
 WIDEST = {"rad": 1.2, "mm": 0.5}
-LITTLE = 1e-3  # part of this range by which an input is moved to find out what it moves
 
 
 @dataclass(frozen=True)
@@ -370,7 +370,7 @@ def _widest(mechanism: Mechanism, name: str) -> float:
 
 
 def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:
-    """A scene that drives a travel instead of the input that moves its point most."""
+    """A scene that drives a travel instead of the input that moves its wheel up and down."""
     part, point = scene.mechanism, travel.partition(".")[2]
     topology, radius = part.topology, part.wheel_radius
     table: dict[str, Any] = {"height": point}
@@ -384,8 +384,9 @@ def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measur
         if radius is None:
             problem = f"{travel} needs the wheel's rolling radius"
             raise FileError(measured.source, "", problem, "rolling_radius = MM in a map, above 0")
-    rising = topology.wheel_centre if point == CONTACT else point
-    solved = _strongest(scene, rising, [name for name in topology.required_inputs if name not in given])
+    corner = (topology.wheel_centre if point == CONTACT else point).rpartition(".")[0]
+    moving = (*topology.driven_along(BY_TRAVEL, corner), *topology.required_inputs)
+    solved = next((name for name in moving if name not in given), "")
     if not solved:
         problem = f"{travel} needs an input that is not given, and all inputs are given"
         raise FileError(measured.source, "", problem, "a travel, or the inputs")
@@ -411,17 +412,6 @@ def _height(part: MechanismPart, point: str, places: Mapping[str, Array]) -> Arr
     square, lean = np.sum(spin**2, axis=-1), spin @ up
     radius = part.wheel_radius or 0.0
     return np.asarray(places[part.topology.wheel_centre] @ up - radius * np.sqrt(1.0 - lean**2 / square))
-
-
-def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
-    """The input that raises a point most, if each input is moved by the same part of its largest range."""
-    mechanism, up, found = scene_mechanism(scene), np.array(scene.mechanism.up), {}
-    solver, drawn = PoseSolver(scene, mechanism), mechanism.drawn_inputs
-    for name in inputs:
-        step = LITTLE * _widest(mechanism, name)
-        place = solver.solve(drawn | {name: drawn[name] + np.array([-step, step])}).position[point]
-        found[name] = float(np.abs(np.nan_to_num(np.diff(place @ up)))[0])
-    return max(found, key=lambda name: found[name], default="")
 
 
 def _asked(scene: Scene, measured: Measured) -> Scene:

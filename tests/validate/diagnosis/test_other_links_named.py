@@ -1,4 +1,4 @@
-"""Cars with a rod of another length or a line through another joint, solved by absolute, are named."""
+"""Cars with a rod of another length, solved by absolute, are named."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from curve_files import compared, table
-from planted_faults import late
 
 from pointcoord import Scene
 from pointcoord.numerics.arrays import Array
@@ -21,12 +19,11 @@ Content = dict[str, Any]
 EFFECTS = ["velocity", "acceleration", "camber", "toe"]
 
 
-def car(name: str, **inputs: Mapping[str, object]) -> tuple[Scene, Content]:
+def car(name: str) -> tuple[Scene, Content]:
     """A scene at 21 instants, and the same with its mechanism's tables in it."""
     scene = Scene.load(name)
-    time = scene.time.model_dump() | {"samples": 21} | ({"start": 0.0, "stop": 1.0} if inputs else {})
-    changed = {"effects": EFFECTS, "time": time, "inputs": inputs or scene.inputs}
-    scene = scene.model_copy(update=changed)
+    time = scene.time.model_dump() | {"samples": 21}
+    scene = scene.model_copy(update={"effects": EFFECTS, "time": time})
     content = scene.model_dump(exclude_none=True)
     for key in ("type", "closure"):
         content["mechanism"].pop(key, None)
@@ -42,16 +39,6 @@ def with_rod(content: Content, rod: str, more: float) -> Content:
     part["inputs"] |= {"its_length": {"distance": ends}}
     drawn = float(np.linalg.norm(np.subtract(points[ends[1]], points[ends[0]])))
     content["inputs"] |= {"its_length": {"constant": drawn + more}}
-    return content
-
-
-def through_the_ball_joint(content: Content) -> Content:
-    """The textbook's strut: its axis leads through the ball joint, and its rod ends on that axis."""
-    part, points = content["mechanism"], content["mechanism"]["points"]
-    part["slides"]["strut"]["through"] = "lower_ball_joint"
-    foot, top = np.array(points["lower_ball_joint"]), np.array(points["strut_top"])
-    axis = (top - foot) / np.linalg.norm(top - foot)
-    points["strut_rod_end"] = (foot + (np.array(points["strut_rod_end"]) - foot) @ axis * axis).tolist()
     return content
 
 
@@ -91,13 +78,6 @@ def test_a_rod_of_another_length_is_named_with_what_it_is_too_long(
     assert not (others and name == "five-link")
 
 
-def test_a_strut_whose_axis_leads_through_the_ball_joint_is_named() -> None:
-    scene, content = car("off-axis-strut")
-    (only,) = diagnosis(scene, through_the_ball_joint(content), "wheel")
-    assert only.kind == "line"
-    assert "the line of strut leads through lower_ball_joint, not through strut_lower" in only.words
-
-
 def test_a_rod_of_another_length_is_named_though_one_number_has_a_fault_of_its_own() -> None:
     scene, content = car("five-link")
     scene = scene.model_copy(update={"effects": ["camber", "toe", "steer_angle"]})
@@ -107,36 +87,3 @@ def test_a_rod_of_another_length_is_named_though_one_number_has_a_fault_of_its_o
     told = [one.words for one in check(lambda _: wrong, scene, accuracy=1e-5).explanations]
     assert told[0].startswith("camber, toe: upper_front is 2.5 mm too long")
     assert told[1:] == ["steer_angle: the other sign"]
-
-
-def test_what_both_wheels_of_an_axle_have_exchanged_is_said_once() -> None:
-    scene = Scene.load("axle-opposed")
-    right = formulation("pointcoord").solve(scene).numbers
-    other = {"left": "right", "right": "left"}
-
-    def exchanged(name: str) -> str:
-        part, dot, own = name.partition(".")
-        return f"{other[part]}.{own}" if dot else name
-
-    numbers = {q: {name: part[exchanged(name)] for name in part} for q, part in right.items()}
-    (only,) = explained(scene, numbers)
-    assert only.words.endswith("left and right are exchanged")
-
-
-def test_a_rod_of_another_length_is_named_where_every_row_is_one_late_besides() -> None:
-    scene, content = car("five-link")
-    places = absolute(with_rod(content, "upper_rear", 2.0)).numbers["position"]
-    (only,) = explained(scene, {"position": {name: late(values) for name, values in places.items()}})
-    assert only.kind == "link and sample"
-    assert only.words.endswith("upper_rear is 2 mm too long: 363.109 mm, not 361.109, and one sample late")
-
-
-def test_angles_from_the_drawing_on_are_said_to_be() -> None:
-    scene, _ = car("hmmwv-front", wheel_travel={"sweep": (-40.0, 40.0)}, rack={"constant": 0.0})
-    scene = scene.model_copy(update={"effects": ["wheel_angles", "caster"]})
-    wheel = formulation("absolute").solve(scene).numbers["wheel"]
-    from_there = {name: wheel[name] - wheel[name][10] for name in ("kingpin", "caster")}
-    columns = {f"{name} [deg]": np.degrees(array) for name, array in from_there.items()}
-    travel = {"input.wheel_travel [mm]": np.linspace(-40.0, 40.0, 21)}
-    (only,) = compared(table({**travel, **columns}, 4), {}, scene).outcome.explanations
-    assert only.words == "kingpin, caster: the value of the drawing is subtracted"

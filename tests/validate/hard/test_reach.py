@@ -15,11 +15,11 @@ import pytest
 from pointcoord import AssemblyError, Scene
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.cases.ends import tie_rod_within
+from validate.hard.cases.ends import TIE_ROD
 from validate.hard.reach import End, fault_of_kept, last_value, refusal_held
 from validate.hard.subjects import CARS, NAMED, PAPER
 
-PAPER_RACK = End(PAPER, "rack", True, lock=tie_rod_within(3))
+PAPER_RACK = End(PAPER, "rack", True, links=TIE_ROD)
 
 
 def refused(scene: Scene, solver: str) -> FormulationError:
@@ -46,7 +46,7 @@ def broken(**changes: Any) -> Callable[[FormulationError], FormulationError]:
     [
         (broken(reached=lambda r: r | {"rack": r["rack"] * (1.0 - 1e-8)}), "stops at rack"),
         (broken(reduce=lambda _: "arm_angle"), "advises to reduce 'arm_angle'"),
-        (broken(limits=lambda limits: limits[3:]), "not those that lie in line"),
+        (broken(limits=lambda limits: limits[5:]), "not those that lie in line"),
         (lambda refusal: FormulationError(refusal.formulation, refusal.reason), "is not kept"),
         (
             lambda refusal: FormulationError(refusal.formulation, ValueError("no way on")),

@@ -1,14 +1,13 @@
-"""Faults in the drawing of the car: a misread hardpoint, a rod of another length, a slide through another
-point, another closure, another assembly mode.
+"""Faults in the drawing of the car: a misread hardpoint, a rod of another length, another closure, another
+assembly mode.
 
 The exact derivatives of all numbers by each coordinate of the drawing, computed once, show which coordinates
 are worth a search. If one point takes the place of another, as tie_rod_inner does for rack_centre, the two
 are misread together or one alone.
 
-For a rod and a slide, the scene is rewritten with its mechanism's tables. The rod becomes an input, the
-distance of its ends, with the drawn value plus an amount. The line of the slide leads through another joint
-of its body, as the strut axis leads through the ball joint in textbooks, and the sliding points are moved
-onto this line. This is done only for mechanisms that are not composed of others, so not for axles.
+For a rod, the scene is rewritten with its mechanism's tables. The rod becomes an input, the distance of its
+ends, with the drawn value plus an amount. This is done only for mechanisms that are not composed of others,
+so not for axles.
 """
 
 from __future__ import annotations
@@ -52,30 +51,10 @@ TOO: Mapping[Direction, str] = {
 
 
 def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Points at rest that are given at another position: each was misread.
+    """Points that rest as drawn are given at another position: each was misread.
 
     If there are more than a few, they have another fault in common.
     """
-    gaps = _gaps_at_rest(evidence)
-    for row, gap in gaps.items() if len(gaps) <= MOST_POINTS else ():
-        off = np.flatnonzero(gap)
-        texts = (_in_words(evidence.scene, row.name, int(i), float(gap[i])) for i in off)
-        there = so_much_more(evidence, row, gap)
-        yield Hypothesis(" and ".join(texts), there, len(off), 1.5 + len(off), rests=True)
-
-
-def another_drawing(evidence: Evidence) -> Iterator[Hypothesis]:
-    """More than a few points at rest are given at other positions, and nothing else explains them."""
-    gaps = _gaps_at_rest(evidence)
-    if len(gaps) > MOST_POINTS:
-        there = {k: v for row, gap in gaps.items() for k, v in so_much_more(evidence, row, gap).items()}
-        most = max(float(np.abs(gap).max()) for gap in gaps.values())
-        words = f"{len(gaps)} points at rest lie up to {most:.4g} mm off, as if another drawing were solved"
-        yield Hypothesis(words, there, 3 * len(gaps), 3.0 * len(gaps), rests=True)
-
-
-def _gaps_at_rest(evidence: Evidence) -> dict[Row, Array]:
-    """The constant difference of each wrong point that rests where it is drawn."""
     drawn = evidence.scene.mechanism.points
     rest = (
         row
@@ -83,7 +62,12 @@ def _gaps_at_rest(evidence: Evidence) -> dict[Row, Array]:
         if row.is_place and row.name in drawn
         if (np.abs(evidence.held[row] - drawn[row.name]) <= evidence.rounded(row)).all()
     )
-    return {row: gap for row in rest if (gap := constant_gap(evidence, row)) is not None}
+    gaps = {row: gap for row in rest if (gap := constant_gap(evidence, row)) is not None}
+    for row, gap in gaps.items() if len(gaps) <= MOST_POINTS else ():
+        off = np.flatnonzero(gap)
+        texts = (_in_words(evidence.scene, row.name, int(i), float(gap[i])) for i in off)
+        there = so_much_more(evidence, row, gap)
+        yield Hypothesis(" and ".join(texts), there, len(off), 1.5 + len(off), rests=True)
 
 
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -138,9 +122,13 @@ def _in_words(scene: Scene, point: str, i: int, amount: float, others: Sequence[
 
 
 def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each rod alone is too long or too short."""
-    scene, tables = evidence.scene, _tables(evidence.scene)
-    return any_of(evidence, [_length(scene, tables, rod) for rod in tables.get("rods", {})])
+    """Each rod alone is too long or too short; not in mechanisms with parts, or with points put in place."""
+    scene, topology = evidence.scene, evidence.scene.mechanism.topology
+    if topology.puts_in_place or topology.sides:
+        return iter(())
+    plain = scene.mechanism.plain(tuple(scene.inputs))
+    tables = {table: plain[table] for table in CLOSING if table in plain}
+    return any_of(evidence, [_length(scene, tables, rod) for rod in plain["rods"]])
 
 
 def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:
@@ -155,7 +143,9 @@ def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:
     }
 
     def put(content: Content, more: float) -> None:
-        _put_tables(content, changed)
+        # Tables replace the name of a mechanism file.
+        own = {key: one for key, one in content["mechanism"].items() if key not in ("type", "closure")}
+        content["mechanism"] = own | changed
         content["inputs"][name] = {"sum": [{"constant": "drawn"}, {"constant": more}]}
 
     def words(more: float) -> str:
@@ -163,47 +153,6 @@ def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:
         return f"{rod} is {amount}: {drawn + more:.6g} mm, not {drawn:.6g}"
 
     return Change(rod, put, words, STEP)
-
-
-def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
-    """The line of each slide in a moving body leads through another joint of the body."""
-    tables = _tables(evidence.scene)
-    points = evidence.scene.mechanism.points
-    ends = {end for rod in tables.get("rods", {}).values() for end in rod}
-    for name, slide in tables.get("slides", {}).items():
-        own = tables["bodies"][slide["body"]]
-        others = {p for body, some in tables["bodies"].items() if body != slide["body"] for p in some}
-        joints = [p for p in own if p in others | ends and p not in (slide["through"], slide["along"])]
-        for joint in joints if slide["body"] != CHASSIS and slide["along"] in points else ():
-            line = np.subtract(points[slide["along"]], points[joint])
-            line /= np.linalg.norm(line)
-            along = {point: np.subtract(points[point], points[joint]) @ line for point in slide["points"]}
-            moved = {point: (np.array(points[joint]) + far * line).tolist() for point, far in along.items()}
-            slides = {**tables["slides"], name: {**slide, "through": joint}}
-
-            def put(content: Content, slides: Any = slides, moved: Any = moved) -> None:
-                _put_tables(content, {**tables, "slides": slides})
-                content["mechanism"]["points"] |= moved
-
-            words = f"the line of {name} leads through {joint}, not through {slide['through']}"
-            yield from otherwise(evidence, words, put, cost=1.5)
-
-
-def _tables(scene: Scene) -> Mapping[str, Any]:
-    """The flat tables of the mechanism; empty if it has parts, or a closure that places points."""
-    topology = scene.mechanism.topology
-    if topology.puts_in_place or topology.sides:
-        return {}
-    plain = scene.mechanism.plain(tuple(scene.inputs))
-    return {table: plain[table] for table in CLOSING if table in plain}
-
-
-def _put_tables(content: Content, tables: Mapping[str, Any]) -> None:
-    """Replace the mechanism's type in a scene's content by tables."""
-    part = content["mechanism"]
-    for key in ("type", "closure"):
-        part.pop(key, None)
-    part |= tables
 
 
 def _as_it_stands(scene: Scene) -> Motion:

@@ -12,14 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pointcoord import PointcoordError, solve_poses
-from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.car_number import Angle
 from pointcoord.effects.corner import Wheel
 from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.numerics.rounding import EPS
 from validate.arrays import Array
-from validate.diagnosis.evidence import Evidence, Hypothesis, Row, WouldBe, roundest, together
+from validate.diagnosis.evidence import ANY, Evidence, Hypothesis, Row, WouldBe, roundest, together
 
 Times = Callable[[Row], float | Array]
 """The factor or the matrix, (3, 3), by which the numbers of a row are multiplied."""
@@ -77,11 +75,6 @@ def _product(by: float | Array, numbers: Array) -> Array:
     return np.asarray(numbers @ by.T if isinstance(by, np.ndarray) else by * numbers)
 
 
-def _undone(times: Times, row: Row, numbers: Array) -> Array:
-    by = times(row)
-    return np.asarray(numbers @ by if isinstance(by, np.ndarray) else numbers / by)
-
-
 def _turned(matrix: Array, axial: bool, row: Row) -> float | Array:
     """The matrix for the vectors of a row in other axes; 1 for a number of the car.
 
@@ -98,8 +91,7 @@ def _turned(matrix: Array, axial: bool, row: Row) -> float | Array:
 def _linear(
     evidence: Evidence, words: str, rows: Iterable[Row], times: Times, cost: float = 1.0, whole: bool = False
 ) -> Hypothesis:
-    there = _rows(evidence, rows, times)
-    return Hypothesis(words, there, cost=cost, whole=whole, undo=partial(_undone, times))
+    return Hypothesis(words, _rows(evidence, rows, times), cost=cost, whole=whole)
 
 
 def other_signs(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -136,31 +128,6 @@ def mirrored(evidence: Evidence) -> Iterator[Hypothesis]:
     right = evidence.scene.mechanism.axes.right
     times = partial(_turned, np.eye(3) - 2.0 * np.outer(right, right), True)
     yield _linear(evidence, "left for right: the car is mirrored", evidence.held, times, whole=True)
-
-
-def along_the_body(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Angular velocities and accelerations along axes that turn with the body, and are ours as drawn."""
-    rows = [row for row in evidence.wrong if row.of == "body"]
-    scene = evidence.solved.fine
-    numbers = solve_poses(scene, drawn_inputs(scene)).numbers if rows else {}
-    drawn = {
-        n: at for quantity in numbers if Row(quantity, "").is_place for n, at in numbers[quantity].items()
-    }
-    for row in rows:
-        points = scene.mechanism.topology.bodies[row.name]
-        paths = [path for point in points if (path := evidence.places(point)) is not None]
-        if len(paths) == len(points):
-            # A vector has the same components along the edges whether both are turned or not.
-            along = np.linalg.solve(_edges(*paths), evidence.held[row][..., None])
-            value = (_edges(*(drawn[point] for point in points)) @ along)[..., 0]
-            words = "along axes that turn with the body"
-            yield Hypothesis(words, {row: (value, evidence.rounded(row, value))}, cost=1.2)
-
-
-def _edges(one: Array, two: Array, three: Array) -> Array:
-    """Two edges of a triangle and their cross product, as columns."""
-    a, b = two - one, three - one
-    return np.stack([a, b, np.cross(a, b)], axis=-1)
 
 
 def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -203,19 +170,6 @@ DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
 """Other definitions of an angle, which pointcoord defines as projected: atan2(p, q), with p and q the
 components of a line along two directions of the car, and n its length. Adams' turning tables print the
 arcsine of camber, OptimumK the arcsine of toe."""
-BACK: Mapping[str, Callable[[Array], Array]] = {
-    "the slope, no angle": np.arctan,
-    "the sine, no angle": lambda sine: np.arcsin(np.clip(sine, -1.0, 1.0)),
-}
-"""The projected angle from numbers by another definition, for definitions that need only p and q."""
-
-SAMPLES: Mapping[str, Callable[[Array], Array]] = {
-    "one sample late, the first one twice": lambda x: np.concatenate([x[:1], x[:-1]]),
-    "one sample early, the last one twice": lambda x: np.concatenate([x[1:], x[-1:]]),
-    "one sample late, the last one first": lambda x: np.concatenate([x[-1:], x[:-1]]),
-    "one sample early, the first one last": lambda x: np.concatenate([x[1:], x[:1]]),
-}
-"""Shifts by one sample, in words, and the numbers that they give."""
 
 MEANT = 8.0  # an offset must be more than so many times the tolerance of recomputed numbers
 MOST_DIGITS = 10
@@ -241,85 +195,48 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
                 value = rule(p, q, length)
             if np.isfinite(value).all():
                 allowed = evidence.rounded(row, value) + 8.0 * EPS * size / length
-                undo = partial(_projected, BACK[words]) if words in BACK else None
-                yield Hypothesis(words, {row: (value, allowed)}, cost=1.2, undo=undo)
-
-
-def _projected(back: Callable[[Array], Array], row: Row, numbers: Array) -> Array:
-    """The projected angles from the numbers of a row, if it is a number of the car."""
-    return back(numbers) if row.of == "car" else numbers
+                yield Hypothesis(words, {row: (value, allowed)}, cost=1.2)
 
 
 def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
     """Two quantities are swapped, such as velocities and accelerations."""
-    for one, two in combinations(sorted(evidence.wrong_quantities), 2):
-        other = {one: two, two: one}
-        rows = {row: Row(other[row.quantity], row.name) for row in evidence.wrong if row.quantity in other}
-        words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
-        yield Hypothesis(words, _of_others(evidence, rows), cost=1.1)
-
-
-def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
-    """The numbers of two parts of a car are given under each other's names."""
-    for one, two in combinations(evidence.scene.mechanism.topology.sides, 2):
-        other = {one: two, two: one}
-        rows = {row: row for row in evidence.held}
-        for row in evidence.held:
-            part, dot, name = row.name.partition(".")
-            if dot and part in other:
-                rows[row] = Row(row.quantity, f"{other[part]}.{name}")
-        words = f"{one} and {two} are exchanged"
-        yield Hypothesis(words, _of_others(evidence, rows), whole=True)
-
-
-def names_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
-    """The numbers of two points, bodies or angles are given under each other's names."""
-    few = evidence.few
-    for one, two in combinations(sorted({row.name for row in evidence.wrong}), 2):
-        other = {one: two, two: one}
-        rows = {row: Row(row.quantity, other[row.name]) for row in evidence.wrong if row.name in other}
-        if few.explained(_of_others(few, rows)):
-            words = f"{one} and {two} are exchanged"
-            yield Hypothesis(words, _of_others(evidence, rows), cost=1.1)
-
-
-def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, WouldBe]:
-    """Rows with the numbers of other rows, if these exist and have the same shape."""
     held = evidence.held
-    return {
-        row: (held[other], evidence.allowed[other])
-        for row, other in others.items()
-        if other in held and held[other].shape == held[row].shape
-    }
+    for one, two in combinations(sorted(evidence.wrong_quantities), 2):
+        swap = {one: two, two: one}
+        pairs = [(row, Row(swap[row.quantity], row.name)) for row in evidence.wrong if row.quantity in swap]
+        rows = {
+            row: (held[other], evidence.allowed[other])
+            for row, other in pairs
+            if other in held and held[other].shape == held[row].shape
+        }
+        words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
+        yield Hypothesis(words, rows, cost=1.1)
 
 
 def of_another_instant(evidence: Evidence) -> Iterator[Hypothesis]:
-    """All numbers are shifted by one row."""
-    for words, moved in SAMPLES.items():
-        rows = {row: (moved(evidence.held[row]), moved(evidence.allowed[row])) for row in evidence.looked}
+    """All numbers are shifted by one row; the first or the last one, which is left over, may be anything."""
+    count = len(evidence.times)
+    for words, late, left_over in (("one sample late", 1, 0), ("one sample early", -1, -1)):
+        places = (np.arange(count) - late) % count
+        rows: dict[Row, WouldBe] = {}
+        for row in evidence.looked:
+            allowed = evidence.allowed[row][places]
+            allowed[left_over] = ANY
+            rows[row] = evidence.held[row][places], allowed
         yield Hypothesis(words, rows, cost=1.2)
 
 
 def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Offsets of positions and angles: the first or the drawn value subtracted, or a constant added."""
-    as_drawn = _as_drawn(evidence)
-    for row in evidence.wrong:
-        if row.order > 0:
-            continue
-        more = partial(so_much_more, evidence, row)
-        yield Hypothesis("the value at the first instant is subtracted", more(-evidence.held[row][0]))
-        if row in as_drawn:
-            yield Hypothesis("the value of the drawing is subtracted", more(-as_drawn[row]), cost=1.2)
-        gap = constant_gap(evidence, row, MEANT) if len(evidence.times) > 2 else None
+    """A constant added to a position or an angle, such as another origin or the drawn value subtracted."""
+    for row in evidence.wrong if len(evidence.times) > 2 else ():
+        gap = constant_gap(evidence, row, MEANT) if row.order == 0 else None
         if gap is not None:
-            # If the origin is another one, all points have this offset.
-            undo = partial(_shifted, -gap) if row.of == "point" else None
             unit, factor = evidence.unit_of(row)
             amount = ", ".join(f"{component:.6g}" for component in np.ravel(gap / factor))
             amount = f"({amount})" if gap.ndim else amount
             words = f"a constant offset of {amount} {unit}"
             count = int(np.count_nonzero(gap))
-            yield Hypothesis(words, more(gap), count, 1.0 + count, undo=undo)
+            yield Hypothesis(words, so_much_more(evidence, row, gap), count, 1.0 + count)
 
 
 def constant_gap(evidence: Evidence, row: Row, least: float = 1.0) -> Array | None:
@@ -342,23 +259,6 @@ def constant_gap(evidence: Evidence, row: Row, least: float = 1.0) -> Array | No
 def so_much_more(evidence: Evidence, row: Row, amount: Array) -> dict[Row, WouldBe]:
     """The numbers of a row with an amount added."""
     return {row: (evidence.held[row] + amount, evidence.rounded(row, amount))}
-
-
-def _shifted(shift: Array, row: Row, places: Array) -> Array:
-    return np.asarray(places + shift)
-
-
-def _as_drawn(evidence: Evidence) -> dict[Row, Array]:
-    """The drawn values of the numbers of the car that disagree."""
-    rows = [row for row in evidence.wrong if row.of == "car" and row.order == 0]
-    try:
-        scene = evidence.solved.fine
-        numbers = solve_poses(scene, drawn_inputs(scene)).numbers if rows else {}
-    except PointcoordError:
-        return {}
-    return {
-        row: np.asarray(numbers[row.quantity][row.name]) for row in rows if row.name in numbers[row.quantity]
-    }
 
 
 def printed_digits(evidence: Evidence) -> Iterator[Hypothesis]:

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from validate.hard.case import Case, Values, family, right_from
-from validate.hard.reach import End, Lock, ends_of
+from validate.hard.reach import End, ends_of
 from validate.hard.subjects import NAMED, OTHERS, ROLLING, hyphens
 
 # The distance down to which each model must be right, as a share of the range; nearer, it may refuse with a
@@ -69,47 +69,33 @@ def _beyond(end: End, name: str, moving: Values, start: Values) -> None:
             )(one.beyond)
 
 
-def _all_of(*links: str) -> Lock:
-    """A test that these links are among the first three that limit the motion."""
-    return lambda limits: set(limits[:3]) >= set(links)
-
-
-def tie_rod_within(first: int) -> Lock:
-    """A test that the tie rod limits the motion, and another link of its outer end among the `first` ones."""
-    rod = "link tie_rod_inner - tie_rod_outer"
-    return lambda limits: (
-        rod in limits[:3] and any("tie_rod_outer" in limit and limit != rod for limit in limits[:first])
-    )
-
-
 UPPER = "The knuckle's upper end out of reach"
 DEAD, IN_LINE = "The arm at its dead points", "Tie rod and steering arm in line"
 BALL_JOINT = "The ball joint is {} on its circle, where its height is stationary"
 LIE_IN_LINE = "Tie rod and steering arm lie in line"
-ARM = _all_of("link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear")
-UPPER_ARM = _all_of(
+ARM = ("link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear")
+TIE_ROD = ("link tie_rod_inner - tie_rod_outer",)
+UPPER_ARM = (
     "link upper_ball_joint - lower_ball_joint",
     "link upper_ball_joint - upper_arm_front",
     "link upper_ball_joint - upper_arm_rear",
 )
-# Group, input, whether the upper end, the test of the links that lie in line, and why it ends there.
-ENDS: dict[str, tuple[str, str, bool, Lock, str]] = {
+# Group, input, whether the upper end, the links that lie in line, and why it ends there.
+ENDS: dict[str, tuple[str, str, bool, tuple[str, ...], str]] = {
     "arm-highest": (DEAD, "arm_angle", False, ARM, BALL_JOINT.format("highest")),
     "arm-lowest": (DEAD, "arm_angle", True, ARM, BALL_JOINT.format("lowest")),
-    "rack-least": (IN_LINE, "rack", False, tie_rod_within(3), LIE_IN_LINE),
-    "rack-greatest": (IN_LINE, "rack", True, tie_rod_within(3), LIE_IN_LINE),
+    "rack-least": (IN_LINE, "rack", False, TIE_ROD, LIE_IN_LINE),
+    "rack-greatest": (IN_LINE, "rack", True, TIE_ROD, LIE_IN_LINE),
     "slide-runs-out": (
-        *(UPPER, "arm_angle", False, lambda limits: "strut_top on the strut axis" in limits),
+        *(UPPER, "arm_angle", False, ("strut_top on the strut axis",)),
         "The ball joint is as near to the strut's top as it lies beside the axis: the slide is at its end",
     ),
     "upper-arm-locks": (
         *(UPPER, "arm_angle", True, UPPER_ARM),
         "Upper arm and kingpin of a double wishbone lie in one plane with the upper pivots",
     ),
-    # If the arm drives, the links of the knuckle's upper end carry forces as large as those of the steering
-    # arm.
     "tie-rod-locks-the-arm": (
-        *(UPPER, "arm_angle", False, tie_rod_within(5)),
+        *(UPPER, "arm_angle", False, TIE_ROD),
         "The arm turns until tie rod and steering arm lie in line",
     ),
 }
@@ -128,8 +114,8 @@ for names, car, added, near, start in (
     (("tie-rod-locks-the-arm",), "wishbone", "", (), TWO),
 ):
     for name in names:
-        group, driven, ahead, lock, where = ENDS[name]
-        end = End(NAMED[car], driven, ahead, where, lock)
+        group, driven, ahead, links, where = ENDS[name]
+        end = End(NAMED[car], driven, ahead, where, links)
         _near(end, name, added, group, near)
         _beyond(end, name + added, TWO, start)
 for subject in (*OTHERS, ROLLING):
