@@ -13,7 +13,7 @@ from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import Measured, understood
 from validate.measured.poses import Driven
 from validate.measured.reading import columns_of_text
-from validate.measured.tolerances import Held, held_of
+from validate.measured.tolerances import held_of
 
 
 def measured(text: str, scene: Scene, **content: object) -> Measured:
@@ -38,17 +38,11 @@ def compared(text: str, content: Mapping[str, Any], scene: Scene, **more: Any) -
     return compare_results(understood(columns, content, scene, "map.toml"), scene, "car", **more)
 
 
-def held(text: str, content: Mapping[str, Any], scene: Scene, accuracy: float | None = None) -> list[Held]:
-    """The same before anything is judged or explained: every column beside ours."""
+def disagreeing(text: str, content: Mapping[str, Any], scene: Scene) -> list[str]:
+    """What a column that disagrees is, before anything is judged or explained."""
     data = understood(columns_of_text(text, "mine.csv"), content, scene, "map.toml")
-    return held_of(data, Driven.of(scene, data), accuracy)[0]
-
-
-def disagreeing(
-    text: str, content: Mapping[str, Any], scene: Scene, accuracy: float | None = None
-) -> list[str]:
-    """What a column that disagrees is."""
-    return [h.series.meaning.words for h in held(text, content, scene, accuracy) if np.nanmax(h.share) > 1.0]
+    held = held_of(data, Driven.of(scene, data), None)[0]
+    return [h.series.meaning.words for h in held if np.nanmax(h.share) > 1.0]
 
 
 def verdicts(found: DataOutcome) -> dict[str, str]:
@@ -77,3 +71,18 @@ def table(columns: Mapping[str, Array], digits: int) -> str:
         )
         lines.append(",".join(cells))
     return "\n".join(lines)
+
+
+def wheel_curves(
+    car: Scene,
+    angles: tuple[float, float],
+    racks: tuple[float, float] = (0.0, 0.0),
+    rows: int = 9,
+    digits: int = 4,
+    **more: Array | float,
+) -> str:
+    """Camber and toe, deg, over the arm's angle and the rack; `more` is added to them."""
+    wheel = at_inputs(car, {"arm_angle": angles, "rack": racks}, rows)["wheel"]
+    over = {"input.arm_angle [rad]": np.linspace(*angles, rows), "input.rack [mm]": np.linspace(*racks, rows)}
+    told = {f"wheel.{one} [deg]": np.degrees(wheel[one]) + more.get(one, 0.0) for one in ("camber", "toe")}
+    return table(over | told, digits)

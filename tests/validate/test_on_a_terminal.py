@@ -62,26 +62,20 @@ def piped() -> str:
     return run("validate", "-v", "semi-trailing-arm").stdout
 
 
-def test_a_dumb_terminal_shows_what_a_pipe_has(piped: str) -> None:
-    assert validated(both=True, TERM="dumb").replace("\r\n", "\n") == piped
-    assert "\x1b" not in piped
-
-
 def cells(text: str) -> list[str]:
     """The words of a text without lines, colours and blanks."""
     return re.sub(r"-{3,}", " ", COLOURS.sub("", text)).split()
 
 
-def test_a_terminal_shows_the_same_words_in_colours(piped: str) -> None:
+def test_a_terminal_shows_the_same_words_in_colours_and_a_dumb_one_what_a_pipe_has(piped: str) -> None:
+    assert "\x1b" not in piped
+    assert validated(both=True, TERM="dumb").replace("\r\n", "\n") == piped
+    assert "\x1b[3" not in validated(NO_COLOR="1")
     shown = validated(columns=150)
     assert "\x1b[32magrees" in shown
     assert cells(shown) == cells(piped)
-    assert "\x1b[3" not in validated(NO_COLOR="1")
-
-
-def test_a_narrow_terminal_shows_every_cell_in_full(piped: str) -> None:
-    bands = validated(columns=45)
-    assert {*cells(piped)} <= {*cells(bands)}
+    # A narrow one shows every cell in full.
+    assert {*cells(piped)} <= {*cells(validated(columns=45))}
 
 
 def test_progress_comes_after_two_seconds_in_lines_of_its_own() -> None:

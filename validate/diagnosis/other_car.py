@@ -31,7 +31,8 @@ LIKELY = 0.5
 # A fit is accepted if it leaves at most this share of the difference, or if every number is within so many
 # times its tolerance; then a rounder amount, such as the intended one, may fit better.
 PROMISING, NEARLY = 0.1, 2.0
-MOST_STEPS = 12
+# Most steps of the secant method, and a size of its steps below any rounding.
+MOST_STEPS, TINY = 12, 1e-300
 # A rounder amount may leave so many times the difference of the fitted one. A least-squares fit of
 # rounded numbers leaves less than the intended amount: with 5 numbers, less by a root of 5/4 on average.
 KEPT = 1.5
@@ -156,7 +157,9 @@ def _fitted(change: Change, evidence: Evidence, looked: Sequence[Row]) -> tuple[
         # A missing number stops the search.
         return float(slope @ gap_at(amount)) if np.isfinite(gap_at(amount)).all() else 0.0
 
-    amount = root_scalar(along, method="secant", x0=start, x1=start + step, maxiter=MOST_STEPS).root
+    # To the last digit: the numbers may be given in full.
+    begun = {"x0": start, "x1": start + step}
+    amount = root_scalar(along, method="secant", **begun, xtol=TINY, rtol=4.0 * EPS, maxiter=MOST_STEPS).root
     least = left(amount)
 
     def kept(one: Array) -> bool:

@@ -1,26 +1,19 @@
 """Drawn inputs and ends of inputs: by the reference, poses exist up to the end and not beyond it."""
 
 import pytest
-from cars_in_closed_form import DRAWN, cars_of
+from cars_in_closed_form import cars_of
 from hypothesis import given, settings
 
 from pointcoord import PointcoordError
 from validate.cars.car import Car
 from validate.cars.input_ends import at, drawn_inputs, end, redrawn
 from validate.formulations.reference_solution import design_of
-from validate.hard.subjects import drawn_angle
 from validate.reference import NoReferenceError, pose_exists
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 2)  # an end takes 0.1 s
 # Share of the range: more than the rounding of the inputs of the redrawn car.
 NEAR = 1e-11
-
-
-@settings(max_examples=EXAMPLES // 4)
-@given(cars_of(DRAWN))
-def test_a_drawing_stands_where_its_arm_is_drawn(car: Car) -> None:
-    assert drawn_inputs(car)["arm_angle"] == pytest.approx(drawn_angle(car), rel=1e-12, abs=1e-10)
 
 
 @searched

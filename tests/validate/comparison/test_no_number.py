@@ -1,6 +1,5 @@
 """A number that does not exist: both models say so, and neither alone may."""
 
-from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -16,32 +15,37 @@ CENTRES = (
     "side_view_swing_arm",
     "side_view_centre_height",
 )
-LEVEL: dict[str, Any] = {
-    "effects": ["instant_centres", "camber"],
-    "mechanism": {
-        "type": "double_wishbone",
-        "side": "right",
-        "wheel_radius": 200.0,
-        "points": {
-            "lower_arm_front": [-100.0, 250.0, 100.0],
-            "lower_arm_rear": [100.0, 250.0, 100.0],
-            "upper_arm_front": [-100.0, 250.0, 300.0],
-            "upper_arm_rear": [100.0, 250.0, 300.0],
-            "lower_ball_joint": [0.0, 650.0, 100.0],
-            "upper_ball_joint": [0.0, 650.0, 300.0],
-            "tie_rod_outer": [-100.0, 650.0, 200.0],
-            "tie_rod_inner": [-100.0, 250.0, 200.0],
-            "wheel_centre": [0.0, 700.0, 200.0],
-            "wheel_axis_inner": [0.0, 650.0, 200.0],
-        },
-    },
-    "inputs": {"wheel_travel": {"sweep": [-50.0, 50.0]}, "rack": {"constant": 0.0}},
-    "time": {"start": 0.0, "stop": 1.0, "samples": 11},
+KNUCKLE = {
+    "lower_ball_joint": [0.0, 650.0, 100.0],
+    "upper_ball_joint": [0.0, 650.0, 300.0],
+    "tie_rod_outer": [-100.0, 650.0, 200.0],
+    "wheel_centre": [0.0, 700.0, 200.0],
+    "wheel_axis_inner": [0.0, 650.0, 200.0],
 }
 
 
+def level(
+    upper: float = 250.0, travel: float = 50.0, samples: int = 11, effect: str = "instant_centres"
+) -> Scene:
+    """A wishbone whose arms are level and parallel; where the upper ones are hinged at y, mm."""
+    points = KNUCKLE | {
+        "lower_arm_front": [-100.0, 250.0, 100.0],
+        "lower_arm_rear": [100.0, 250.0, 100.0],
+        "upper_arm_front": [-100.0, upper, 300.0],
+        "upper_arm_rear": [100.0, upper, 300.0],
+        "tie_rod_inner": [-100.0, 250.0, 200.0],
+    }
+    content: dict[str, Any] = {
+        "effects": [effect],
+        "mechanism": {"type": "double_wishbone", "side": "right", "wheel_radius": 200.0, "points": points},
+        "inputs": {"wheel_travel": {"sweep": [-travel, 50.0]}, "rack": {"constant": 0.0}},
+        "time": {"start": 0.0, "stop": 1.0, "samples": samples},
+    }
+    return Scene.from_mapping(content, "level arms")
+
+
 def test_parallel_arms_have_their_centres_at_infinity_and_both_models_say_so() -> None:
-    scene = Scene.from_mapping(LEVEL, "parallel arms")
+    scene = level()
     motion = simulate(scene)
     for name in CENTRES:
         assert np.isnan(motion.numbers["dimension"][name]).all()
@@ -54,12 +58,7 @@ def test_parallel_arms_have_their_centres_at_infinity_and_both_models_say_so() -
 
 
 def test_a_centre_that_goes_through_infinity_is_there_for_both_models_or_for_neither() -> None:
-    content = deepcopy(LEVEL)
-    for name in ("upper_arm_front", "upper_arm_rear"):
-        content["mechanism"]["points"][name][1] = 300.0
-    content["inputs"]["wheel_travel"]["sweep"] = [-49.0, 50.0]
-    content["time"]["samples"] = 101
-    scene = Scene.from_mapping(content, "level arms, the upper ones shorter")
+    scene = level(upper=300.0, travel=49.0, samples=101)
     centres = simulate(scene).numbers["dimension"]
     # Farther than 1e9 wheel radii is at infinity; this one is seven tenths of that away.
     assert np.nanmax(np.abs(centres["side_view_swing_arm"])) > 1e11
@@ -70,8 +69,7 @@ def test_a_centre_that_goes_through_infinity_is_there_for_both_models_or_for_nei
 
 
 def test_a_screw_pitch_that_is_0_everywhere_is_tested() -> None:
-    scene = Scene.from_mapping(LEVEL | {"effects": ["screw_axis"]}, "parallel arms")
-    outcome = compare(scene, "pointcoord", "absolute")
+    outcome = compare(level(effect="screw_axis"), "pointcoord", "absolute")
     assert [row.verdict for row in outcome.rows if row.name == "screw_pitch"] == ["agrees"]
 
 

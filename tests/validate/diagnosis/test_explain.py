@@ -14,7 +14,6 @@ from scipy.spatial.transform import Rotation
 from pointcoord import Scene
 from pointcoord.method import AUTO
 from pointcoord.numerics.arrays import Array
-from pointcoord.scene.input_part import InputPart
 from pointcoord.simulation import prepare_task, solve_task
 from validate.comparison.compare import compare_solutions
 from validate.diagnosis import Explanation, explain_outcome
@@ -70,17 +69,9 @@ def padded(places: Array, times: Array) -> Array:
     return np.concatenate([np.diff(places, axis=0) / np.diff(times)[:, None], np.zeros((1, 3))])
 
 
-def mirrored(held: Solution) -> Numbers:
-    side = np.array([1.0, -1.0, 1.0])
-    return {**each(held, STATES, lambda v: v * side), **each(held, TURNS, lambda v: -v * side)}
-
-
+# The kinds of 25 more are frozen in tests/oracle.
 FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
-    (lambda h: each(h, STATES, lambda v: v * [1.0, 1.0, -1.0]), "sign", "sign of z"),
-    (lambda h: angle(h, "toe", lambda v: -v), "sign", "toe: the other sign"),
-    (lambda h: each(h, (*STATES, *TURNS), lambda v: v * [-1.0, -1.0, 1.0]), "sign", "sign of x and y"),
     (lambda h: arcsin(h, "camber", 2), "definition", "arcsin"),
-    (lambda h: arcsin(h, "toe", 0), "definition", "arcsin"),
     (
         lambda h: angle(h, "toe", lambda _: np.arctan(np.sin(arcsin(h, "toe", 0)["wheel"]["toe"]))),
         "definition",
@@ -89,31 +80,18 @@ FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
     (lambda h: each(h, ("wheel",), np.tan), "definition", "kingpin, toe, caster: the slope, no angle"),
     (lambda h: each(h, ("wheel",), np.sin), "definition", "camber, kingpin, toe, caster: the sine, no angle"),
     (lambda h: angle(h, "toe", lambda v: v - v[0]), "offset", "toe: a constant offset of "),
-    (lambda h: each(h, ("position",), lambda v: v + np.array([0.0, 0.0, 25.0])), "offset", "(0, 0, 25) mm"),
-    (lambda h: angle(h, "camber", lambda v: v + 0.013), "offset", "constant offset of 0.013 rad"),
     (lambda h: each(h, STATES, lambda v: v[:, [1, 0, 2]]), "axes", "our y, x, z"),
-    (mirrored, "mirror", "left for right"),
-    (lambda h: angle(h, "camber", np.degrees), "unit", "degrees for radians"),
     (lambda h: angle(h, "toe", lambda v: 60.0 * v), "unit", "toe: minutes of arc taken for degrees"),
-    (lambda h: each(h, STATES, lambda v: v / 1000.0), "unit", "m for mm"),
     (
         lambda h: {**each(h, STATES[1:2], lambda v: v / 1e3), **each(h, STATES[2:], lambda v: v / 1e6)},
         "unit",
         "velocity, acceleration: per millisecond for per second",
     ),
-    (lambda h: each(h, STATES, lambda v: v.astype(np.float32).astype(float)), "digits", "single precision"),
-    (lambda h: each(h, (*STATES, "wheel"), lambda v: np.round(v, 3)), "digits", "3 decimals"),
-    (lambda h: {"velocity": by_differences(h.position, h.times)}, "differences", "central differences"),
     (lambda h: {"acceleration": by_differences(h.velocity, h.times)}, "differences", "central differences"),
     (
         lambda h: {"velocity": {n: padded(p, h.times) for n, p in h.position.items()}},
         "differences",
         "velocity: rates by forward differences",
-    ),
-    (
-        lambda h: {"velocity": h.numbers["acceleration"], "acceleration": h.numbers["velocity"]},
-        "swapped",
-        "acceleration is swapped with velocity",
     ),
     (lambda h: each(h, (*STATES, *TURNS, "wheel"), late), "sample", "caster: one sample late"),
     (
@@ -161,7 +139,6 @@ def raised(places: Array) -> Array:
     [
         ("position", raised, ("wheel_centre",), "of wheel_centre: a constant offset of (0, 0, 2.5) mm"),
         ("position", lambda v: v * [1.0, -1.0, 1.0], ("wheel_centre",), "wheel_centre: the other sign of y"),
-        ("position", lambda v: v[:, [1, 0, 2]], ("wheel_centre",), "other axes: its x, y, z are our y, x, z"),
         # It is no other origin.
         ("position", raised, "all but wheel_axis_inner", "a constant offset of (0, 0, 2.5) mm"),
         # The rack end moves along y alone: its velocity agrees either way.
@@ -203,7 +180,6 @@ def nothing(v: Array) -> Array:
     [
         (slice(7, 8), noisy(1.0), "disagrees at 1.27273 s only, 1 of 12 instants"),
         (slice(2, 4), nothing, "disagrees from 0.363636 s to 0.545455 s only, 2 of 12 instants"),
-        (slice(8, None), noisy(1.0), "disagrees from 1.45455 s to 2 s only, 4 of 12 instants"),
     ],
 )
 def test_an_unexplained_fault_of_a_few_instants_is_named_with_them(
@@ -217,10 +193,8 @@ def test_an_unexplained_fault_of_a_few_instants_is_named_with_them(
 
 
 UNEXPLAINED: dict[str, Callable[[Solution], Numbers]] = {
-    "a difference of a rounding": nearly(1.5),
     "a difference of some roundings": nearly(30.0),
     "a factor that is nearly one": lambda h: angle(h, "caster", lambda v: 0.9998905 * v),
-    "noise": lambda h: each(h, (*STATES, *TURNS, "wheel"), noisy(1e-3)),
     "a factor that leaves something": lambda h: angle(h, "caster", lambda v: noisy(1e-5)(0.97 * v)),
     "zeros": lambda h: each(h, ("velocity",), lambda v: 0.0 * v),
     "a constant": lambda h: angle(h, "camber", lambda v: np.full_like(v, 0.02)),
@@ -230,38 +204,6 @@ UNEXPLAINED: dict[str, Callable[[Solution], Numbers]] = {
 @pytest.mark.parametrize("plant", UNEXPLAINED.values(), ids=UNEXPLAINED)
 def test_what_tells_nothing_has_no_explanation(plant: Callable[[Solution], Numbers]) -> None:
     assert diagnosis("double-wishbone", plant(solved("double-wishbone")[1])) == ()
-
-
-def test_an_offset_at_the_level_of_the_tolerance_is_none() -> None:
-    scene, held = solved("double-wishbone")
-
-    def barely_off(given: Mapping[str, object]) -> Mapping[str, object]:
-        return angle(held, "toe", lambda v: v + 3.0 * 7e-8)
-
-    outcome = check(barely_off, scene)
-    assert 1.0 < outcome.disagreements[0].share < 10.0
-    assert outcome.explanations == ()
-
-
-def test_a_time_shift_is_found_with_its_seconds() -> None:
-    name = SCENES[1]
-    scene, _ = solved(name)
-    time = scene.time
-    later = time.model_copy(update={"start": time.start + 0.0137, "stop": time.stop + 0.0137})
-    shifted = formulation("pointcoord").solve(scene.model_copy(update={"time": later}))
-    first = diagnosis(name, shifted.numbers)[0]
-    assert first.kind == "time shift"
-    assert "0.0137 s earlier" in first.words
-    assert first.leftover <= 1.0
-
-
-def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong() -> None:
-    name = SCENES[0]
-    numbers = misread(solved(name)[0], 2.0, "tie_rod_outer.z")
-    found = diagnosis(name, {**numbers, "wheel": {n: np.degrees(a) for n, a in numbers["wheel"].items()}})
-    assert [one.kind for one in found[:2]] == ["hardpoint", "unit"]
-    assert "tie_rod_outer.z seems 2 mm too high" in found[0].words
-    assert "degrees for radians" in found[1].words
 
 
 @pytest.mark.parametrize(
@@ -280,20 +222,15 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
     assert found[0].words.endswith("and rack_centre with it")
 
 
-def test_a_misread_end_of_the_tie_rod_is_named_where_the_rack_is_given_back_as_it_was_drawn() -> None:
-    scene, held = solved("wheel-travel")
-    wrong = misread(scene, 5.0, "tie_rod_inner.z", "rack_centre.z")
-    rack = {"rack_centre": held.numbers["position"]["rack_centre"]}
-    (only,) = check(lambda _: {"position": {**wrong["position"], **rack}}, scene, accuracy=1e-6).explanations
-    assert only.words.endswith(": tie_rod_inner.z seems 5 mm too high: 159, not 154")
-    assert {"position.tie_rod_inner", "position.tie_rod_outer"} <= {*only.quantities}
-
-
-def test_a_misread_point_of_a_body_is_a_misread_hardpoint_and_no_other_assembly() -> None:
-    # No link holds this point, and so its lengths in other assemblies are those of its body.
-    first = diagnosis(SCENES[0], misread(solved(SCENES[0])[0], 5.0, "wheel_centre.x"))[0]
-    assert (first.kind, first.leftover <= 1.0) == ("hardpoint", True)
-    assert "wheel_centre.x seems 5 mm too far back" in first.words
+def test_a_misread_point_of_a_body_is_no_other_assembly_and_what_else_is_wrong_is_said_too() -> None:
+    """No link holds this point, and so its lengths in other assemblies are those of its body."""
+    numbers = misread(solved(SCENES[0])[0], 5.0, "wheel_centre.x")
+    found = diagnosis(
+        SCENES[0], {**numbers, "wheel": {n: np.degrees(a) for n, a in numbers["wheel"].items()}}
+    )
+    assert [one.kind for one in found[:2]] == ["hardpoint", "unit"]
+    assert "wheel_centre.x seems 5 mm too far back" in found[0].words
+    assert "degrees for radians" in found[1].words
 
 
 def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() -> None:
@@ -319,73 +256,45 @@ def test_the_proven_side_is_the_trusted_one() -> None:
 
 
 def test_the_program_prints_at_most_three_and_writes_all_of_them() -> None:
-    _, held = solved("double-wishbone")
-    scene, _ = solved("double-wishbone")
+    scene, held = solved("double-wishbone")
     given = held.with_numbers(angle(held, "camber", np.degrees))
     outcome = compare_solutions(scene, held, given, "degrees")
-    found = explain_outcome(scene, outcome)
-    text = text_of(report.outcome_parts(replace(outcome, explanations=found * 5)))
+    outcome = replace(outcome, explanations=explain_outcome(scene, outcome) * 5)
+    text = text_of(report.outcome_parts(outcome))
     assert text.count("possible explanation: ") == 3
     assert text.splitlines()[-1].endswith("camber: degrees for radians")
-    (one,) = report.outcome_data(replace(outcome, explanations=found))["explanations"]
-    assert one == {
-        "words": "camber: degrees for radians",
-        "kind": "unit",
-        "quantities": ("wheel.camber",),
-        "leftover": found[0].leftover,
-    }
+    assert len(report.outcome_data(outcome)["explanations"]) == 5
 
 
-def taken(factor: float, more: float = 0.0) -> Callable[[InputPart], InputPart]:
-    """An input as k x + m; of the laws that the built-in cars have."""
-
-    def change(law: InputPart) -> InputPart:
-        if law.sine is not None:
-            wave = {"amplitude": factor * law.sine.amplitude, "offset": factor * law.sine.offset + more}
-            return law.model_copy(update={"sine": law.sine.model_copy(update=wave)})
-        first, *others = law.polynomial or (law.constant or 0.0,)
-        return InputPart(polynomial=(factor * first + more, *(factor * c for c in others)))
-
-    return change
+def rack(times: float, more: float = 0.0) -> dict[str, object]:
+    """A law that is a sum, taken as k x + m."""
+    sine = {"amplitude": 10.0 * times, "angular_frequency": 3.0}
+    return {"sum": [{"sine": sine}, {"constant": 4.0 * times + more}]}
 
 
-WRONG_INPUTS: Mapping[str, dict[str, tuple[float, float]]] = {
-    "the input rack has the other sign": {"rack": (-1.0, 0.0)},
-    "the input rack is taken 0.952381 times": {"rack": (20.0 / 21.0, 0.0)},
-    "the input rack is taken as 0": {"rack": (0.0, 0.0)},
-    "the input rack is taken 5 mm more": {"rack": (1.0, 5.0)},
-    "the input arm_angle is taken 0.02 rad more": {"arm_angle": (1.0, 0.02)},
-}
-
-
-@pytest.mark.parametrize(("words", "name"), [*zip(WRONG_INPUTS, cycle(SCENES[:2]), strict=False)])
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"rack": rack(20.0 / 21.0)}, "the input rack is taken 0.952381 times"),
+        ({"rack": rack(0.0)}, "the input rack is taken as 0"),
+        ({"rack": rack(1.0, 5.0)}, "the input rack is taken 5 mm more"),
+        ({"arm_angle": {"polynomial": [1.57, 0.2]}}, "the input arm_angle is taken 0.02 rad more"),
+    ],
+)
 def test_inputs_that_are_taken_otherwise_are_the_first_diagnosis_and_the_only_one(
-    words: str, name: str
+    wrong: dict[str, object], words: str
 ) -> None:
-    scene, _ = solved(name)
-    wrong = {given: taken(*km)(scene.inputs[given]) for given, km in WRONG_INPUTS[words].items()}
-    other = scene.model_copy(update={"inputs": {**scene.inputs, **wrong}})
-    (only,) = diagnosis(name, formulation("pointcoord").solve(other).numbers)
+    laws = {"arm_angle": {"polynomial": [1.55, 0.2]}, "rack": rack(1.0)}
+    scene, other = (
+        scene_with("double-wishbone", effects=EFFECTS, samples=12, inputs=laws | changed)
+        for changed in ({}, wrong)
+    )
+    held, found = (formulation("pointcoord").solve(one) for one in (scene, other))
+    given = held.with_numbers(found.numbers)
+    (only,) = explain_outcome(scene, compare_solutions(scene, held, given, "inputs"))
     assert (only.kind, only.leftover <= 1.0) == ("input", True)
     assert only.words.endswith(f": {words}")
-    assert {"position", "velocity", "acceleration"} <= set(only.quantities)
-
-
-def test_an_input_that_is_a_sum_is_taken_otherwise_as_a_whole() -> None:
-    scene, _ = solved("double-wishbone")
-    rack = scene.inputs["rack"]
-    summed, wrong = (
-        scene.model_copy(update={"inputs": {**scene.inputs, "rack": InputPart(sum=terms)}})
-        for terms in (
-            (rack, InputPart(constant=4.0)),
-            (taken(-1.0)(rack), InputPart(constant=-4.0)),
-        )
-    )
-    held, found = (formulation("pointcoord").solve(one) for one in (summed, wrong))
-    given = held.with_numbers(found.numbers)
-    (only,) = explain_outcome(summed, compare_solutions(summed, held, given, "summed"))
-    assert (only.kind, only.leftover <= 1.0) == ("input", True)
-    assert only.words.endswith(": the input rack has the other sign")
+    assert {"position", "velocity", "acceleration"} <= {q.partition(".")[0] for q in only.quantities}
 
 
 def test_another_assembly_of_the_same_links_is_told_as_one() -> None:
@@ -411,15 +320,3 @@ def test_another_assembly_of_the_same_links_is_told_as_one() -> None:
     motion = solve_task(prepare_task(scene.model_copy(update={"mechanism": part, "tolerance": 1e-13}), AUTO))
     found = diagnosis("double-wishbone", motion.numbers)[0]
     assert (found.kind, found.leftover <= 1.0) == ("branch", True), found
-
-
-@pytest.mark.parametrize(
-    ("name", "closure", "asked"), [("steer", "drawn", "collinear"), ("off-axis-strut", "collinear", "drawn")]
-)
-def test_another_closure_than_the_scene_asks_for_is_told_first(name: str, closure: str, asked: str) -> None:
-    scene, _ = solved(name)
-    part = scene.mechanism.model_copy(update={"closure": closure})
-    motion = solve_task(prepare_task(scene.model_copy(update={"mechanism": part, "tolerance": 1e-13}), AUTO))
-    first = diagnosis(name, motion.numbers)[0]
-    assert (first.kind, first.leftover <= 1.0) == ("closure", True)
-    assert first.words.endswith(f"the car is closed as {closure}, where the scene asks for {asked}")

@@ -9,7 +9,6 @@ import pytest
 
 from pointcoord import Scene
 from pointcoord.numerics.arrays import Array
-from validate import check
 from validate.comparison.compare import compare_solutions
 from validate.diagnosis import Explanation, explain_outcome
 from validate.formulations.protocol import Solution
@@ -76,14 +75,3 @@ def test_a_rod_of_another_length_is_named_with_what_it_is_too_long(
     # The end of a tie rod on a rack may be misread instead, along the rack: the same links.
     assert all("tie_rod_inner.y seems" in other.words for other in others)
     assert not (others and name == "five-link")
-
-
-def test_a_rod_of_another_length_is_named_though_one_number_has_a_fault_of_its_own() -> None:
-    scene, content = car("five-link")
-    scene = scene.model_copy(update={"effects": ["camber", "toe", "steer_angle"]})
-    content["effects"] = scene.effects
-    wheel = absolute(with_rod(content, "upper_front", 2.5)).numbers["wheel"]
-    wrong = {"wheel": {**wheel, "steer_angle": -wheel["steer_angle"]}}
-    told = [one.words for one in check(lambda _: wrong, scene, accuracy=1e-5).explanations]
-    assert told[0].startswith("camber, toe: upper_front is 2.5 mm too long")
-    assert told[1:] == ["steer_angle: the other sign"]

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 
-import numpy as np
 import pytest
 from changed_scenes import scene_with
 from planted_faults import misread
@@ -34,14 +33,6 @@ def test_a_point_that_moves_nothing_is_misread_all_the_same(amount: float, accur
     there = right["upper_arm_rear"] + [amount, 0.0, 0.0]
     (only,) = told(scene, {"position": {**right, "upper_arm_rear": there}}, accuracy)
     assert only.startswith(f"position of upper_arm_rear: upper_arm_rear.x seems {abs(amount):g} mm too far")
-
-
-def test_angles_of_an_axle_by_another_definition_are_said_to_be() -> None:
-    scene = scene_with("axle-opposed", effects=("wheel_angles", "caster"), samples=9)
-    wheel = simulate(scene).numbers["wheel"]
-    (only,) = told(scene, {"wheel": {name: np.tan(angles) for name, angles in wheel.items()}})
-    # Camber is so little that its slope is the angle.
-    assert only == "left.kingpin, right.kingpin, left.caster, right.caster: the slope, no angle"
 
 
 def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> None:

@@ -123,16 +123,3 @@ def test_slopes_of_rates_are_those_of_motions_of_cars_drawn_anew(name: str) -> N
     driven = driven_by(asking(name, RATES), "time [s]")
     time = driven.scene.time
     hold_to_cars_drawn_anew(driven, [time.start + (time.stop - time.start) * np.array([0.6, 0.1])])
-
-
-@pytest.mark.parametrize("column", ["input.rack [mm]", *(f"travel.{point} [mm]" for point in TRAVELLING)])
-def test_a_car_as_it_is_drawn_has_each_point_where_it_is_drawn(column: str) -> None:
-    """At the drawn inputs, and at the travel 0, a place changes by its own coordinates and by no others."""
-    driven = driven_by(asking("double-wishbone", ()), column)
-    coordinates = coordinates_of(driven.scene)
-    slopes = driven.slopes(driven.at([np.zeros(1)], 1e-12, bounded=False), coordinates)["position"]
-    for name, slope in slopes.items():
-        own = [[float(one == f"{name}.{axis}") for axis in "xyz"] for one in coordinates]
-        if np.any(own):
-            # Rounding times the condition of C_u, some 100.
-            assert np.abs(slope[:, 0] - own).max() < 1e-13, name

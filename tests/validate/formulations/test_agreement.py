@@ -1,5 +1,8 @@
 """The paper's own verification: two formulations of one mechanism agree in everything they compute."""
 
+from collections import Counter
+
+import badly_drawn_struts as struts
 import numpy as np
 from changed_scenes import scene_with
 from hypothesis import assume, given, note, settings
@@ -8,6 +11,7 @@ from pointcoord import AssemblyError, InputOutOfRange, MotionNotMapped, Scene
 from validate.cars.car import any_rotation
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.protocol import FormulationError
+from validate.formulations.registry import formulation
 from validate.strategies import scenes
 
 # The short profile searches briefly: the checks hold 400 random cars to what was answered before, and
@@ -24,30 +28,38 @@ def require_agreement(outcome: Outcome) -> None:
         assert max(float(np.abs(array).max()) for array in numbers) < 1e-280, row
 
 
+def require_random_agreement(scene: Scene, first: str) -> None:
+    note(repr(scene))
+    try:
+        outcome = compare(scene, first, "absolute")
+    except FormulationError as error:
+        # A motion that cannot be assembled is passed over; one that only the absolute model refuses
+        # is a finding. A fold on the way of the inputs may keep a map from covering it.
+        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange | MotionNotMapped))
+        raise
+    require_agreement(outcome)
+
+
 @searched
 @given(scenes())
 def test_formulations_agree_on_random_cars_and_motions(scene: Scene) -> None:
-    note(repr(scene))
-    try:
-        outcome = compare(scene, "pointcoord", "absolute")
-    except FormulationError as error:
-        # A motion that cannot be assembled is passed over; one that only the absolute model refuses
-        # is a finding.
-        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange))
-        raise
-    require_agreement(outcome)
+    require_random_agreement(scene, "pointcoord")
 
 
 @settings(max_examples=5)
 @given(scenes(samples=3))
 def test_the_map_agrees_on_random_cars_and_motions(scene: Scene) -> None:
-    """A fold on the way of the inputs may keep a map from covering it; then it must say so."""
-    try:
-        outcome = compare(scene, "pointcoord-map", "absolute")
-    except FormulationError as error:
-        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange | MotionNotMapped))
-        raise
-    require_agreement(outcome)
+    require_random_agreement(scene, "pointcoord-map")
+
+
+def test_badly_drawn_struts_close_to_the_same_assembly_in_both_models_or_are_refused() -> None:
+    """However badly a collinear strut is drawn."""
+    found = Counter(struts.outcome(struts.badly_drawn(number)) for number in range(80))
+    same, one = found[struts.SAME_PLACE], found[struts.ONE]
+    assert found[struts.OTHER_PLACE] == 0
+    # Of 3,000, 6.9 in a hundred that pointcoord closes are refused; 80 are off by 2.8 more at 68 %.
+    assert one <= 0.12 * (same + one)
+    assert same >= 0.6 * 80
 
 
 def test_a_car_that_is_displaced_agrees_whichever_way_its_axes_point() -> None:
@@ -68,6 +80,16 @@ def test_axes_that_are_printed_with_fewer_digits_are_the_same_to_every_formulati
         scene = scene_with(name, axes, samples=5)
         for other in ("absolute", "reference"):
             require_agreement(compare(scene, "pointcoord", other))
+
+
+def test_a_rod_that_is_called_as_an_angle_has_no_force_from_a_tree() -> None:
+    """A five-link has a rod `toe`; a tree of joints gives the angle of that name, and no forces."""
+    loaded = {"loads": {"": {"force": [0.0, 0.0, 4000.0]}}, "wheel_radius": 300.0}
+    scene = scene_with("five-link", loaded, effects=["toe", "loads"])
+    given = formulation("relative").solve(scene).numbers
+    assert "toe" in given["wheel"]
+    assert "rod_force" not in given
+    assert "toe" in formulation("pointcoord").solve(scene).numbers["rod_force"]
 
 
 def _turned(scene: Scene, turn: np.ndarray) -> Scene:

@@ -1,7 +1,11 @@
-"""A comparison is worth what it catches: each single fault, planted in one formulation, must be seen."""
+"""A comparison is worth what it catches: each single fault, planted in one formulation, must be seen.
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+tests/validate/comparison/test_tolerance.py shows that a number beyond its tolerance is seen, and
+tests/mechanisms/test_formulations.py how narrow tolerances are.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from itertools import cycle
 
@@ -11,20 +15,12 @@ from changed_scenes import scene_with
 from sample_cars import CARS
 
 import absolute
-import absolute.rows
 import pointcoord.patches.evaluation
-import pointcoord.patches.patches
-import pointcoord.results.readout
-import pointcoord.solve.dense_output
-import pointcoord.solve.taylor
 import validate.formulations.modelled
 from pointcoord import Scene
-from pointcoord.effects.point_states import STATES
-from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import NEWTON
-from validate.comparison.compare import compare, compare_solutions
-from validate.formulations.asked_numbers import per_second
+from validate.comparison.compare import compare
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.registry import formulation
 from validate.paper.scenes import PAPER_SCENES
@@ -63,15 +59,16 @@ def _half_square_term(patch: pytest.MonkeyPatch) -> None:
     )
 
 
-def _in_powers_of_inputs(change: Callable[[list[np.ndarray], list[np.ndarray]], list[np.ndarray]]) -> Plant:
-    """In the powers that a map's series are summed with: those of the rates alone are handed over too."""
+def _half_curvature(patch: pytest.MonkeyPatch) -> None:
+    """In the powers that a map's series are summed with."""
     right = pointcoord.patches.evaluation.monomials
 
     def wrong(states: list[np.ndarray], order: int, room: np.ndarray | None = None) -> list[np.ndarray]:
-        without_push = [*states[:2], *(np.zeros_like(state) for state in states[2:])]
-        return change(right(states, order), right(without_push, order))
+        powers = right(states, order)
+        of_rates = right([*states[:2], *(np.zeros_like(state) for state in states[2:])], order)
+        return [*powers[:2], *(a - 0.5 * b for a, b in zip(powers[2:], of_rates[2:], strict=True))]
 
-    return lambda patch: patch.setattr(pointcoord.patches.evaluation, "monomials", wrong)
+    patch.setattr(pointcoord.patches.evaluation, "monomials", wrong)
 
 
 def _in_inputs(change: Callable[[np.ndarray], np.ndarray], late: float = 0.0) -> Plant:
@@ -107,105 +104,40 @@ def _loops_at_rest(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(InPinocchio, "apart", lambda program, *_: np.zeros(3 * len(program.tree.loops)))
 
 
-@dataclass(frozen=True)
-class Fault:
-    """Where a fault goes, one of the paper's scenes that shows it, and the quantity that it spoils."""
-
-    plant: Plant
-    scene: str
-    spoils: str
-    first: str = "pointcoord"
-    second: str = "absolute"
-
-
-FAULTS = {
-    "a link 1e-7 mm too long": Fault(_in_mechanism(_link_too_long), "bounce", "position"),
-    "the factor 2 of eq. (23) dropped": Fault(
-        _half_square_term, "bounce", "acceleration", "pointcoord-newton"
+PAIR = ("pointcoord", "absolute")
+# The fault, one of the paper's scenes that shows it, the quantity that it spoils, and who are compared.
+FAULTS: dict[str, tuple[Plant, str, str, tuple[str, str]]] = {
+    "a link 1e-7 mm too long": (_in_mechanism(_link_too_long), "bounce", "position", PAIR),
+    "the factor 2 of eq. (23) dropped": (
+        *(_half_square_term, "bounce", "acceleration"),
+        ("pointcoord-newton", "absolute"),
     ),
-    "the curvature of the map counted half": Fault(
-        _in_powers_of_inputs(
-            lambda p, r: [*p[:2], *(a - 0.5 * b for a, b in zip(p[2:], r[2:], strict=True))]
-        ),
-        "bounce-and-steer",
-        "acceleration",
-        "pointcoord-map",
+    "the curvature of the map counted half": (
+        *(_half_curvature, "bounce-and-steer", "acceleration"),
+        ("pointcoord-map", "absolute"),
     ),
-    "theta'' forgotten": Fault(_in_inputs(_without(2)), "bounce", "acceleration"),
-    "inputs late by 1e-10 s": Fault(_in_inputs(_without(), 1e-10), "bounce", "position"),
-    "the chassis' rates forgotten": Fault(_chassis_at_rest, "bounce-on-a-heaving-chassis", "velocity"),
-    "no Coriolis terms, in the tree": Fault(
-        _loops_at_rest, "bounce-and-steer", "acceleration", second="relative"
+    "theta'' forgotten": (_in_inputs(_without(2)), "bounce", "acceleration", PAIR),
+    "inputs late by 1e-10 s": (_in_inputs(_without(), 1e-10), "bounce", "position", PAIR),
+    "the chassis' rates forgotten": (_chassis_at_rest, "bounce-on-a-heaving-chassis", "velocity", PAIR),
+    "no Coriolis terms, in the tree": (
+        *(_loops_at_rest, "bounce-and-steer", "acceleration"),
+        ("pointcoord", "relative"),
     ),
 }
 
 
-OWN_SCENES = {name: Scene.load(name) for name in PAPER_SCENES}
 # On a chassis that moves up and down, so that they show every fault.
 HEAVE = {"heave": {"sine": {"amplitude": 20.0, "angular_frequency": 5.0}}}
-OTHER_CARS = {name: scene_with(name, laws=HEAVE) for name in CARS if name not in PAPER_SCENES}
-
-
-def shown(name: str, car: str) -> Scene:
-    """A scene of a car that shows a fault."""
-    return OTHER_CARS[car] if car in OTHER_CARS else OWN_SCENES[FAULTS[name].scene]
-
-
+OTHER_CARS = [name for name in CARS if name not in PAPER_SCENES]
 ON_CARS = [*zip(FAULTS, cycle(("paper", *OTHER_CARS)), strict=False)]
 
 
-@pytest.mark.parametrize("car", ["paper", *OTHER_CARS])
-def test_without_a_fault_these_comparisons_agree(car: str) -> None:
-    faults = {name: FAULTS[name] for name, on in ON_CARS if on == car}
-    pairs = {(shown(name, car).title, fault.first, fault.second): name for name, fault in faults.items()}
-    for name in pairs.values():
-        assert compare(shown(name, car), FAULTS[name].first, FAULTS[name].second).agreed
-
-
 @pytest.mark.parametrize(("name", "car"), ON_CARS)
-def test_a_single_fault_makes_the_comparison_fail(
+def test_a_single_fault_makes_a_comparison_fail_that_agrees_without_it(
     name: str, car: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    fault, scene = FAULTS[name], shown(name, car)
-    fault.plant(monkeypatch)
-    outcome = compare(scene, fault.first, fault.second)
-    assert fault.spoils in {row.quantity for row in outcome.disagreements}
-
-
-NEAR = 1e-11  # relative: a hundred thousand roundings, which a tolerance for a whole motion let pass
-FURTHER = 1e-9  # of derivatives from the fourth on, whose errors are sums of many terms
-# Of the derivatives that follow on the jerk, one, which has no name.
-LAST = "derivative_9"
-RATES = [
-    name
-    for name, q in QUANTITIES.items()
-    if per_second(name) and q.of != "car" and name not in {*STATES[4:]} - {LAST}
-]
-
-
-def _scaled(quantity: str, arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    near = FURTHER if quantity in STATES[4:] else NEAR
-    return {name: array * (1.0 + near) for name, array in arrays.items()}
-
-
-@pytest.mark.parametrize(("name", "other"), [("off-axis-strut", "absolute"), ("double-wishbone", "relative")])
-def test_rates_a_little_off_are_seen_and_so_is_one_number_at_one_instant(name: str, other: str) -> None:
-    """Of every point, body and angle: off by a ten millionth of the largest number of its quantity."""
-    scene = scene_with(name, samples=11)
-    if other != "relative":
-        scene = scene.model_copy(update={"effects": (*scene.effects, *STATES[3 : STATES.index(LAST) + 1])})
-    ours, theirs = (formulation(who).solve(scene) for who in ("pointcoord", other))
-
-    def disagree(quantity: str, arrays: Mapping[str, np.ndarray]) -> list[tuple[str, str]]:
-        faulty = theirs.with_numbers({quantity: arrays})
-        outcome = compare_solutions(scene, ours, faulty, name)
-        return [(row.quantity, row.name) for row in outcome.disagreements]
-
-    for quantity, arrays in theirs.numbers.items():
-        if quantity in RATES:
-            assert {q for q, _ in disagree(quantity, _scaled(quantity, arrays))} == {quantity}
-        largest = max(float(np.abs(array).max()) for array in arrays.values())
-        for part, array in arrays.items():
-            wrong = array.copy()
-            wrong[len(wrong) // 2] += 1e-7 * largest
-            assert disagree(quantity, {**arrays, part: wrong}) == [(quantity, part)]
+    plant, shown, spoils, (first, second) = FAULTS[name]
+    scene = scene_with(car, laws=HEAVE) if car in OTHER_CARS else Scene.load(shown)
+    assert compare(scene, first, second).agreed
+    plant(monkeypatch)
+    assert spoils in {row.quantity for row in compare(scene, first, second).disagreements}

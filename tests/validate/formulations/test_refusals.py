@@ -1,13 +1,16 @@
-"""Models that refuse a scene for the same thing are seen to; what they solved before it holds."""
+"""Models that refuse a scene for the same thing are seen to.
 
+That what they solved before it holds is tried by the hard cases of ends.
+"""
+
+import sys
 from typing import Any
 
-import numpy as np
 import pytest
 from changed_scenes import scene_with
 
-from pointcoord import Scene, SceneError
-from validate.formulations.protocol import FormulationError, Solution
+from pointcoord import MissingLibrary, Scene, SceneError
+from validate.formulations.protocol import FormulationError
 from validate.formulations.refusals import (
     DRAWING,
     HARDPOINTS,
@@ -19,7 +22,7 @@ from validate.formulations.refusals import (
     same_reason,
     why_refused,
 )
-from validate.formulations.registry import formulation
+from validate.formulations.registry import OUTSIDE, formulation
 
 MODELS = ("pointcoord", "absolute", "relative")
 
@@ -61,33 +64,13 @@ def test_all_models_refuse_a_scene_for_the_same_reason(wrong: Scene, reason: str
         assert refusal.message
 
 
-def locking(name: str) -> Scene:
-    """A built-in scene whose arm leaves its range before the last instant."""
-    (start,) = Scene.load(name).functions["arm_angle"].series(0.0, 0)
-    return scene(name, arm={"polynomial": [float(start), 0.05, 0.35]})
-
-
-def partial(solver: str, scene: Scene) -> Solution:
-    with pytest.raises(FormulationError) as caught:
-        formulation(solver).solve(scene)
-    assert caught.value.partial is not None
-    return caught.value.partial
-
-
-@pytest.mark.parametrize(
-    ("name", "solver", "other"),
-    [("off-axis-strut", "pointcoord", "absolute"), ("double-wishbone", "pointcoord-newton", "relative")],
-)
-def test_what_both_models_solved_before_a_lock_agrees_within_their_claims(
-    name: str, solver: str, other: str
+@pytest.mark.parametrize("who", OUTSIDE)
+def test_a_program_that_is_not_installed_is_told_with_its_package_and_extra(
+    who: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scene = locking(name)
-    one, two = partial(solver, scene), partial(other, scene)
-    np.testing.assert_array_equal(one.times, two.times)
-    assert 10 < len(one.times) < len(scene.instants)
-    # Models that are outside witnesses give no gradients.
-    assert {"position", "wheel"} <= two.numbers.keys() <= one.numbers.keys()
-    for quantity, arrays in two.numbers.items():
-        for point, array in arrays.items():
-            claims = (s.accuracy.claims[quantity][point] for s in (one, two))
-            assert (np.abs(array - one.numbers[quantity][point]) <= sum(claims)).all(), (quantity, point)
+    monkeypatch.setitem(sys.modules, who, None)
+    monkeypatch.delitem(sys.modules, f"validate.peers.in_{who}", raising=False)
+    with pytest.raises(MissingLibrary) as caught:
+        formulation(who)
+    assert f"needs the package {who!r}, which is not installed" in str(caught.value)
+    assert "pip install 'pointcoord[peers]'" in str(caught.value)

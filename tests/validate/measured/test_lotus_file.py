@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from changed_scenes import scene_with
 from curve_files import disagreeing, verdicts
-from lotus_front import BUMP, ROLLING_RADIUS, STEERING
+from lotus_front import BUMP, ROLLING_RADIUS
 
 from pointcoord import Scene
 from validate.measured.comparing import DataOutcome, compare_results
@@ -42,29 +42,24 @@ def test_the_printed_bump_table_agrees_to_its_four_digits_by_the_map_of_the_read
     found = compare_results(read_results(str(data), str(map), CAR), CAR, "car")
     assert found.outcome.agreed
     assert verdicts(found) == dict.fromkeys(ANGLES, "agrees")
-    assert sum(len(angles) for angles in found.outcome.solutions[0].numbers["wheel"].values()) == 44
     for row in found.outcome.rows:
         # Half of the last digit; the rest is rounding in double precision and the map's bound.
         assert np.degrees(row.tolerance) == pytest.approx(0.5e-4, rel=1e-5)
-        # A table of 44 rounded numbers that is right uses most of what rounding allows somewhere.
-        assert 0.5 < row.share <= 1.0
 
 
 def test_a_column_that_a_map_does_not_name_goes_along_by_its_own_name_or_is_told() -> None:
     content = CONTENT | {"columns": {name: CONTENT["columns"][name] for name in ("bump", "camber")}}
     assert verdicts(compared(CSV, content)) == dict.fromkeys(ANGLES, "agrees")
     # One that says no unit, that is nothing of ours, or what another is said to be, is left out and told.
-    others = CSV.replace("kingpin [deg]", "kingpin").replace("toe [deg]", "vorspur [deg]")
+    text = CSV.replace("kingpin [deg]", "w" * 10_000).replace("toe [deg]", "vorspur [deg]")
+    text = text.replace("camber [deg]", "caster_deg", 1).replace("caster [deg]", "camber [deg]")
     found = compared(
-        others.replace("camber [deg]", "caster_deg", 1).replace("caster [deg]", "camber [deg]"),
-        {
-            "rolling_radius": ROLLING_RADIUS,
-            "columns": {"bump": CONTENT["columns"]["bump"], "camber": {"is": "caster"}},
-        },
+        text, CONTENT | {"columns": {"bump": CONTENT["columns"]["bump"], "camber": {"is": "caster"}}}
     )
     assert verdicts(found) == {"caster": "agrees"}
     (note,) = (note for note in found.outcome.notes if note.startswith("ignored"))
-    assert "caster_deg, vorspur, kingpin (name not recognised, without a unit" in note
+    assert "caster_deg, vorspur, www" in note
+    assert len(note) < 300
 
 
 def test_sign_offset_and_unit_of_a_column_are_undone() -> None:
@@ -81,23 +76,6 @@ def test_sign_offset_and_unit_of_a_column_are_undone() -> None:
     assert disagreeing(text, content, CAR) == []
     content["columns"]["camber"]["offset"] = -5.0
     assert disagreeing(text, content, CAR) == ["wheel.camber"]
-
-
-def test_an_arcsine_is_told_from_a_projected_angle() -> None:
-    # At a toe t and a projected camber c the spin axis has n_z = -tan c / sqrt(1 + tan^2 c + tan^2 t).
-    lines = ["rack [mm],camber [deg]"]
-    for rack, toe, camber in STEERING:
-        t, c = np.tan(np.radians([toe, camber]))
-        lines.append(f"{-rack:.1f},{np.degrees(np.arcsin(c / np.sqrt(1.0 + c**2 + t**2))):.2f}")
-    camber = {"is": "camber", "accuracy": 0.005}  # the printed angle that it is made of is rounded too
-    content: dict[str, Any] = {
-        "rolling_radius": ROLLING_RADIUS,
-        "held": {"travel.contact": 0.0},
-        "columns": {"rack": {"is": "input.rack", "printed": 0}, "camber": camber},
-    }
-    assert disagreeing("\n".join(lines), content, CAR) == ["wheel.camber"]
-    camber["is"] = "camber_by_arcsine"
-    assert disagreeing("\n".join(lines), content, CAR) == []
 
 
 def test_the_wheel_radius_of_the_scene_is_taken_where_the_map_has_none() -> None:

@@ -1,27 +1,23 @@
-"""Files over travels and inputs of what a map does not give: gradients, roll centres, ratios, jerks."""
+"""Files of what a map does not give: gradients, centres, ratios, derivatives, numbers of an axle, forces."""
 
-from typing import Any
+from collections.abc import Callable, Mapping
 
-import numpy as np
 import pytest
 from changed_scenes import scene_with
-from curve_files import compared, disagreeing, table, verdicts
+from curve_files import compared, disagreeing, table
 
-from pointcoord import Scene, solve_poses
+from pointcoord import Scene
 from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.numerics.arrays import Array
 from validate.formulations.registry import formulation
 from validate.tables.units import degrees_of
 
-OVER_TRAVEL = (
-    "toe_by_travel",
-    "camber_by_rack",
-    "roll_centre_height",
-    "front_view_swing_arm",
-    "damper_per_wheel",
-    "camber",
-)
-EFFECTS = (
+Change = Callable[[Array], Array]
+LOADED = {"wheel_radius": 270.0, "loads": {"force": [0.0, 0.0, 3000.0]}}
+RACK = {"arm_angle": {"constant": drawn_inputs(Scene.load("double-wishbone"))["arm_angle"]}}
+RACK |= {"rack": {"sweep": [-20.0, 20.0]}}
+OF_TRAVEL = (
     "wheel_angles",
     "toe_by_travel",
     "camber_by_rack",
@@ -29,76 +25,78 @@ EFFECTS = (
     "instant_centres",
     "motion_ratio",
 )
+# Instants that few digits give exactly.
+EXACT = {"start": 0.0, "stop": 0.5, "samples": 17}
+CASES: dict[str, tuple[Scene, str, dict[str, Change], tuple[str, ...]]] = {
+    "gradients, centres and ratios over a travel": (
+        scene_with("wheel-travel", effects=OF_TRAVEL, samples=9),
+        "input.wheel_travel [mm]",
+        {
+            "angle_gradient.toe_by_travel": lambda x: -x,
+            "dimension.roll_centre_height": lambda x: x + 2e-5,
+            "dimension_gradient.damper_per_wheel": lambda x: 1.0 / x,
+            "dimension.front_view_swing_arm": lambda x: x * 1.000001,
+        },
+        ("angle_gradient.camber_by_rack", "wheel.camber"),
+    ),
+    "what two wheels make over a rack, in per cent": (
+        scene_with("axle-steer", effects=("steer_angle", "ackermann"), samples=10),
+        "input.rack [mm]",
+        {"ackermann.ackermann": lambda x: x + 1e-3},
+        ("steer_error.ackermann_error",),
+    ),
+    "forces over a rack, by bounds of their own poses": (
+        scene_with("double-wishbone", LOADED, effects=["loads"], inputs=RACK, samples=5),
+        "input.rack [mm]",
+        {"rod_force.tie_rod": lambda x: x + 2e-5},
+        (),
+    ),
+    **{
+        f"{name} over time": (
+            scene_with("bounce-and-steer", effects=[name], time=EXACT),
+            "time [s]",
+            {f"{name}.wheel_centre.x": lambda x: 1.001 * x},
+            (f"{name}.wheel_centre.z",),
+        )
+        for name in ("jerk", "derivative_12")
+    },
+}
 
 
-def file_of(scene: Scene, over: str, numbers: tuple[str, ...], wrong: dict[str, Any] | None = None) -> str:
-    """A table of the absolute model's numbers over an input, five decimals, and of what is done to some."""
-    columns = {f"input.{over} [mm]": scene.functions[over].series(scene.instants, 0)[:, 0]}
-    for quantity, part in formulation("absolute").solve(scene).numbers.items():
+def file_of(scene: Scene, over: str, changes: Mapping[str, Change]) -> str:
+    """A table of the absolute model's numbers, each changed; five decimals, in m/s^n."""
+    driven = over.partition(" ")[0].removeprefix("input.")
+    columns = {
+        over: scene.instants if driven == "time" else scene.functions[driven].series(scene.instants, 0)[:, 0]
+    }
+    solved = formulation("absolute").solve(scene).numbers
+    for name, change in changes.items():
+        quantity, part, *axis = name.split(".")
         factor, unit = degrees_of(QUANTITIES[quantity].unit)
-        for name in (name for name in numbers if name in part):
-            change = (wrong or {}).get(name, lambda x: x)
-            columns[f"{name} [{unit}]"] = change(factor * part[name])
+        if axis:
+            factor, unit = 1e-3, unit.removeprefix("m")
+        numbers = solved[quantity][part]
+        for one in axis:
+            numbers = numbers[:, "xyz".index(one)]
+        columns[f"{name} [{unit}]"] = change(factor * numbers)
     return table(columns, 5)
 
 
-def test_gradients_centres_and_ratios_over_a_travel_are_held_to_their_digits() -> None:
-    scene = scene_with("wheel-travel", effects=EFFECTS, samples=9)
-    found = compared(file_of(scene, "wheel_travel", OVER_TRAVEL), {}, scene)
-    assert verdicts(found).items() >= dict.fromkeys(OVER_TRAVEL, "agrees").items()
+@pytest.mark.parametrize("case", CASES)
+def test_numbers_of_every_kind_are_held_to_their_digits(case: str) -> None:
+    scene, over, wrong, right = CASES[case]
+    content = {"columns": {over.partition(" ")[0]: {"printed": 0}}}
+    same = dict.fromkeys((*wrong, *right), lambda x: x)
+    outcome = compared(file_of(scene, over, same), content, scene).outcome
+    assert outcome.agreed
     # To half of the last digit and hardly more: our own bounds are far below it.
-    tolerances = {row.name: row.tolerance for row in found.outcome.rows}
-    assert tolerances["roll_centre_height"] == pytest.approx(5e-6, rel=0.1)
-    assert tolerances["toe_by_travel"] == pytest.approx(np.radians(5e-6), rel=0.1)
-    wrong = {
-        "toe_by_travel": lambda x: -x,
-        "roll_centre_height": lambda x: x + 2e-5,
-        "damper_per_wheel": lambda x: 1.0 / x,
-        "front_view_swing_arm": lambda x: x * 1.000001,
-    }
-    disagree = disagreeing(file_of(scene, "wheel_travel", OVER_TRAVEL, wrong), {}, scene)
-    assert sorted(words.rpartition(".")[2] for words in disagree) == sorted(wrong)
+    for row in outcome.rows:
+        if row.unit in ("mm", "rad", "rad/mm"):
+            assert degrees_of(row.unit)[0] * row.tolerance == pytest.approx(5e-6, rel=0.1), row.name
+    assert {*disagreeing(file_of(scene, over, same | wrong), content, scene)} == {*wrong}
 
 
-def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
-    numbers = ("ackermann", "ackermann_error")
-    scene = scene_with("axle-steer", effects=("steer_angle", "ackermann"), samples=10)
-    exact = {"columns": {"input.rack": {"printed": 0}}}
-    found = compared(file_of(scene, "rack", numbers), exact, scene)
-    assert {verdicts(found)[name] for name in numbers} == {"agrees"}
-    off = file_of(scene, "rack", numbers, {"ackermann": lambda x: x + 1e-3})
-    (wrong,) = disagreeing(off, exact, scene)
-    assert wrong.endswith(".ackermann")
-
-
-def test_forces_over_an_input_are_held_to_bounds_of_their_own_poses_and_rates_are_not_tested() -> None:
-    loaded, racks = (
-        {"wheel_radius": 270.0, "loads": {"force": [0.0, 0.0, 3000.0]}},
-        np.linspace(-20.0, 20.0, 5),
-    )
-    scene = scene_with("double-wishbone", loaded, effects=["loads"])
-    inputs = {"rack": racks, "arm_angle": drawn_inputs(scene)["arm_angle"]}
-    forces = solve_poses(scene, inputs).numbers["rod_force"]["tie_rod"]
-    for factor, verdict in ((1.0, "agrees"), (1.0 + 1e-8, "disagrees")):
-        rows = (
-            f"{x!r},{factor * force!r},1.0" for x, force in zip(racks.tolist(), forces.tolist(), strict=True)
-        )
-        text = "\n".join(["rack [mm],rod_force.tie_rod [N],velocity.wheel_centre.z [mm/s]", *rows, ""])
-        found = {row.quantity: row for row in compared(text, {}, scene).outcome.rows}
-        assert found["rod_force"].verdict == verdict
-        assert (found["velocity"].verdict, found["velocity"].why) == (
-            "not tested",
-            "rates need a column of time",
-        )
-
-
-@pytest.mark.parametrize(("name", "order"), [("jerk", 3), ("derivative_12", 12)])
-def test_derivatives_over_time_are_read_in_their_unit_and_a_wrong_one_is_seen(name: str, order: int) -> None:
-    scene = scene_with("bounce-and-steer", effects=(name,), samples=21)
-    motion = formulation("absolute").solve(scene)
-    for factor, wrong in ((1.0, []), (1.001, [f"{name}.wheel_centre.x"])):
-        numbers = motion.numbers[name]["wheel_centre"] * [factor, 1.0, 1.0]
-        heads = ["time [s]", *(f"{name}.wheel_centre.{axis} [m/s^{order}]" for axis in "xyz")]
-        rows = [[t, *(j * 1e-3)] for t, j in zip(scene.instants.tolist(), numbers, strict=True)]
-        text = "\n".join([",".join(heads), *(",".join(f"{float(x):.9f}" for x in row) for row in rows), ""])
-        assert disagreeing(text, {}, scene) == wrong
+def test_rates_over_an_input_are_not_tested() -> None:
+    scene = CASES["forces over a rack, by bounds of their own poses"][0]
+    (row,) = compared("rack [mm],velocity.wheel_centre.z [mm/s]\n0,1.0\n5,1.0\n", {}, scene).outcome.rows
+    assert (row.verdict, row.why) == ("not tested", "rates need a column of time")

@@ -7,23 +7,26 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_files import plain_scene, scene_file
+from every_number import TURNED, asked
+from mechanism_files import mechanism_file, plain, plain_scene
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import drawn_inputs
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.numerics.arrays import Array
+from validate.comparison.compare import compare
 from validate.errors import NoAnswer
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.motion import Poses
+from validate.reference.effects.wheel import OF_POSITIONS
 from validate.spanning_tree.cut import cut
 
 
-def plain_car(scene: str, **points: Any) -> dict[str, Any]:
-    """The flat description of a shipped car by arm angle and rack, or of one with other points."""
-    drawn = scene_file(scene)["mechanism"]["points"]
-    return plain_scene(scene, ("arm_angle", "rack"), points={**drawn, **points})
+def plain_car(scene: str) -> dict[str, Any]:
+    """The flat description of a shipped car by arm angle and rack."""
+    return plain_scene(scene, ("arm_angle", "rack"))
 
 
 def held(values: Array) -> Array:
@@ -88,14 +91,6 @@ def test_an_input_that_is_no_number_or_missing_is_refused_with_its_instant(wrong
     assert caught.value.instant == (None if wrong is None else 7)
 
 
-def test_two_branches_that_cross_at_once_are_not_exchanged() -> None:
-    """With the cranks in line both loops change the sign of their determinants, so the product keeps its
-    sign.
-    """
-    with pytest.raises(NoAnswer, match="cannot be reached"):
-        solved(plain_scene("n-four-bar"), {"crank": held(np.array([-1.0, -1.6]))})
-
-
 def parallelogram(apart: float) -> Any:
     """Two cranks of 1 m that a coupler keeps parallel, or crossed from where all lie in one line."""
     mechanism = plain_scene("n-four-bar")
@@ -131,12 +126,26 @@ def test_a_way_that_turns_back_before_a_fold_is_followed_back(program_of: Any) -
     assert np.abs(poses.coordinates[0] - poses.coordinates[2]).max() < 1e-11
 
 
-def test_what_makes_no_mechanism_is_told_by_name() -> None:
-    strut = scene_file("off-axis-strut")["mechanism"]["points"]
-    with pytest.raises(NoAnswer, match="lower_arm_front is where lower_arm_rear is"):
-        cut(plain_car("off-axis-strut", lower_arm_rear=strut["lower_arm_front"]))
-    with pytest.raises(NoAnswer, match="strut_lower is where strut_top is"):
-        cut(plain_car("off-axis-strut", strut_lower=strut["strut_top"]))
+def test_a_wheel_that_lies_flat_or_has_no_radius_has_no_contact_point() -> None:
+    tables, points = mechanism_file("five_link"), dict(plain_scene("five-link")["points"])
+    tables["inputs"] = {"lift": {"contact": ["wheel_axis_inner", "wheel_centre"]}}
+    with pytest.raises(NoAnswer, match="wheel_radius"):
+        cut(plain(tables, {"points": points}, ["lift"]))
+    x, y, z = points["wheel_centre"]
+    points["wheel_axis_inner"] = (x, y, z - 100.0)
+    with pytest.raises(NoAnswer, match="lies flat"):
+        cut(plain(tables, {"points": points, "wheel_radius": 300.0}, ["lift"]))
+
+
+@pytest.mark.parametrize("name", ["pushrod", TURNED])
+def test_a_tree_gives_every_number_of_a_wheel_that_positions_make(name: str) -> None:
+    """tests/mechanisms compares what scenes ask for."""
+    scene, known = asked(name), {one.name for one in OF_POSITIONS}
+    effects = [one for one in scene.effects if known & {*EFFECTS[one].own_names}]
+    outcome = compare(scene.model_copy(update={"effects": effects}), "relative", "reference")
+    rows = [row for row in outcome.rows if row.name in known]
+    assert len(rows) > 10
+    assert [row for row in rows if row.verdict == "not given" or row.share > 1.0] == []
 
 
 @pytest.mark.parametrize("program_of", [InMujoco, InExudyn, InPinocchio])

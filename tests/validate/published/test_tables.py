@@ -1,16 +1,14 @@
 """Tables that other programs printed: both models give every number, and a wrong digit is found."""
 
-import json
 import shutil
 from pathlib import Path
 from xml.etree import ElementTree
 
-import jsonschema
 import pytest
+from program import document
 
 from validate.cli import main
 from validate.measured.reading import read_columns
-from validate.output.document import schema_text
 from validate.published import tables as room
 from validate.published.tables import FOLDER, MODELS, RULES, Published, compare_published, compare_table
 
@@ -115,18 +113,13 @@ def test_a_wrong_digit_ends_the_program_with_status_1_and_is_named_in_words_json
     assert f"{len(HELD) - 1} of {len(HELD)} printed columns agree" in said
     assert "disagrees: Lotus: lengths over bump, damper travel" in said
     (line,) = (line for line in said.splitlines() if "DISAGREES" in line)
-    assert line.split()[:2] == ["damper", "travel"]
     assert "bump -37.5 mm" in line
-    content = json.loads(json_file.read_text())
-    jsonschema.validate(content, json.loads(schema_text()))
-    rows = [row for one in content["scenes"] for pair in one["comparisons"] for row in pair["rows"]]
-    assert {(row["scene"], row["name"]) for row in rows if row["verdict"] == "disagrees"} == {
-        ("lotus-bump-lengths", "damper_travel")
-    }
-    failures = [
-        case.get("name") for case in ElementTree.parse(junit).iter("testcase") if len(case.findall("failure"))
-    ]
-    assert failures == ["damper_travel"] * 2
+    scenes = document(json_file)["scenes"]
+    rows = [row for one in scenes for pair in one["comparisons"] for row in pair["rows"]]
+    wrong = {(row["scene"], row["name"]) for row in rows if row["verdict"] == "disagrees"}
+    assert wrong == {("lotus-bump-lengths", "damper_travel")}
+    cases = ElementTree.parse(junit).iter("testcase")
+    assert [case.get("name") for case in cases if case.findall("failure")] == ["damper_travel"] * 2
 
 
 def test_a_row_at_another_place_than_its_first_column_says_is_refused_in_a_line(

@@ -15,33 +15,11 @@ from pointcoord.solve.proven_step import Proof
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.answer import Answer, Trial
-from validate.hard.case import Case
 from validate.hard.cases import laws, links
 from validate.hard.catalogue import CASES
-from validate.hard.report import examine
 from validate.hard.subjects import PAPER
 
 BY_NAME = {case.name: case for case in CASES}
-OURS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
-
-
-def at(case: str, *values: float) -> Case:
-    """A case at some values of its parameter only."""
-    return replace(BY_NAME[case], values=values)
-
-
-def solution_of(came: object) -> Solution:
-    """What came, which is no refusal."""
-    assert isinstance(came, Solution)
-    return came
-
-
-def test_a_car_at_rest_has_rates_of_exactly_zero() -> None:
-    (trial,) = examine(at("arm-hardly-moves", 0.0)).trials
-    assert set(trial.came) == {*OURS, "pointcoord-map"}
-    for came in trial.came.values():
-        for quantity in ("velocity", "acceleration", "angular_velocity", "angular_acceleration"):
-            assert all(not array.any() for array in solution_of(came).numbers[quantity].values())
 
 
 def test_an_error_as_of_subtracted_far_coordinates_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -64,13 +42,6 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(monkeypatch: pyt
     assert answers["pointcoord-newton"].outcome == "wrong"
     assert "bounds of the car at home" in answers["pointcoord-newton"].reason
     assert answers["pointcoord"].outcome == "right"
-
-
-def test_a_map_refuses_an_input_whose_rates_overflow() -> None:
-    (trial,) = examine(at("huge-semi-trailing-arm", 22.0)).trials
-    assert trial.facts["place"] == "inputs.wheel_travel.sine.angular_frequency"
-    assert {answer.outcome for answer in trial.answers} == {"refused"}
-    assert isinstance(trial.came["pointcoord-map"], FormulationError)
 
 
 def test_a_jump_refused_for_another_reason_is_wrong() -> None:
