@@ -73,10 +73,6 @@ def test_links_between_pages_lead_somewhere(page: str) -> None:
         assert target.startswith("http") or ((ROOT / page).parent / target).exists(), target
 
 
-def test_every_page_is_reached_from_the_readme() -> None:
-    reached = {"README.md", *re.findall(r"\]\(([^)#]+\.md)", README)}
-    assert set(PAGES) <= reached
-
-
-def test_help_prints_every_page_but_the_readme() -> None:
-    assert {f"{folder}/README.md" for folder in TOPICS.values()} == set(PAGES) - {"README.md"}
+def test_every_page_is_reached_from_the_readme_and_printed_by_help() -> None:
+    assert {*PAGES} <= {"README.md", *re.findall(r"\]\(([^)#]+\.md)", README)}
+    assert {f"{folder}/README.md" for folder in TOPICS.values()} == {*PAGES} - {"README.md"}

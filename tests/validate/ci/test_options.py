@@ -20,6 +20,14 @@ from validate.formulations.registry import formulation
 
 PAIR = ("--second", "absolute")
 SOLVE = AbsoluteCoordinates.solve
+# What a run leaves, by the ending of its file.
+OPTIONS = {"json": "--json", "xml": "--junit", "md": "--summary", "npz": "--save-baseline"}
+
+
+def left(folder: Path, *endings: str) -> tuple[dict[str, Path], list[str]]:
+    """Files for what a run leaves, and its options that name them."""
+    files = {ending: folder / f"out.{ending}" for ending in endings or OPTIONS}
+    return files, [word for ending, file in files.items() for word in (OPTIONS[ending], str(file))]
 
 
 def off_by(patch: pytest.MonkeyPatch, times: float) -> None:
@@ -78,19 +86,18 @@ def test_a_factor_is_what_a_difference_of_twice_the_tolerance_needs_and_every_re
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     off_by(monkeypatch, 2.0)
-    scene, places = short_scene(tmp_path), [str(tmp_path / f"out.{end}") for end in ("json", "xml", "md")]
-    ends = [word for pair in zip(("--json", "--junit", "--summary"), places, strict=True) for word in pair]
-    words = ["validate", scene, *PAIR, *ends]
-    assert main([*words, *(() if factor is None else ("--tolerance-factor", factor))]) == status
+    files, ends = left(tmp_path, "json", "xml", "md")
+    more = () if factor is None else ("--tolerance-factor", factor)
+    assert main(["validate", short_scene(tmp_path), *PAIR, *ends, *more]) == status
     out = capsys.readouterr().out
     held = float(factor or 1.0)
-    data, root = json.loads(Path(places[0]).read_text()), checked(Path(places[1]).read_bytes())
+    data, root = json.loads(files["json"].read_text()), checked(files["xml"].read_bytes())
     assert data["tolerance_factor"] == data["scenes"][0]["comparisons"][0]["tolerance_factor"] == held
     properties = {one.get("name"): one.get("value") for one in root.iter("property")}
     assert float(properties["tolerance_factor"] or "") == held
     told = f"tolerances are not as derived but {held!r} times the derived tolerances"
     assert (told in out) == (held != 1.0)
-    assert (told in Path(places[2]).read_text()) == (held != 1.0)
+    assert (told in files["md"].read_text()) == (held != 1.0)
     rows = {(r["quantity"], r["name"]): r for r in data["scenes"][0]["comparisons"][0]["rows"]}
     row = rows["position", "wheel_centre"]
     assert row["share"] == pytest.approx(2.0 / held, rel=0.15)  # of rounding: the tolerance is some 20 bits
@@ -103,25 +110,14 @@ def test_two_runs_leave_the_same_bytes(tmp_path: Path) -> None:
     found = []
     for seed in ("1", "2"):
         # Of one name, for the command line stands in them.
-        files = [tmp_path / f"out.{end}" for end in ("xml", "md", "npz", "json")]
-        options = ("--junit", "--summary", "--save-baseline", "--json")
-        ends = [word for pair in zip(options, map(str, files), strict=True) for word in pair]
+        files, ends = left(tmp_path)
         environment = {**os.environ, "PYTHONHASHSEED": seed}
         words = ("validate", "--second", "printed", "--scenes-dir", str(tmp_path), "steer", *ends)
         done = run(*words, env=environment)
         assert done.returncode == 1, done.stderr
         said = re.sub(r" +\d+\.\d s ", " ", done.stdout)  # how long a scene took
-        found.append([said, done.stderr, *(file.read_bytes() for file in files)])
+        found.append([said, done.stderr, *(file.read_bytes() for file in files.values())])
     assert found[0] == found[1]
-
-
-def test_a_baseline_may_take_the_place_of_the_one_it_was_compared_with(tmp_path: Path) -> None:
-    scene, kept = short_scene(tmp_path), tmp_path / "kept.npz"
-    words = ["validate", scene, *PAIR, "-q", "--save-baseline", str(kept)]
-    assert main(words) == 0
-    before = kept.read_bytes()
-    assert main([*words, "--baseline", str(kept)]) == 0
-    assert kept.read_bytes() == before
 
 
 def test_ctrl_c_leaves_the_test_results_of_what_was_done_and_no_baseline(
@@ -135,30 +131,31 @@ def test_ctrl_c_leaves_the_test_results_of_what_was_done_and_no_baseline(
         return SOLVE(self, scene)
 
     monkeypatch.setattr(AbsoluteCoordinates, "solve", solve)
-    files = {option: tmp_path / option[2:] for option in ("--junit", "--summary", "--save-baseline")}
-    ends = [word for option, file in files.items() for word in (option, str(file))]
+    files, ends = left(tmp_path, "xml", "md", "npz")
     assert main(["validate", first, last, *PAIR, "-q", *ends]) == 130
-    root = checked(files["--junit"].read_bytes())
+    root = checked(files["xml"].read_bytes())
     assert [suite.get("name") for suite in root] == [f"{first}: pointcoord and absolute", last]
-    assert "**Interrupted**" in files["--summary"].read_text()
-    assert not files["--save-baseline"].exists()
+    assert "**Interrupted**" in files["md"].read_text()
+    assert not files["npz"].exists()
     kept, interrupted = capsys.readouterr().err.splitlines()
     assert "not written, because the run did not finish" in kept
-    assert f"{files['--junit']} holds 1 of 2 scenes" in interrupted
+    assert f"{files['xml']} holds 1 of 2 scenes" in interrupted
 
 
-@pytest.mark.parametrize("fault", ["disagrees", "broken", "moved"])
+@pytest.mark.parametrize(("fault", "status"), [("disagrees", 1), ("broken", 2), ("moved", 1)])
 def test_the_run_stops_at_the_first_fault_and_names_what_was_not_run(
-    fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    fault: str,
+    status: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     first, last = short_scene(tmp_path, "a.toml"), short_scene(tmp_path, "c.toml")
-    kept = str(tmp_path / "kept.npz")
-    wrong = short_scene(tmp_path, "b.toml", stop="1.5")
+    wrong, kept = short_scene(tmp_path, "b.toml", stop="1.5"), str(tmp_path / "kept.npz")
     more: tuple[str, ...] = ()
-    plain = AbsoluteCoordinates.solve
 
     def off(self: AbsoluteCoordinates, scene: Scene) -> Solution:
-        solution = plain(self, scene)
+        solution = SOLVE(self, scene)
         shift = 1e-3 if scene.time.stop == 1.5 else 0.0
         places = {name: array + shift for name, array in solution.numbers["position"].items()}
         return solution.with_numbers({"position": places})
@@ -172,25 +169,18 @@ def test_the_run_stops_at_the_first_fault_and_names_what_was_not_run(
         Path(wrong).write_text(BOUNCE.replace("samples", "sample"))
     else:
         monkeypatch.setattr(AbsoluteCoordinates, "solve", off)
-    places = {end: tmp_path / f"out.{end}" for end in ("json", "xml", "md", "npz")}
-    options = ("--json", "--junit", "--summary", "--save-baseline")
-    ends = [word for pair in zip(options, map(str, places.values()), strict=True) for word in pair]
-    status = {"disagrees": 1, "broken": 2, "moved": 1}[fault]
+    files, ends = left(tmp_path)
     capsys.readouterr()
     assert main(["validate", first, wrong, last, *PAIR, "--fail-fast", *more, *ends]) == status
-    data = json.loads(places["json"].read_text())
+    data, root = json.loads(files["json"].read_text()), checked(files["xml"].read_bytes())
     assert [scene["scene"] for scene in data["scenes"]] == [first, wrong]
     assert data["not_run"] == [last]
-    assert f"not run (--fail-fast ended the run at {wrong}): {last}" in capsys.readouterr().out
-    root = checked(places["xml"].read_bytes())
+    said = f"not run (--fail-fast ended the run at {wrong}): {last}"
+    assert said in capsys.readouterr().out
+    assert said in html.unescape(files["md"].read_text())
     (skipped,) = root[-1].iter("skipped")
-    assert (root[-1].get("name"), skipped.get("message")) == (
-        last,
-        f"not run: --fail-fast ended the run at {wrong}",
-    )
-    assert f"not run (--fail-fast ended the run at {wrong}): {last}" in html.unescape(
-        places["md"].read_text()
-    )
-    with np.load(places["npz"]) as file:
+    assert root[-1].get("name") == last
+    assert skipped.get("message") == f"not run: --fail-fast ended the run at {wrong}"
+    with np.load(files["npz"]) as file:
         names = [one["scene"] for one in json.loads(str(file["head"]))["scenes"]]
-    assert names == ([first, wrong] if fault in ("disagrees", "moved") else [first])
+    assert names == ([first] if fault == "broken" else [first, wrong])

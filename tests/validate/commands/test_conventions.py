@@ -1,4 +1,4 @@
-"""Names mean what Adams/Car, OptimumK and Lotus mean by them where a table or a map says so."""
+"""Names mean what Adams/Car, OptimumK and Lotus mean by them where a table, a scene or a map says so."""
 
 import csv
 import tomllib
@@ -69,69 +69,48 @@ def test_a_table_has_the_number_that_a_program_means(
     np.testing.assert_allclose(found, defined(), rtol=0, atol=1e-12)
 
 
+def file_of(column: str, values: Array) -> str:
+    """A file of results with this column over time."""
+    rows = zip(simulate(CAR).times.tolist(), values.tolist(), strict=True)
+    return "\n".join([f"time [s],{column} [deg]", *(f"{t!r},{value:.6f}" for t, value in rows), ""])
+
+
 @pytest.mark.parametrize(
     ("convention", "column", "defined"),
     [("adams", "camber", camber_of_adams), ("optimumk", "toe", toe_of_optimumk)],
 )
-def test_a_map_reads_a_column_as_its_program_means_it(
+def test_a_column_is_read_as_its_map_or_scene_says(
     convention: str, column: str, defined: Callable[[], Array]
 ) -> None:
-    times, _ = spin_axis()
-    rows = [f"{time!r},{value:.6f}" for time, value in zip(times.tolist(), defined().tolist(), strict=True)]
-    text = "\n".join([f"time [s],{column} [deg]", *rows, ""])
-    as_said = verdicts(compared(text, {"convention": convention}, CAR))
-    assert set(as_said.values()) == {"agrees"}
-    # Without it the column means ours, from which it is hundredths of a degree away, or a sign.
-    assert set(verdicts(compared(text, {}, CAR)).values()) == {"disagrees"}
-    # What is said of the column goes before: a sign, or a whole name of ours.
-    for part in ({"sign": -1 if convention == "adams" else 1}, {"is": f"wheel.{column}"}):
-        said = {"convention": convention, "columns": {column: part}}
-        assert set(verdicts(compared(text, said, CAR)).values()) == {"disagrees"}
+    text = file_of(column, defined())
+    theirs = CAR.model_copy(update={"convention": convention})
+    said = {"convention": convention}
+    for of_map, scene in ((said, CAR), ({}, theirs)):
+        assert {*verdicts(compared(text, of_map, scene)).values()} == {"agrees"}
+    # Without it the column means ours, from which it is hundredths of a degree away, or a sign. What is said
+    # of the column goes before, a sign or a whole name of ours; and the map goes before the scene.
+    sign = {"columns": {column: {"sign": -1 if convention == "adams" else 1}}}
+    name = {"columns": {column: {"is": f"wheel.{column}"}}}
+    others = (({}, CAR), (said | sign, CAR), (said | name, CAR), ({"convention": "iso"}, theirs))
+    for of_map, scene in others:
+        assert {*verdicts(compared(text, of_map, scene)).values()} == {"disagrees"}
+    # No number of the scene is another.
+    plain, named = simulate(CAR), simulate(theirs)
+    assert all(np.array_equal(named.wheel[name], angle) for name, angle in plain.wheel.items())
 
 
-def test_lotus_means_the_contact_point_by_travel_and_the_offset_by_scrub_radius(tmp_path: Path) -> None:
-    path = tmp_path / "car.csv"
-    assert main(["table", "double-wishbone", "--convention", "lotus", "-o", str(path), "--quiet"]) == 0
-    names = path.read_text().splitlines()[0]
-    assert "contact_travel [mm]" in names
-    assert ",travel [mm]" not in names
-    assert names.count("kingpin_offset [mm]") == 1
-    assert "scrub_radius" not in names
-
-
-def test_a_scene_says_what_names_mean_in_its_tables_sensitivities_pictures_and_files(tmp_path: Path) -> None:
-    text = TEXT.replace("effects =", 'convention = "optimumk"\neffects =')
-    (tmp_path / "car.toml").write_text(text)
-    scene = Scene.load(tmp_path / "car.toml")
-    said = (str(tmp_path / "car.toml"), "--number", "toe", "-o")
-    assert main(["table", *said, str(tmp_path / "table.csv"), "--quiet"]) == 0
-    assert "-toe_by_arcsine [deg]" in (tmp_path / "table.csv").read_text().splitlines()[0]
-    assert main(["table", *said, str(tmp_path / "table.md"), "--quiet"]) == 0
-    assert "- -toe_by_arcsine: positive not where the front edge" in (tmp_path / "table.md").read_text()
-    # What the command line says goes before.
-    assert main(["table", *said, str(tmp_path / "ours.csv"), "--convention", "iso", "--quiet"]) == 0
-    assert ",toe [deg]" in (tmp_path / "ours.csv").read_text().splitlines()[0]
-    for convention in ("optimumk", "iso"):
-        path = tmp_path / f"{convention}.csv"
-        (tmp_path / "one.toml").write_text(text.replace("optimumk", convention))
-        one = ("--number", "toe_by_arcsine" if convention == "iso" else "toe", "--point", "tie_rod_outer.x")
-        assert main(["sensitivity", str(tmp_path / "one.toml"), *one, "-o", str(path), "--quiet"]) == 0
-    theirs, ours = (
-        float((tmp_path / f"{convention}.csv").read_text().splitlines()[1].split(",")[1])
-        for convention in ("optimumk", "iso")
-    )
-    assert theirs == -ours != 0.0
-    assert main(["plot", str(tmp_path / "car.toml"), "-o", str(tmp_path / "car.svg"), "--quiet"]) == 0
-    assert "minus toe by arcsine" in (tmp_path / "car.svg").read_text()
-    (toe,) = numbers_called("toe", scene)
-    motion = simulate(asking_for(scene, [toe]))
+def test_a_scene_says_what_names_mean_in_its_sensitivities_and_pictures(tmp_path: Path) -> None:
+    found = {}
+    for convention, number in (("optimumk", "toe"), ("iso", "toe_by_arcsine")):
+        scene, path = tmp_path / f"{convention}.toml", tmp_path / f"{convention}.csv"
+        scene.write_text(TEXT.replace("effects =", f'convention = "{convention}"\neffects ='))
+        words = ("--number", number, "--point", "tie_rod_outer.x", "-o", str(path))
+        assert main(["sensitivity", str(scene), *words, "--quiet"]) == 0
+        found[convention] = float(path.read_text().splitlines()[1].split(",")[1])
+    assert found["optimumk"] == -found["iso"] != 0.0
+    file, picture = str(tmp_path / "optimumk.toml"), tmp_path / "car.svg"
+    assert main(["plot", file, "-o", str(picture), "--quiet"]) == 0
+    assert "minus toe by arcsine" in picture.read_text()
+    (toe,) = numbers_called("toe", Scene.load(file))
+    motion = simulate(asking_for(Scene.load(file), [toe]))
     np.testing.assert_allclose(toe.shown(motion, motion), toe_of_optimumk(), rtol=0, atol=1e-12)
-    rows = [f"{t!r},{v:.6f}" for t, v in zip(motion.times.tolist(), toe_of_optimumk().tolist(), strict=True)]
-    told = "\n".join(["time [s],toe [deg]", *rows, ""])
-    assert set(verdicts(compared(told, {}, scene)).values()) == {"agrees"}
-    assert set(verdicts(compared(told, {"convention": "iso"}, scene)).values()) == {"disagrees"}
-
-
-def test_a_convention_changes_no_number_of_a_scene() -> None:
-    plain, theirs = simulate(CAR), simulate(CAR.model_copy(update={"convention": "adams"}))
-    assert all(np.array_equal(theirs.wheel[name], angle) for name, angle in plain.wheel.items())

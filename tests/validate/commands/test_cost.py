@@ -15,7 +15,8 @@ from validate.cost import study as studying
 from validate.cost.report import NOTHING
 from validate.cost.scenes import STUDY_SCENES
 from validate.cost.study import Study
-from validate.cost.table import Row, measured_here, read_rows
+from validate.cost.table import Row, read_rows
+from validate.cost.ways.registry import WAYS, ways_named
 
 ROWS = study()
 
@@ -48,10 +49,16 @@ def test_a_report_from_rows_measures_nothing_and_ends_with_0(
         raise AssertionError("measured")
 
     fake(never)
-    before, lines = Path(store).read_bytes(), tmp_path / "rows.csv"
-    assert main(["cost", "--from-rows", "--rows", store, "--csv", str(lines)]) == 0
+    before, lines, target = Path(store).read_bytes(), tmp_path / "rows.csv", tmp_path / "x.json"
+    words = ["cost", "--from-rows", "--rows", store, "--csv", str(lines), "--json", str(target)]
+    assert main(words) == 0
     out, err = told(capsys)
     assert err == []
+    data = document(target)
+    assert (data["kind"], data["complete"], data["verdict"]) == ("cost", True, "nothing compared")
+    assert len(data["rows"]) == len(ROWS)
+    assert data["measured_by"]["machine"] == "a made machine, 2 cores"
+    assert {race["verdict"] for race in data["races"]} == {"ours"}
     assert out.index("To solve a pose to 1e-9 mm") < out.index("Time of a pose to 1e-9 mm of position")
     assert "a made machine" in out
     assert store in out
@@ -59,18 +66,6 @@ def test_a_report_from_rows_measures_nothing_and_ends_with_0(
     with lines.open(encoding="utf-8", newline="") as stream:
         written = list(csv.DictReader(stream))
     assert [float(one["time"] or 0.0) for one in written] == [row.time or 0.0 for row in ROWS]
-
-
-def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
-    store: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["cost", "--from-rows", "--rows", store, "--json", "-"]) == 0
-    data = document(capsys.readouterr().out)
-    assert (data["kind"], data["complete"], data["verdict"]) == ("cost", True, "nothing compared")
-    assert len(data["rows"]) == len(ROWS)
-    assert data["measured_by"]["machine"] == "a made machine, 2 cores"
-    assert data["sentences"]
-    assert {race["verdict"] for race in data["races"]} == {"ours"}
 
 
 def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., Iterator[list[Row]]]:
@@ -106,7 +101,7 @@ def test_ctrl_c_keeps_and_names_what_was_measured(
     [
         ("", STUDY_SCENES),
         ("--quick", ("bounce-and-steer",)),
-        ("steer near-toggle steer", ("steer", "near-toggle")),
+        ("steer near-toggle steer --ways series", ("steer", "near-toggle")),
     ],
 )
 def test_what_is_measured_is_what_the_options_say(
@@ -118,6 +113,7 @@ def test_what_is_measured_is_what_the_options_say(
     (study,) = asked
     assert tuple(study.scenes) == scenes
     assert study.quick == ("--quick" in words)
+    assert study.ways == (ways_named(["series"]) if "--ways" in words else WAYS)
 
 
 def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
@@ -150,15 +146,3 @@ def test_a_run_leaves_the_picture_beside_its_rows_and_names_it(
     assert main(["cost", "--quick", "--rows", str(path)]) == 0
     assert "pip install 'pointcoord[plot]'" in capsys.readouterr().err
     assert not (tmp_path / "mine.svg").exists()
-
-
-def test_a_real_run_of_one_way(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "rows.parquet"
-    assert main(["cost", "steer", "--quick", "--ways", "series", "--rows", str(path)]) == 0
-    out = capsys.readouterr().out
-    assert out.startswith(
-        "Run time against accuracy\nTo solve a pose to 1e-9 mm, the fastest of 1 methods take series"
-    )
-    rows = read_rows(str(path))
-    assert {(row.way, row.quick) for row in rows} == {("series", True)}
-    assert rows[0].machine == measured_here("")["machine"]

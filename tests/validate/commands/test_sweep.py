@@ -1,4 +1,4 @@
-"""`pointcoord sweep`: what it writes is the designs one by one."""
+"""`pointcoord sweep`: what it writes is what `sweep` solves."""
 
 import csv
 import tracemalloc
@@ -9,27 +9,17 @@ import pyarrow.parquet
 import pytest
 from changed_scenes import scene_with
 
-from pointcoord import Scene, simulate, sweep
-from pointcoord.results.named_columns import columns
+from pointcoord import Scene, sweep
 from validate.cli import main
 from validate.output.columns import rows_of_sweep, write_table
 
 SCENE = "double-wishbone"
 POINTS = Scene.load(SCENE).mechanism.points
 VARY = ("--vary", "lower_ball_joint.z=-10,0,150", "--vary", "upper_ball_joint.y=0:1:2")
-HEIGHTS, SIDES = (-10.0, 0.0, 150.0), (0.0, 1.0)
 INSTANTS = ("--instants", "5")
 
 
-def design(number: int) -> Scene:
-    """The designs of `VARY` by hand."""
-    (x, y, z), (u, v, w) = (POINTS[name] for name in ("lower_ball_joint", "upper_ball_joint"))
-    lower, upper = (x, y, z + HEIGHTS[number // 2]), (u, v + SIDES[number % 2], w)
-    points = {"lower_ball_joint": lower, "upper_ball_joint": upper}
-    return scene_with(SCENE, {"points": points}, samples=5)
-
-
-def test_every_kind_of_table_holds_the_designs_one_by_one(
+def test_every_kind_of_table_holds_the_designs_of_a_sweep(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for name in ("t.csv", "t.npz", "t.parquet"):
@@ -51,30 +41,12 @@ def test_every_kind_of_table_holds_the_designs_one_by_one(
         np.testing.assert_array_equal(text, np.array(table[name].to_pylist()))
     assert [status == "solved" for status in arrays["status"].tolist()] == [True] * 20 + [False] * 10
     assert np.isnan(arrays["wheel.camber [deg]"][20:]).all()
-    for number in range(4):
-        for name, alone in columns(simulate(design(number))):
-            found = arrays[name][5 * number : 5 * number + 5]
-            # Each is within a tolerance of 1e-9 mm of the size of its kind; rates go up to 1e3 mm/s^2, angles
-            # are in degrees.
-            assert np.abs(found - alone).max() <= 1e-9 * max(1.0, np.abs(alone).max())
-        points = design(number).mechanism.points
-        assert arrays["lower_ball_joint.z [mm]"][5 * number] == points["lower_ball_joint"][2]
-        assert arrays["upper_ball_joint.y [mm]"][5 * number] == points["upper_ball_joint"][1]
-
-
-def test_the_summary_says_what_failed_and_how_far_numbers_range(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["sweep", SCENE, *VARY, *INSTANTS]) == 3
-    out = capsys.readouterr().out
-    assert "solved: 4 of 6 designs, at 5 instants each" in out
-    assert "2 of 6 designs failed, the mechanism cannot be assembled; such as design 4: the mech" in out
-    camber = [np.degrees(simulate(design(number)).wheel["camber"]) for number in range(4)]
-    ends = []
-    for of, end in ((np.argmin, np.min), (np.argmax, np.max)):
-        each = [float(end(one)) for one in camber]
-        number = int(of(each))
-        ends.append(f"{round(each[number], 4):.6g} (design {number})")
-    (line,) = (line for line in out.splitlines() if line.startswith("camber [deg]"))
-    assert [cell.strip() for cell in line.split("  ") if cell.strip()][1:] == ends
+    # That each design is as it is alone, tests of `sweep` say.
+    offsets = {"lower_ball_joint.z": [-10.0, 0.0, 150.0], "upper_ball_joint.y": [0.0, 1.0]}
+    (own,) = rows_of_sweep([sweep(scene_with(SCENE, samples=5), offsets=offsets, grid=True)])
+    assert {*own} == {*arrays.files}
+    for name, column in own.items():
+        np.testing.assert_array_equal(arrays[name], column)
 
 
 def test_offsets_and_a_table_of_designs_mean_the_same(tmp_path: Path) -> None:

@@ -100,12 +100,6 @@ def test_a_rod_that_is_called_as_an_angle_is_does_not_stand_for_it(
     assert np.abs(both.derivatives["rod_force.toe"]).max() > 0.0
 
 
-def test_a_number_of_both_wheels_is_asked_for_by_its_own_name(tmp_path: Path) -> None:
-    path = tmp_path / "axle.csv"
-    assert main(["table", "axle-steer", "--number", "toe", "--rows", "2", "-o", str(path), "-q"]) == 0
-    assert [*rows_of(path)[0]] == ["rack [mm]", "left.toe [deg]", "right.toe [deg]"]
-
-
 def loaded(folder: Path, name: str, samples: int, effects: list[str] | None = None, **more: Any) -> Path:
     """A scene's car with loads, springs and a car about it, that asks for every number if none is said."""
     content = with_everything(content_of(name, samples=samples, **more), name)
@@ -134,13 +128,14 @@ def test_forces_that_a_scene_asks_for_stand_in_its_tables(
         for head, of in forces.items():
             # A grid's poses are solved from the drawing, not along the motion.
             assert [float(row[head]) for row in rows] == pytest.approx(of, rel=1e-9, abs=1e-7), head
-    status, out, _ = printed(capsys, "table", str(scene))
-    assert status == 0
-    assert "forces: tension of a rod or damper: positive" in out
-    status, out, _ = printed(capsys, "table", str(scene), "--number", "spring_force")
-    assert status == 0
-    assert "spring_force [N]" in out
-    assert "joint_force" not in out
+    sensitive = ["sensitivity", str(scene), "--number", "rod_force.damper", "--point", "strut_top.z"]
+    for more, said, other in (
+        (["table", str(scene)], "forces: tension of a rod or damper: positive", "NaN"),
+        (["table", str(scene), "--number", "spring_force"], "spring_force [N]", "joint_force"),
+        (sensitive, "rod_force.damper [N/mm]", "joint_force"),
+    ):
+        status, out, _ = printed(capsys, *more)
+        assert (status, said in out, other in out) == (0, True, False), more
     named = ("joint_force.strut_top.x", "velocity.wheel_centre.z", "camber")
     asked = [word for name in named for word in ("--number", name)]
     assert printed(capsys, "table", str(scene), *asked, "-o", str(target))[0] == 0
@@ -150,11 +145,6 @@ def test_forces_that_a_scene_asks_for_stand_in_its_tables(
     speeds = [float(row["velocity.wheel_centre.z [mm/s]"]) for row in rows_of(target)]
     assert speeds == pytest.approx(rates.velocity["wheel_centre"][:, 2], abs=1e-7)
     assert printed(capsys, "table", str(scene), *asked, *grid)[0] == 2
-    status, out, _ = printed(
-        capsys, "sensitivity", str(scene), "--number", "rod_force.damper", "--point", "strut_top.z"
-    )
-    assert status == 0
-    assert "rod_force.damper [N/mm]" in out
 
 
 @pytest.mark.parametrize(

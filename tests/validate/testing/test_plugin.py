@@ -18,12 +18,6 @@ from validate.hard.subjects import SUBJECTS
 from validate.solvers.plain import given_to_solver
 from validate.testing.scenes import NOT_ASKED, impossible_scenes
 
-
-def mark(name: str, *names: object, **options: object) -> SimpleNamespace:
-    """A mark as pytest hands it over; the plugin need not be loaded here."""
-    return SimpleNamespace(name=name, args=names, kwargs=options)
-
-
 ROOT = Path(__file__).parents[3]
 # Where pointcoord is installed, pytest finds the plugin by itself, and takes it once only.
 FOUND = any(one.value == "pointcoord.pytest_plugin" for one in entry_points(group="pytest11"))
@@ -52,76 +46,62 @@ def run(folder: Path, text: str, *options: str) -> "subprocess.CompletedProcess[
     )
 
 
-def test_fixtures_hold_solve_once_and_skip_what_is_not_tested(tmp_path: Path) -> None:
+def test_every_scene_is_one_test_and_fixtures_hold_solve_once_and_skip_what_is_not_tested(
+    tmp_path: Path,
+) -> None:
     text = """
 import pytest
+pytestmark = pytest.mark.suspension_scenes("arm-highest-held", near=1e-4)
 
-def test_the_reference_is_proven_and_solved_once(reference):
+@pytest.mark.suspension_scenes()
+def test_one(scene):
+    assert len(scene.instants)
+
+def test_the_reference_is_proven_and_solved_once_and_agrees(reference, assert_agrees):
     solution = reference("steer")
     assert solution.accuracy.proven
     assert reference("steer") is solution
-
-@pytest.mark.suspension_scenes("steer")
-def test_the_reference_agrees(scene, reference, assert_agrees):
-    assert assert_agrees(reference(scene).numbers, scene, accuracy=1e-6).passed
+    assert assert_agrees(solution.numbers, "steer", accuracy=1e-6).passed
 
 def test_not_tested(reference, assert_agrees):
     assert_agrees(reference("steer").numbers, "steer", accuracy=1e3)
-
-def test_wrong(reference, assert_agrees):
-    turned = {n: -a for n, a in reference("steer").numbers["velocity"].items()}
-    assert_agrees({"velocity": turned}, "steer", against=reference("steer"))
 """
-    done = run(tmp_path, text, "-rs")
-    assert "1 failed, 2 passed, 1 skipped" in done.stdout, done.stdout + done.stderr
-    assert "an accuracy of 1000 mm gives no tolerance" in done.stdout
-    assert "disagree with reference in" in done.stdout
-    assert "possible explanation: velocity: the other sign" in done.stdout
-
-
-def test_every_built_in_scene_and_named_hard_case_is_one_test(tmp_path: Path) -> None:
-    text = """
-import pytest
-
-@pytest.mark.suspension_scenes()
-@pytest.mark.suspension_scenes("arm-highest-held", near=1e-4)
-def test_one(scene):
-    assert len(scene.instants)
-"""
-    done = run(tmp_path, text, "-v")
+    done = run(tmp_path, text, "-v", "-rs")
     assert done.returncode == 0, done.stdout + done.stderr
-    tests = [line for line in done.stdout.splitlines() if "PASSED" in line]
-    assert len(tests) == len(built_in_scenes()) + 1
-    for name in (*built_in_scenes(), "arm-highest-held at 0.0001"):
-        assert any(f"test_one[{name}]" in line for line in tests), name
+    scenes = (*built_in_scenes(), "arm-highest-held at 0.0001")
+    for name in scenes:
+        assert f"test_one[{name}]" in done.stdout
+    assert f"{len(scenes) + 1} passed, 1 skipped" in done.stdout
+    assert "an accuracy of 1000 mm gives no tolerance" in done.stdout
 
 
 @pytest.mark.parametrize(
-    ("marked", "words"),
+    ("name", "of", "options", "words"),
     [
-        (mark("suspension_scenes", "bunce"), "did you mean 'bounce'?"),
+        ("suspension_scenes", ["bunce"], {}, "did you mean 'bounce'?"),
+        ("suspension_scenes", ["link-twice"], {}, "it is not a scene, or a solver may refuse it"),
+        ("suspension_scenes", ["branches-met"], {}, "without a pose; mark with impossible_scenes"),
         (
-            mark("suspension_scenes", "link-twice"),
-            "does not suit a solver: it is not a scene, or a solver may refuse it",
+            "suspension_scenes",
+            [],
+            {"suspension": "wishbone"},
+            "'wishbone' does not exist; there are: andrews_",
         ),
-        (mark("suspension_scenes", "branches-met"), "without a pose; mark with impossible_scenes"),
+        ("suspension_scenes", ["arm-highest-held"], {"near": 0.0}, "near=0.0 is not a number above 0"),
         (
-            mark("suspension_scenes", suspension="wishbone"),
-            "'wishbone' does not exist; there are: andrews_squeezer, axle, ",
-        ),
-        (mark("suspension_scenes", "arm-highest-held", near=0.0), "near=0.0 is not a number above 0"),
-        (
-            mark("suspension_scenes", "steer", suspension="double_wishbone"),
+            "suspension_scenes",
+            ["steer"],
+            {"suspension": "axle"},
             "no scene fits the mark; leave `suspension` out",
         ),
-        (
-            mark("impossible_scenes", "steer"),
-            "'steer' is not a case without a pose; there are: reach-arm-",
-        ),
+        ("impossible_scenes", ["steer"], {}, "'steer' is not a case without a pose; there are: reach-arm-"),
     ],
-    ids=str,
 )
-def test_a_mark_that_cannot_be_followed_is_told_in_a_line(marked: SimpleNamespace, words: str) -> None:
+def test_a_mark_that_cannot_be_followed_is_told_in_a_line(
+    name: str, of: list[str], options: dict[str, object], words: str
+) -> None:
+    # As pytest hands it over; the plugin need not be loaded here.
+    marked = SimpleNamespace(name=name, args=of, kwargs=options)
     with pytest.raises(pytest.Collector.CollectError) as caught:
         pytest_plugin.scenes_of("test_it.py::test_one", [marked])
     said = str(caught.value)
@@ -130,20 +110,7 @@ def test_a_mark_that_cannot_be_followed_is_told_in_a_line(marked: SimpleNamespac
     assert "\n" not in said
 
 
-def test_a_marked_test_without_the_argument_is_refused_and_one_beside_it_is_left_alone(
-    tmp_path: Path,
-) -> None:
-    text = """
-import pytest
-pytestmark = pytest.mark.suspension_scenes("steer")
-
-def test_of_a_scene(scene):
-    assert len(scene.instants)
-
-def test_of_something_else(): ...
-"""
-    done = run(tmp_path, text)
-    assert "2 passed" in done.stdout, done.stdout + done.stderr
+def test_a_marked_test_without_the_argument_is_refused(tmp_path: Path) -> None:
     done = run(tmp_path, "import pytest\n@pytest.mark.suspension_scenes()\ndef test_one(): ...\n")
     said = done.stdout + done.stderr
     assert "test_one: suspension_scenes: the test takes no argument 'scene'; add it" in said
