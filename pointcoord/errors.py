@@ -93,18 +93,23 @@ class SceneError(PointcoordError):
 
 
 class UnknownName(PointcoordError, LookupError):
-    """An unknown name; the message lists the names that exist."""
+    """An unknown name; the message lists the names that exist.
 
-    def __init__(self, kind: str, name: str, valid: Iterable[str]) -> None:
+    Args:
+        hint: where the name stands instead; the nearest of the names that exist unless given.
+    """
+
+    def __init__(self, kind: str, name: str, valid: Iterable[str], hint: str = "") -> None:
         self.kind = kind
         self.name = name
         self.valid = tuple(valid)
         # Imported here: few names are misspelt.
         from difflib import get_close_matches
 
-        near = get_close_matches(name, self.valid, n=1)
-        hint = f" (did you mean {near[0]!r}?)" if near else ""
-        super().__init__(f"no {kind} named {name!r}{hint}; there are: {', '.join(self.valid) or 'none'}")
+        if near := get_close_matches(name, self.valid, n=1):
+            hint = hint or f"did you mean {near[0]!r}?"
+        words = f"no {kind} named {name!r} ({hint})" if hint else f"no {kind} named {name!r}"
+        super().__init__(f"{words}; there are: {', '.join(self.valid) or 'none'}")
 
 
 class NotComputed(PointcoordError, LookupError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable, Sequence
 from typing import TypeVar
 
@@ -14,6 +15,11 @@ One = TypeVar("One")
 def shown(text: str) -> str:
     """Text on one line, with control characters as escapes, so that none acts on the terminal."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def typed(path: str) -> str:
+    """A path as a shell takes it, on one line: in quotes if it has blanks, quotes or the like."""
+    return shlex.quote(shown(path))
 
 
 def some_of(words: Sequence[str], most: int) -> str:

@@ -41,7 +41,8 @@ class TableFault(ValueError):
     def of_file(self, source: str, others: int = 0) -> SceneError:
         """This error as an error of a file; `others` is the number of further errors in it."""
         more = f" (and {others} more)" if others else ""
-        return SceneError(source, ".".join(map(shown_key, self.place)), self.problem + more, self.allowed)
+        key = ".".join(shown_key(one) for one in self.place if one != "")
+        return SceneError(source, key, self.problem + more, self.allowed)
 
 
 def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str | int] = ()) -> TableFault:

@@ -164,6 +164,11 @@ class Height(Input):
     height: Point
     along: Direction = "up"
 
+    def check(self, bodies: Bodies) -> None:
+        if self.height in bodies[CHASSIS]:
+            problem = f"is {self.height!r}, a point of the chassis, whose height is fixed"
+            raise TableFault(("height",), problem, "a point that moves")
+
 
 class Contact(Input):
     """The height of a wheel's contact point, in the chassis' frame or over the ground, mm."""
@@ -180,12 +185,20 @@ class Contact(Input):
         if not any({*self.contact} <= {*points} for points in bodies.values()):
             problem = f"{' and '.join(self.contact)} do not belong to one body, so they are no wheel axis"
             raise TableFault((), problem, "two points of one body")
+        if {*self.contact} <= {*bodies[CHASSIS]}:
+            problem = f"{' and '.join(self.contact)} are points of the chassis, whose height is fixed"
+            raise TableFault((), problem, "two points of a moving body")
 
 
 class Distance(Input):
     """The distance between two points, mm."""
 
     distance: Pair
+
+    def check(self, bodies: Bodies) -> None:
+        for body, points in bodies.items():
+            if {*self.distance} <= {*points}:
+                raise TableFault((), f"joins two points of {body}, whose distance is fixed", "two bodies")
 
 
 class Moves(Input):

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from pointcoord.effects.effect import Quantity
-from pointcoord.effects.registry import Plan
+from pointcoord.effects.registry import Plan, number_called
 from pointcoord.errors import NotComputed, UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.arrays import Array
@@ -46,7 +46,10 @@ class Channel(Mapping[str, Array]):
             if names is None or name in names:
                 raise NotComputed(f"{self.quantity.words} of {name}", effect)
         others = (name for names in left_out.values() for name in names or ())
-        raise UnknownName(self.quantity.words, name, (*self._arrays, *others))
+        number = number_called(name)
+        home = number.quantity.name if number else self.quantity.name
+        hint = f"it stands under {home!r}" if home != self.quantity.name else ""
+        raise UnknownName(self.quantity.words, name, dict.fromkeys((*self._arrays, *others)), hint)
 
     def __contains__(self, name: object) -> bool:
         return name in self._arrays

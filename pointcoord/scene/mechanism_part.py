@@ -125,7 +125,10 @@ class MechanismPart(Part):
             content |= whole_tables({name: content[name] for name in given}, Path())
             MechanismFile.of({name: content[name] for name in given}, "mechanism")
         loads = content.get("loads")
-        if isinstance(loads, Mapping) and not loads.keys().isdisjoint(LoadPart.model_fields):
+        if isinstance(loads, Mapping) and any(
+            key in LoadPart.model_fields or not isinstance(one, Mapping | LoadPart)
+            for key, one in loads.items()
+        ):
             content["loads"] = {"": loads}
         if "points" in content:
             content["points"] = by_dotted_name(content["points"], lambda table: False)

@@ -113,8 +113,8 @@ class Part(BaseModel):
                 return content
             content = content.as_given()
         if isinstance(content, Mapping):
-            content = cls.completed(dict(content))
             known_keys(content, (*cls.model_fields, *cls.short_forms))
+            content = cls.completed(dict(content))
         part = by_keys(content)
         part.agree()
         part._checked = part.model_dump()

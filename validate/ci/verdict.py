@@ -23,7 +23,7 @@ from validate.output.report import (
     told_row,
     when,
 )
-from validate.plain_text import gathered, shown, some_of
+from validate.plain_text import gathered, shown, some_of, typed
 from validate.solvers.plain import SolverFailed
 
 NAMED = 10  # largest number of scenes that a sentence names for each verdict
@@ -181,7 +181,7 @@ def next_step(record: Record, verbose: bool = False) -> str:
         if solvers and why == "refused":
             steps.append(f"correct {solvers[0]} as its message says")
         elif why in NEXT:
-            steps.append(NEXT[why].format(one.name))
+            steps.append(NEXT[why].format(typed(one.name)))
     if any(since.status is ExitStatus.DISAGREE for since in record.since):
         steps.append("if the new numbers are right, save them with --save-baseline FILE")
     return f"Next: {'; '.join(steps)}." if steps else ""

@@ -10,7 +10,7 @@ from validate.commands.usage import named_scene, require_results
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
-from validate.plain_text import shown
+from validate.plain_text import shown, typed
 
 ENDINGS = (".xml", ".mjcf")
 
@@ -32,7 +32,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return ExitStatus.NO_VERDICT
     console.warn(*warnings_of(scene, drawing.closing), of=name)
     console.put(target, mjcf_of(closed_mechanism(drawing), scene.title or name), "the model")
-    console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={shown(target)}")
+    console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={typed(target)}")
     return ExitStatus.AGREE
 
 

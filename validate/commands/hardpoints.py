@@ -16,7 +16,7 @@ from validate.hardpoint_files.format import formats
 from validate.hardpoint_files.importing import Imported, import_hardpoints, names_of
 from validate.hardpoint_files.one_wheel import NAMED, PARTS, SIDES, Choices
 from validate.output.console import Console
-from validate.plain_text import shown, some_of
+from validate.plain_text import shown, some_of, typed
 from validate.tables.units import LENGTHS
 
 
@@ -36,7 +36,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     name = shown(options.file)
     console.put(target, found.text, "the scene")
     console.say("\n".join(_report(name, found)))
-    console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
+    console.say(f"{shown(target)} is written; try: pointcoord validate {typed(target)}")
     console.warn(*warnings_of(found.scene, found.stands.closing), of=name)
     if found.drawing.others:
         others = some_of([shown(point.source) for point in found.drawing.others], NAMED)

@@ -15,7 +15,8 @@ from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.files import require_writable
-from validate.plain_text import shown
+from validate.plain_text import shown, typed
+from validate.toml_written import value_of
 
 TYPE = re.compile(r'^(type *= *)"(\w+)"', re.MULTILINE)
 
@@ -28,8 +29,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if copied not in built_in_scenes():
         raise UnknownName("built-in scene", copied, built_in_scenes())
     text = (SCENES / f"{copied}.toml").read_text(encoding="utf-8")
-    notes, own = parts("new-files"), TYPE.sub(rf'\1"{Path(name).name}-mechanism.toml"', text)
-    files = {f"{name}.toml": f"{notes['scene'].replace('$name', name)}\n{own}"}
+    kind = value_of(f"{Path(name).name}-mechanism.toml")
+    notes, own = parts("new-files"), TYPE.sub(lambda found: found[1] + kind, text)
+    files = {f"{name}.toml": f"{notes['scene'].replace('$name', shown(name))}\n{own}"}
     if (found := TYPE.search(text)) is not None:
         tables = (MECHANISMS / f"{found[2]}.toml").read_text(encoding="utf-8")
         files[f"{name}-mechanism.toml"] = f"{notes['mechanism']}\n{tables}"
@@ -40,7 +42,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     for target, content in files.items():
         console.put(target, content, "the scene or its mechanism")
     console.say(f"{' and '.join(map(shown, files))} written, copied from {shown(copied)}")
-    console.say(f"to copy another (pointcoord scenes): --from SCENE; try: pointcoord plan {shown(name)}.toml")
+    console.say(
+        f"to copy another (pointcoord scenes): --from SCENE; try: pointcoord plan {typed(f'{name}.toml')}"
+    )
     return ExitStatus.AGREE
 
 

@@ -163,13 +163,19 @@ def _designs_of_file(scene: Scene, path: str) -> Designs:
     (first, head), *lines = rows
     header = [cell.removesuffix(" [mm]") for cell in joined(head)]
     for column in header:
-        if "." not in column or header.count(column) > 1:
-            problem = f"has the column {shown(column)!r}{' twice' if '.' in column else ''}"
-            raise WrongArgument(f"{name}: line {first}", problem, "columns such as strut_top.z, each once")
+        problem = ", which is a point"
+        try:
+            if len(coordinates_named(column, scene.mechanism.topology.points)) == 1:
+                problem = " twice" if header.count(column) > 1 else ""
+        except UnknownName as error:
+            problem = f": {error}"
+        if problem:
+            where = f"has the column {shown(column)!r}{problem}"
+            raise WrongArgument(f"{name}: line {first}", where, "columns such as strut_top.z, each once")
     for line, row in lines:
         if len(row) != len(header):
             raise WrongArgument(f"{name}: line {line}", f"has {len(row)} numbers", f"{len(header)}, as names")
-    values = np.array([finite(f"{name}: line {line}", row, EXAMPLES) for line, row in lines])
+    values = np.array([finite(f"{name}: line {line}", row, "finite numbers, mm") for line, row in lines])
     return designs_of(scene, {column: values[:, i] for i, column in enumerate(header)})
 
 

@@ -57,17 +57,18 @@ def _of_scene(
     scene: Scene, name: str, target: str, options: argparse.Namespace, console: Console
 ) -> ExitStatus:
     """Print the table of a scene's motion, or of a grid of its inputs."""
+    axes = _axes(scene, options.grid)
     read = numbers_asked(scene, name, options.number, None if options.all else READ_FIRST)
     if not options.number:
         read += tuple(one for one in numbers_of(scene) if one.is_force and one.missing is None)
     scene = asking_for(scene, read)
     inputs = {number.path[0]: number for number in numbers_of(scene) if number.path[0] in scene.functions}
-    if options.grid:
+    if axes:
         if moving := [n.called for n in read if len(n.path) == 1 or per_second(n.path[0])]:
             raise UsageError(
                 f"--number {moving[0]}: a grid has poses and no rates; leave out this number or --grid"
             )
-        grid = {inputs[one]: values for one, values in _axes(scene, options.grid).items()}
+        grid = {inputs[one]: values for one, values in axes.items()}
         return _on_grid(scene, grid, read, name, target, console)
     driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
 
@@ -119,18 +120,20 @@ def _on_grid(
 
 
 def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
-    """The values of each input of a grid."""
+    """The values of each input of a grid; empty if none is asked for."""
     found: dict[str, Array] = {}
     for text in texts:
         name, equals, values = text.partition("=")
-        if name not in scene.inputs or not equals:
+        if not equals:
+            raise WrongArgument(f"--grid {shown(text)}", "gives no values", EXAMPLES)
+        if name not in scene.inputs:
             problem = f"does not name an input that the scene drives{meant(name, scene.inputs)}"
             raise WrongArgument(f"--grid {shown(text)}", problem, f"{EXAMPLES}; of {', '.join(scene.inputs)}")
         if name in found:
             raise WrongArgument(f"--grid {shown(name)}", "is given twice", "each input once")
         found[name] = values_of(f"--grid {shown(text)}", values, EXAMPLES)
     moving = [n for n, law in scene.functions.items() if n not in found and not law.still]
-    if moving:
+    if found and moving:
         raise UsageError(
             f"--grid leaves out {moving[0]}, which moves in the scene; give --grid {moving[0]}=VALUES too"
         )

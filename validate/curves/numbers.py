@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -119,7 +119,8 @@ def numbers_of(scene: Scene) -> tuple[Number, ...]:
         for name in names
     )
     travel = [_travel(scene)] if topology.wheel_centre else []
-    others = (number for path, effects in givers.items() for number in _called(*path, effects, scene))
+    had = scene.mechanism.effects
+    others = (number for path, effects in givers.items() for number in _called(*path, effects, scene, had))
     return (time, *travel, *_inputs(scene), *others)
 
 
@@ -231,10 +232,16 @@ def _inputs(scene: Scene) -> list[Number]:
     ]
 
 
-def _called(name_of_quantity: str, name: str, effects: Sequence[Effect], scene: Scene) -> Iterator[Number]:
-    """A number of the car, or the three components of a vector, that some effects give."""
+def _called(
+    name_of_quantity: str, name: str, effects: Sequence[Effect], scene: Scene, had: Collection[str]
+) -> Iterator[Number]:
+    """A number of the car, or the three components of a vector, that some effects give.
+
+    Args:
+        had: names of the effects that the car has.
+    """
     quantity = QUANTITIES[name_of_quantity]
-    path, missing = (quantity.name, name), _missing(effects, quantity, name, scene)
+    path, missing = (quantity.name, name), _missing(effects, quantity, name, scene, had)
     if quantity.of == "car":
         known = number_called(name)
         sign = known.sign if known else ""
@@ -247,9 +254,11 @@ def _called(name_of_quantity: str, name: str, effects: Sequence[Effect], scene: 
         yield Number((*path, axis), words, quantity.unit, sign, _reader(*path, (..., i)), missing)
 
 
-def _missing(effects: Sequence[Effect], quantity: Quantity, name: str, scene: Scene) -> NotComputed | None:
+def _missing(
+    effects: Sequence[Effect], quantity: Quantity, name: str, scene: Scene, had: Collection[str] = ()
+) -> NotComputed | None:
     """Why a scene does not give a number that any of some effects gives; None if the scene gives it."""
-    what, had = f"{quantity.words} of {name}", scene.mechanism.effects
+    what = f"{quantity.words} of {name}"
     asked = [effect for effect in effects if effect in ALWAYS or effect.name in scene.effects]
     if not asked:
         return NotComputed(what, next((one for one in effects if one.name in had), effects[-1]).name)

@@ -404,6 +404,12 @@ class _Builder:
                 bodies[body] = [*own, *self._beside(body, own)]
         roles = self._roles(bodies)
         wheel = {TRAVEL: {"height": roles["wheel_axis"][1]}} if "wheel_axis" in roles else {}
+        # Roles of several wheels are not read, but each wheel can be driven: a live axle is on no joint.
+        for name, text in self.pose.texts.items():
+            part, _, role = name.rpartition(".")
+            centre = _word((text.split() or [""])[-1])
+            if part and role == "wheel_axis" and centre in self.points:
+                wheel[f"{part}.{TRAVEL}"] = {"height": centre}
         actuated = {joint: name for joint, name in self.pose.actuated.items() if joint in self.inputs}
         driven = {name: self.inputs[joint] for joint, name in actuated.items()}
         others = {joint: one for joint, one in self.inputs.items() if joint not in {**actuated, **driven}}
@@ -425,13 +431,25 @@ class _Builder:
         return [self._made(f"{body}_beside", at, {body}, f"body {body}, whose points are collinear")]
 
     def _roles(self, bodies: Mapping[str, Any]) -> dict[str, Any]:
-        """Roles from the texts of the model, if their bodies and points exist."""
+        """Roles from the texts of the model; a message for each text that gives none."""
         found: dict[str, Any] = {}
+        if several := [
+            name for name in self.pose.texts if name.partition(".")[2].rpartition(".")[2] in ROLES
+        ]:
+            self.facts.append(
+                f"of several wheels only the travel is read, not the roles {', '.join(several)}"
+            )
         for role in ROLES:
-            words = [_word(word) for word in self.pose.texts.get(role, "").split()]
-            known = bodies if role == "knuckle" else self.points
-            if words and all(word in known for word in words):
-                found[role] = words if role in PAIR_ROLES else words[0]
+            if not (words := [_word(word) for word in self.pose.texts.get(role, "").split()]):
+                continue
+            kind, known = ("body", bodies) if role == "knuckle" else ("site", self.points)
+            count = 2 if role in PAIR_ROLES else 1
+            if unknown := [word for word in words if word not in known]:
+                self.facts.append(f"text {role} is ignored: no {kind} is called {short(unknown[0])}")
+            elif len(words) != count:
+                self.facts.append(f"text {role} is ignored: it has {len(words)} names; allowed: {count}")
+            else:
+                found[role] = words if count == 2 else words[0]
         return found
 
 

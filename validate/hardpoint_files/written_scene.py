@@ -152,7 +152,7 @@ def travel_of(drawn: Scene, stands: Standing) -> Laws:
 def scene_text(drawing: Drawing, drawn: Scene, laws: Laws, format_words: str) -> str:
     """The text of the scene file, with the tables of a mechanism that is not shipped."""
     tables = drawing.tables or {}
-    rows = [(point.name, point.written, point.source) for point in drawing.points]
+    rows = [(key_of(point.name), point.written, point.source) for point in drawing.points]
     first, second = (max(len(row[i]) for row in rows) for i in (0, 1))
     lines = [
         f"# Imported from {shown(Path(drawing.source).name)}, a {format_words}.",
@@ -172,5 +172,5 @@ def scene_text(drawing: Drawing, drawn: Scene, laws: Laws, format_words: str) ->
             lines += ["", f"[mechanism.{name}]"]
             lines += [f"{key_of(key)} = {value_of(one)}" for key, one in table.items()]
     lines += ["", "[inputs]"]
-    lines += [f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()]
+    lines += [f"{key_of(name)} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()]
     return "\n".join(lines) + "\n"

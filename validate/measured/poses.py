@@ -417,10 +417,10 @@ def _height(part: MechanismPart, point: str, places: Mapping[str, Array]) -> Arr
 def _asked(scene: Scene, measured: Measured) -> Scene:
     """The scene with the effects that a file's columns need, and with all points."""
     gives = {name: effect.gives_numbers(scene.mechanism.topology) for name, effect in EFFECTS.items()}
-    effects = dict.fromkeys(scene.effects)
+    effects, had = dict.fromkeys(scene.effects), scene.mechanism.effects
     for quantity, name in dict.fromkeys(s.meaning.row for s in measured.numbers):
         names = {effect: numbers.get(quantity, ()) for effect, numbers in gives.items()}
         giving = [effect for effect, some in names.items() if some is None or name in some]
         # If the car has no such effect, asking for one reports what the car lacks.
-        effects |= dict.fromkeys([effect for effect in giving if effect in scene.mechanism.effects] or giving)
+        effects |= dict.fromkeys([effect for effect in giving if effect in had] or giving)
     return scene.model_copy(update={"points": None, "effects": tuple(effects)})

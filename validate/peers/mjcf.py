@@ -1,11 +1,12 @@
 """A car as an MJCF file: the model that `in_mujoco` builds, in m, with x rearward, y right and z up.
 
-The text is written by `mjSpec`, which prints six digits; positions and axes are then replaced in full
-precision.
+The text is written by `mjSpec`, which prints six digits; positions, axes and texts are then replaced in
+full.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
@@ -61,7 +62,9 @@ def mjcf_of(plain: Mapping[str, Any], title: str) -> str:
             biasprm=[0.0, -STIFFNESS, -DAMPING, *[0.0] * 7],
         )
     for role, named in {"side": plain["side"], **plain["roles"]}.items():
-        spec.add_text(name=role, data=named if isinstance(named, str) else " ".join(named))
+        # Blanks separate the names of a text: a name with blanks gets the word that the import makes of it.
+        names = (re.sub(r"\W*\s\W*", "_", one) for one in ([named] if isinstance(named, str) else named))
+        spec.add_text(name=role, data=" ".join(names))
     spec.compile()
     others = ", ".join(name for name in plain["inputs"] if name not in actuators)
     driven_words = ", ".join(f"{name} (joint {joint})" for name, joint in actuators.items()) or "nothing"
@@ -129,6 +132,10 @@ def _text(spec: mujoco.MjSpec, note: str) -> str:
             one = getattr(spec, kind)(element.get("name"))
             for key in keys if element.get("type") != "ball" else ():
                 element.set(key, " ".join(repr(float(number)) for number in getattr(one, key)))
+    for element in root.iter("text"):
+        # MuJoCo writes a text with & < > " where it does not read it.
+        element.text = None
+        element.set("data", spec.text(element.get("name")).data)
     # Two hyphens would end the comment.
     root.insert(0, ElementTree.Comment(note.replace("--", "- -")))
     ElementTree.indent(root)

@@ -75,6 +75,13 @@ def test_names_are_those_of_the_car_and_unknown_ones_are_refused_with_them(
         with pytest.raises(UnknownName) as caught:
             channel["wheel_center"]
         assert set(caught.value.valid) >= set(channel)
+    # A number of another quantity is there, under that one's name.
+    with pytest.raises(UnknownName, match=r"'travel' \(it stands under 'dimension'\)"):
+        motion.wheel["travel"]
+    with pytest.raises(UnknownName, match=r"'toe_by_travel' \(it stands under 'angle_gradient'\)"):
+        motion.wheel["toe_by_travel"]
+    with pytest.raises(UnknownName, match=r"'left\.toe'; there are"):
+        motion.wheel["left.toe"]
     with pytest.raises(AttributeError, match="its quantities: position"):
         str(motion.places)
 

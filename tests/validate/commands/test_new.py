@@ -1,5 +1,6 @@
 """What `pointcoord new` writes is read as the scene that it is a copy of, wherever it stands."""
 
+import shlex
 from pathlib import Path
 
 import pytest
@@ -33,3 +34,13 @@ def test_a_copy_of_a_built_in_scene_is_that_scene_and_says_of_which(
     said = capsys.readouterr().out
     assert f"copied from {scene}" in said
     assert "--from SCENE" in said
+
+
+@pytest.mark.parametrize("name", ['my "car"', "back\\1slash", "#5", "it's"])
+def test_a_copy_may_have_any_name_and_the_hint_can_be_typed(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source, copy = copied("five-link", tmp_path / name)
+    assert same(source, copy)
+    typed = capsys.readouterr().out.rpartition("try: ")[2]
+    assert shlex.split(typed, comments=True) == ["pointcoord", "plan", str(tmp_path / f"{name}.toml")]

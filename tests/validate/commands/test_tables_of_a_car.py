@@ -13,7 +13,11 @@ from changed_scenes import content_of, scene_with
 from every_number import with_everything
 
 from pointcoord import Scene, sensitivity, simulate
+from pointcoord.effects.effect import Effect
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.scene.mechanism_part import MechanismPart
 from validate.cli import main
+from validate.curves.numbers import numbers_of
 from validate.toml_written import written
 
 
@@ -52,6 +56,21 @@ def test_a_grid_has_each_cell_and_says_why_one_is_out_of_reach(
     for row in rows[1::2]:
         assert math.isnan(float(row["toe [deg]"] or "nan"))
         assert "assembly stopped at rack = " in row["why there is none"]
+
+
+def test_a_car_is_asked_once_for_each_effect_however_many_numbers_it_has(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    scene, asked = Scene.load("axle-roll"), list[str]()
+    refusal = MechanismPart.refusal
+
+    def counted(part: MechanismPart, effect: Effect) -> str:
+        asked.append(effect.name)
+        return refusal(part, effect)
+
+    monkeypatch.setattr(MechanismPart, "refusal", counted)
+    assert len(numbers_of(scene)) > len(EFFECTS)
+    assert len(asked) == len(set(asked))
 
 
 def test_hardpoints_are_ranked_by_the_first_number_and_their_tolerances_spread(

@@ -107,10 +107,96 @@ def test_what_is_exported_comes_back_with_its_motion_and_its_wheel(name: str, tm
         assert np.abs(path - second[point]).max() <= 2.1 * TOLERANCE, point
 
 
+def test_points_named_in_any_letters_come_back_with_the_roles_of_the_wheel(tmp_path: Path) -> None:
+    plain = Scene.load("double-wishbone").mechanism.plain(("wheel_travel", "rack"))
+    text = mjcf_of(_renamed(plain, "Länge \"{}' <1> & /"), "car")
+    mujoco.MjModel.from_xml_string(text)
+    path = tmp_path / "car.xml"
+    path.write_text(text, encoding="utf-8")
+    roles = import_hardpoints(path).scene.mechanism.roles
+    assert roles["wheel_axis"] == ("Länge_wheel_axis_inner_1", "Länge_wheel_centre_1")
+    assert roles["steering_axis"] == ("Länge_lower_ball_joint_1", "Länge_upper_ball_joint_1")
+
+
+def _renamed(plain: Any, form: str) -> Any:
+    """Plain data with every name of a point in another form."""
+    names = {name: form.format(name) for name in plain["points"]}
+
+    def changed(one: Any) -> Any:
+        if isinstance(one, dict):
+            return {names.get(key, key): changed(value) for key, value in one.items()}
+        if isinstance(one, list | tuple):
+            return [changed(value) for value in one]
+        return names.get(one, one) if isinstance(one, str) else one
+
+    return changed(plain)
+
+
 def test_an_axle_comes_back_as_one_mechanism_and_neither_wheel_is_doubted(tmp_path: Path) -> None:
     back = import_hardpoints(exported("axle-roll", tmp_path)).scene
     assert back.mechanism.doubts == ()
     assert compare(back, "pointcoord", "absolute").agreed
+
+
+LIVE_AXLE: dict[str, Any] = {
+    "bodies": {
+        "chassis": ["top_front", "left_front", "right_front", "bar_left"],
+        "axle": ["top", "left", "right", "bar_right", "hub_l", "centre_l", "hub_r", "centre_r"],
+    },
+    "rods": {
+        "top_link": ["top_front", "top"],
+        "left_link": ["left_front", "left"],
+        "right_link": ["right_front", "right"],
+        "panhard": ["bar_left", "bar_right"],
+    },
+    "parts": {"left": {"side": "left"}, "right": {"side": "right"}},
+    "inputs": {"left.travel": {"height": "centre_l"}, "right.travel": {"height": "centre_r"}},
+    "roles": {
+        "left.knuckle": "axle",
+        "left.wheel_axis": ["hub_l", "centre_l"],
+        "right.knuckle": "axle",
+        "right.wheel_axis": ["hub_r", "centre_r"],
+    },
+    "points": {
+        "top_front": [-450, 20, 480],
+        "top": [-30, 15, 470],
+        "left_front": [-600, -480, 330],
+        "left": [-20, -520, 230],
+        "right_front": [-600, 480, 330],
+        "right": [-20, 520, 230],
+        "bar_left": [110, -500, 330],
+        "bar_right": [100, 480, 320],
+        "hub_l": [0, -700, 300],
+        "centre_l": [0, -760, 301],
+        "hub_r": [0, 700, 300],
+        "centre_r": [0, 760, 301],
+    },
+}
+
+
+def test_a_live_axle_comes_back_with_the_travel_of_both_wheels(tmp_path: Path) -> None:
+    laws = {"left.travel": {"sweep": [-30.0, 30.0]}, "right.travel": {"sweep": [-30.0, 30.0]}}
+    scene = Scene.from_mapping({"mechanism": LIVE_AXLE, "inputs": laws})
+    path = tmp_path / "axle.xml"
+    path.write_text(mjcf_of(scene.mechanism.plain(tuple(laws)), "axle"), encoding="utf-8")
+    back = import_hardpoints(path).scene
+    assert {*back.inputs} == {"left_wheel_travel", "right_wheel_travel"}
+    first, second = (simulate(one.model_copy(update={"time": back.time})) for one in (scene, back))
+    for point, way in first.position.items():
+        assert np.abs(way - second.position[point]).max() <= 2.1 * TOLERANCE, point
+
+
+def test_a_text_that_gives_no_role_says_so(tmp_path: Path) -> None:
+    text = exported("five-link", tmp_path).read_text(encoding="utf-8")
+    wrong = {
+        "wheel_axis_inner wheel_centre": "wheel_axs wheel_centre",
+        'data="knuckle"': 'data="chassis knuckle"',
+    }
+    for right, other in wrong.items():
+        text = text.replace(right, other)
+    drawing = made(text, tmp_path)
+    assert "text wheel_axis is ignored: no site is called 'wheel_axs'" in drawing.facts
+    assert "text knuckle is ignored: it has 2 names; allowed: 1" in drawing.facts
 
 
 def made(text: str, folder: Path) -> Drawing:
