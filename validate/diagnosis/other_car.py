@@ -6,6 +6,7 @@ from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations
+from warnings import catch_warnings
 
 import numpy as np
 from scipy.optimize import root_scalar
@@ -157,9 +158,11 @@ def _fitted(change: Change, evidence: Evidence, looked: Sequence[Row]) -> tuple[
         # A missing number stops the search.
         return float(slope @ gap_at(amount)) if np.isfinite(gap_at(amount)).all() else 0.0
 
-    # To the last digit: the numbers may be given in full.
-    begun = {"x0": start, "x1": start + step}
-    amount = root_scalar(along, method="secant", **begun, xtol=TINY, rtol=4.0 * EPS, maxiter=MOST_STEPS).root
+    # To the last digit, as the numbers may be given in full; scipy warns where the steps are only rounding.
+    with catch_warnings(action="ignore", category=RuntimeWarning):
+        ends = {"x0": start, "x1": start + step}
+        found = root_scalar(along, method="secant", **ends, xtol=TINY, rtol=4.0 * EPS, maxiter=MOST_STEPS)
+    amount = found.root
     least = left(amount)
 
     def kept(one: Array) -> bool:
