@@ -27,6 +27,7 @@ from validate.plain_text import gathered, shown, some_of, typed
 from validate.solvers.plain import SolverFailed
 
 NAMED = 10  # largest number of scenes that a sentence names for each verdict
+FAULTS = 3  # largest number of lines on unusable data below the line of a scene
 NUMBERS = 8  # largest number of numbers in a sentence: the notes of the table have them all
 NOT_TESTED = "not tested"
 NEXT = {
@@ -136,7 +137,9 @@ def scene_row(examined: Examined) -> tuple[str, str, str]:
     If one formulation gives only some of the instants, the text says how many were compared.
     """
     verdict, why = standing(examined)
-    text = why or (silence(examined) if verdict == NOT_TESTED else "")
+    # Unusable data follow in lines of their own.
+    most = 1 if any(outcome.faults for outcome in examined.outcomes) else 2
+    text = why or (silence(examined, most) if verdict == NOT_TESTED else "")
     if not text and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
         row, outcome = max(rows, key=lambda one: severity(one[0], OF_THE_LINE))
         text = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
@@ -163,7 +166,9 @@ def scene_notes(examined: Examined) -> Iterator[str]:
     """The lines below the line of a scene: unusable data, and possible explanations of a disagreement."""
     for outcome in examined.outcomes:
         if not outcome.passed:
-            yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
+            yield from (f"  cannot be used: {fault}" for fault in outcome.faults[:FAULTS])
+            if more := outcome.faults[FAULTS:]:
+                yield f"  cannot be used: {counted_as(len(more), 'further number')}; -v prints all lines"
             yield from (f"  {line}" for line in explained_lines(outcome))
 
 
@@ -218,10 +223,10 @@ def _undecided(outcome: Outcome) -> Iterator[str]:
     yield from (f"{some_of(words, NUMBERS)}: {reason}" for reason, words in reasons.items())
 
 
-def silence(examined: Examined) -> str:
-    """Why a solved scene has no verdict, in one line."""
+def silence(examined: Examined, most: int = 2) -> str:
+    """Why a solved scene has no verdict, in one line: the first reasons."""
     whys = dict.fromkeys(line for outcome in examined.outcomes for line in _undecided(outcome))
-    return "; ".join(islice(whys, 2))
+    return "; ".join(islice(whys, most))
 
 
 def notes(examined: Examined) -> Iterator[str]:

@@ -237,7 +237,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     numbers = tuple(s for s in found if s.meaning.kind == "number")
     if not numbers:
         allowed = f"columns such as {', '.join(map.numbers[:NAMED])}"
-        raise FileError(columns.source, "", "has no numbers to compare", allowed)
+        raise FileError(columns.source, "", f"has no numbers to compare{map.ignored}", allowed)
     notes, over_names = list[str](), [s.column for s in over]
     if out := [name for name, one in map.meant.items() if one is None]:
         notes.append(f"ignored: {listed(out)} (name not recognised, without a unit, or as the map says)")
@@ -335,8 +335,16 @@ class _Map:
     @property
     def poses(self) -> str:
         """The columns that can give the pose of a row, in words."""
-        inputs = [f"{INPUT}.{name}" for name in self.scene.mechanism.topology.inputs]
-        return ", ".join((TIME, *inputs, f"{TRAVEL}.POINT", f"{TRAVEL}.{CONTACT}"))
+        topology = self.scene.mechanism.topology
+        inputs = [f"{INPUT}.{name}" for name in topology.inputs]
+        centre = f" such as {TRAVEL}.{topology.wheel_centre}" if topology.wheel_centre else ""
+        return ", ".join((TIME, *inputs, f"{TRAVEL}.POINT{centre}", f"{TRAVEL}.{CONTACT}"))
+
+    @property
+    def ignored(self) -> str:
+        """The columns without a meaning, for the end of a message."""
+        ignored = [name for name, one in self.meant.items() if one is None]
+        return f"; ignored: {listed(ignored)}" if ignored else ""
 
     @property
     def there_is(self) -> str:
@@ -430,8 +438,7 @@ class _Map:
             problem = f"each of {listed(s.column for s in travels)} could give the pose of a row"
             raise FileError(self.where, "columns", problem, f'is = "{IGNORE}" for all but one')
         if not (chosen := times or [*travels, *inputs]):
-            problem, allowed = "no column gives the pose of a row", f"a column of {self.poses} (in a map)"
-            if ignored := [name for name, one in self.meant.items() if one is None]:
-                problem += f"; ignored: {listed(ignored)}"
+            problem = f"no column gives the pose of a row{self.ignored}"
+            allowed = f"a column of {self.poses} (in a map)"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return tuple(chosen)

@@ -2,7 +2,8 @@
 
 `travel.POINT` is the height of a point above its position in the closed drawing; `travel.contact` is that of
 the lowest point of a thin disc with the rolling radius about the wheel centre. Names are those of the files
-that `pointcoord simulate -o` writes. For inputs and numbers of the car the last part of the name is enough.
+that `pointcoord simulate -o` writes. For inputs and numbers of the car the last part of the name is enough,
+for positions POINT.AXIS.
 """
 
 from __future__ import annotations
@@ -86,10 +87,12 @@ def meanings_of(topology: Topology) -> dict[str, Meaning]:
 def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
     """The meaning with a full name, or with the last part of the name of an input or a number of the car.
 
-    If there is none, the name is read in small letters, with _ for spaces and hyphens.
+    POINT.AXIS is a position. If there is none, the name is read in small letters, with _ for spaces and
+    hyphens.
     """
-    if name in meanings:
-        return meanings[name]
+    for full in (name, f"{PLACES}.{name}"):
+        if full in meanings:
+            return meanings[full]
     short = [one for one in meanings.values() if one.name == name and one.axis is None and one.kind != TRAVEL]
     # The force of a rod may have the name of a wheel angle; the angle is taken.
     short = [one for one in short if angle_of(one) is not None] or short

@@ -151,3 +151,15 @@ def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in
     # Of a class that only the solver's process knows the name comes through.
     assert "velocity is of type" in told[0]
     assert "velocity is of type Odd" in told[1]
+
+
+def test_many_numbers_of_one_fault_do_not_fill_the_terminal(
+    solvers: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    numbers = "{name: x + 0j for name, x in closed_form(given)['wheel'].items()}"
+    text = RIGHT.replace("closed_form(given)\n", f"{numbers}\n")
+    (solvers / "own" / "many.py").write_text(text, encoding="utf-8")
+    assert run("many", "off-axis-strut.toml") == 3
+    out = capfd.readouterr().out
+    assert out.count("is of type complex128") == 3
+    assert "cannot be used: 1 further number; -v prints all lines" in out

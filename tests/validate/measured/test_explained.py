@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from curve_files import at_inputs, compared, table
 
-from pointcoord import Scene, designs_of
+from pointcoord import Scene, designs_of, simulate
 from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.numerics.arrays import Array
 from validate.comparison.compare import Explanation
@@ -53,6 +53,28 @@ def test_a_column_that_is_meant_otherwise_is_told(
     (first,) = explanations(over, change(AT[over]), numbers(over))
     assert first.words.endswith(f"the input {words}")
     assert (first.kind, first.leftover <= 1.0) == ("input", True)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda x, v, t: np.gradient(x, t), "rates by central differences"),
+        (lambda x, v, t: v / 7.3, "0.1369863 times ours"),
+    ],
+)
+@pytest.mark.parametrize("scene", ["double-wishbone", "off-axis-strut", "hmmwv-front"])
+def test_faults_of_printed_rates_are_named(
+    scene: str, change: Callable[[Array, Array, Array], Array], words: str
+) -> None:
+    """A difference magnifies the rounding of printed positions by one over the step."""
+    motion = simulate(Scene.load(scene))
+    places, rates = (motion.numbers[q]["wheel_centre"] for q in ("position", "velocity"))
+    columns = {"time [s]": motion.times}
+    for i, axis in enumerate("xyz"):
+        columns[f"position.wheel_centre.{axis} [mm]"] = places[:, i]
+        columns[f"velocity.wheel_centre.{axis} [mm/s]"] = change(places[:, i], rates[:, i], motion.times)
+    (first,) = compared(table(columns, 5), {}, Scene.load(scene)).outcome.explanations
+    assert first.words == f"velocity: {words}"
 
 
 @pytest.mark.parametrize(

@@ -205,7 +205,7 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
             ("each of a, b could give the pose", "ignore"),
         ),
         (TEXT.replace("time [s]", "tyme [s]"), {}, ("no column gives the pose of a row; ignored: tyme;",)),
-        (TEXT.replace("camber", "cmaber"), {}, ("no numbers to compare",)),
+        (TEXT.replace("camber", "cmaber"), {}, ("no numbers to compare; ignored: cmaber",)),
         (BUMP + "0,1\n", CONTACT, ("rolling_radius",)),
         (BUMP + "900,1\n", CENTRE, ("line 2", "none of its 1 rows can be reached", "out of reach")),
     ],

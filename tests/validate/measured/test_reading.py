@@ -58,6 +58,12 @@ def test_names_are_read_in_small_letters_with_underscores(tmp_path: Path) -> Non
     assert names == ["rack", "half_track_change"]
 
 
+def test_a_coordinate_of_a_point_is_its_position(tmp_path: Path) -> None:
+    found = read(tmp_path, b"rack [mm],wheel_centre.x [mm],Wheel_Centre.Z [m]\n0,0.5,0.2\n")
+    words = [one.meaning.words for one in found.numbers]
+    assert words == ["position.wheel_centre.x", "position.wheel_centre.z"]
+
+
 def test_a_column_of_words_that_a_map_wants_is_refused_with_what_it_holds(tmp_path: Path) -> None:
     data = b"rack [mm],toe,camber [deg]\n0,rig,0\n5,rig,1\n"
     map = 'columns.rack = {}\ncolumns.camber = {}\ncolumns.toe = { unit = "deg" }\n'

@@ -16,6 +16,7 @@ KINDS = (
     Kind("mirror", numbers.mirrored),
     Kind("hardpoint", drawing.points_that_rest_elsewhere),
     Kind("swapped", numbers.swapped),
+    Kind("names", numbers.names_exchanged),
     Kind("differences", motion.differences),
     Kind("closure", drawing.other_closures, "motion"),
     Kind("input", motion.wrong_inputs, "motion"),

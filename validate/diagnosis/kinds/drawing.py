@@ -3,7 +3,8 @@ assembly mode.
 
 The exact derivatives of all numbers by each coordinate of the drawing, computed once, show which coordinates
 are worth a search. If one point takes the place of another, as tie_rod_inner does for rack_centre, the two
-are misread together or one alone.
+are misread together or one alone; so are points of two wheels that are mirror images, which a scene gives
+once.
 
 For a rod, the scene is rewritten with its mechanism's tables. The rod becomes an input, the distance of its
 ends, with the drawn value plus an amount. This is done only for mechanisms that are not composed of others,
@@ -75,44 +76,66 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
     motion, points = evidence.solved.motion, evidence.scene.mechanism.points
     if motion is None:
         return iter(())
-    some = [(point, i, others) for point, *others in _read_together(evidence.scene) for i in range(3)]
     alone = coordinates_of(evidence.scene, [*points])
     slopes = slopes_of_motion(evidence.scene, motion.solved, evidence.few.times, alone).numbers
     farthest = FARTHEST * float(np.ptp([*points.values()], axis=0).max())
 
-    def slope(together: Sequence[str], i: int, looked: Sequence[Row]) -> Array:
+    def slope(together: Mapping[str, float], i: int, looked: Sequence[Row]) -> Array:
         moved = [alone.index(f"{point}.{'xyz'[i]}") for point in together]
-        return np.concatenate([slopes[quantity][of][moved].sum(axis=0).ravel() for quantity, of in looked])
+        signs = [*together.values()]
+        return np.concatenate(
+            [np.tensordot(signs, slopes[quantity][of][moved], 1).ravel() for quantity, of in looked]
+        )
 
     # Points that are given at their own positions do not show whether a point read with them is misread.
     wrong = {of for _, of in evidence.wrong}
     right = frozenset(row.name for row in evidence.given if row.is_place and row.name not in wrong)
 
-    def change(point: str, i: int, others: Sequence[str]) -> Change:
+    def change(together: Mapping[str, float], i: int) -> Change:
+        point, *others = together
+
         def put(content: Content, more: float) -> None:
-            for name in (point, *others):
-                content["mechanism"]["points"][name][i] += more
+            for name, sign in together.items():
+                content["mechanism"]["points"][name][i] += sign * more
 
-        moved = [name for name in others if name not in right]
+        moved = [n for n in others if n not in right or n not in evidence.scene.mechanism.topology.stand_ins]
         words = partial(_in_words, evidence.scene, point, i, others=moved)
-        silent = right.intersection(others)
-        key = (point, i, *others)
-        return Change(key, put, words, partial(slope, (point, *others), i), farthest=farthest, silent=silent)
+        by, silent = partial(slope, together, i), right.intersection(others)
+        return Change((i, *together), put, words, by, farthest=farthest, silent=silent)
 
-    return any_of(evidence, [change(*one) for one in some])
+    return any_of(evidence, [change(some, i) for i in range(3) for some in _read_together(evidence.scene, i)])
 
 
-def _read_together(scene: Scene) -> list[tuple[str, ...]]:
-    """Every point alone, and each point together with the coincident points whose place it takes."""
-    points, groups = scene.mechanism.points, dict[str, list[str]]()
-    for missing, point in scene.mechanism.topology.stand_ins.items():
+def _read_together(scene: Scene, i: int) -> list[dict[str, float]]:
+    """The points whose coordinate i may be misread together, with the sign of the change of each.
+
+    Every point alone, each point together with the coincident points whose place it takes, and all of these
+    together with their mirror images at the other wheel.
+    """
+    points, topology = scene.mechanism.points, scene.mechanism.topology
+    groups = {point: {point: 1.0} for point in points}
+    for missing, point in topology.stand_ins.items():
         if missing in points and points[missing] == points[point]:
-            groups.setdefault(point, []).append(missing)
-    return [*((point, *others) for point, others in groups.items()), *((point,) for point in points)]
+            groups[point][missing] = 1.0
+    alone = [{point: 1.0} for point in points]
+    found = [*(group for group in groups.values() if len(group) > 1), *alone]
+    signs = 1.0 - 2.0 * np.abs(scene.mechanism.right)
+    if not np.isin(signs, (-1.0, 1.0)).all():
+        return found  # the mirror image of a coordinate is none
+    for one, two in combinations(topology.sides, 2):
+        for group in tuple(found):
+            images = {point: point.replace(f"{one}.", f"{two}.", 1) for point in group}
+            if all(
+                point.startswith(f"{one}.") and np.array_equal(signs * points[point], points.get(image, ()))
+                for point, image in images.items()
+            ):
+                found.append(group | {image: float(signs[i]) for image in images.values()})
+    return found
 
 
 def _in_words(scene: Scene, point: str, i: int, amount: float, others: Sequence[str] = ()) -> str:
-    place, component = scene.mechanism.points[point][i], scene.mechanism.axes.component
+    place, part = scene.mechanism.points[point][i], point.rpartition(".")[0]
+    component = scene.mechanism.axes.on(scene.mechanism.topology.sides.get(part, "")).component
     direction = np.eye(3)[i] * np.sign(amount)
     word = next((word for way, word in TOO.items() if component(direction, way) > 0.999), "")
     word = word or ("large" if amount > 0.0 else "small")
@@ -213,7 +236,15 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     for one in otherwise(evidence, words, put, 1.2, _as_it_stands):
         # The error of given numbers counts twice: in the drawing, made of them, and at each instant.
         rows = {row: (value, 2.0 * allowed) for row, (value, allowed) in one.rows.items()}
-        for row, (value, _) in rows.items():
+        for row, (value, allowed) in rows.items():
+            # Travels count from the drawing, which is another one here: they are 0 at its pose.
+            if (
+                row.of == "car"
+                and row.unit == "mm"
+                and row.order == 0
+                and abs(value[first]) <= allowed[first]
+            ):
+                value += evidence.given[row][first]
             value[:first] = evidence.held[row][:first]
         # Other inputs keep all lengths too, but would not follow the motion from the first pose on.
         left = [np.abs(evidence.given[row] - rows[row][0]).max() for row in placed.values() if row in rows]

@@ -84,9 +84,11 @@ def differences(evidence: Evidence) -> Iterator[Hypothesis]:
                 continue
             numbers = evidence.given[source]
             value = rule(numbers, times)
-            # The numbers and the instants are each rounded before they are subtracted.
+            # The numbers and the instants are each rounded before they are subtracted, and printed after it.
             late = latest / step * float(np.abs(value).max(initial=0.0))
-            allowed = evidence.rounded(row) + 16.0 * EPS * (float(np.abs(numbers).max()) / step**below + late)
+            printed = 2.0**below * float(np.max(evidence.own.get(source, 0.0), initial=0.0))
+            rounding = (16.0 * EPS * float(np.abs(numbers).max()) + printed) / step**below + 16.0 * EPS * late
+            allowed = evidence.rounded(row) + rounding
             allowed[:below] = allowed[-below:] = ANY
             rows[row] = value, allowed
         yield Hypothesis(f"rates by {words}", rows)

@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pointcoord import PointcoordError, solve_poses
+from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.car_number import Angle
 from pointcoord.effects.corner import Wheel
 from pointcoord.effects.registry import QUANTITIES, number_called
@@ -146,9 +148,14 @@ def factors(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def _factor(evidence: Evidence, rows: Sequence[Row]) -> float | None:
-    ours, theirs, _ = evidence.joined(rows)
+    ours, theirs, off = evidence.joined(rows)
     square = float(ours @ ours)
     found = float(ours @ theirs) / square if square > 0.0 else np.nan
+    # The middle of the interval that the digits allow, if there is one, and not the least-squares factor.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        low, high = np.sort([(theirs - off) / ours, (theirs + off) / ours], axis=0)
+    if (least := np.nanmax(low)) <= (most := np.nanmin(high)):
+        found = 0.5 * float(least + most)
     if not np.isfinite(found) or found == 0.0 or abs(found - 1.0) <= NEAR_ONE:
         return None
     # Rounded in units of its own power of ten.
@@ -200,17 +207,33 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
 
 def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
     """Two quantities are swapped, such as velocities and accelerations."""
-    held = evidence.held
     for one, two in combinations(sorted(evidence.wrong_quantities), 2):
-        swap = {one: two, two: one}
-        pairs = [(row, Row(swap[row.quantity], row.name)) for row in evidence.wrong if row.quantity in swap]
-        rows = {
-            row: (held[other], evidence.allowed[other])
-            for row, other in pairs
-            if other in held and held[other].shape == held[row].shape
-        }
+        other = {one: two, two: one}
+        rows = {row: Row(other[row.quantity], row.name) for row in evidence.wrong if row.quantity in other}
         words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
-        yield Hypothesis(words, rows, cost=1.1)
+        yield Hypothesis(words, _of_others(evidence, rows), cost=1.1)
+
+
+def names_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Numbers of two points, bodies or angles under each other's names, or of one under another's name."""
+    few, wrong = evidence.few, sorted({row.name for row in evidence.wrong})
+    right = sorted({row.name for row in evidence.held}.difference(wrong))
+    faults = [(f"{a} and {b} are exchanged", {a: b, b: a}) for a, b in combinations(wrong, 2)]
+    faults += [(f"the numbers of {b}, not of {a}", {a: b}) for a, b in product(wrong, right)]
+    for words, other in faults:
+        rows = {row: Row(row.quantity, other[row.name]) for row in evidence.wrong if row.name in other}
+        if few.explained(_of_others(few, rows)):
+            yield Hypothesis(words, _of_others(evidence, rows), cost=1.1)
+
+
+def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, WouldBe]:
+    """Rows with the numbers of other rows, if these exist and have the same shape."""
+    held = evidence.held
+    return {
+        row: (held[other], evidence.allowed[other])
+        for row, other in others.items()
+        if other in held and held[other].shape == held[row].shape
+    }
 
 
 def of_another_instant(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -227,12 +250,16 @@ def of_another_instant(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
-    """A constant added to a position or an angle, such as another origin or the drawn value subtracted."""
+    """Offsets of positions and angles: the drawn value subtracted, or a constant added."""
+    as_drawn = _as_drawn(evidence)
     for row in evidence.wrong if len(evidence.times) > 2 else ():
+        if row in as_drawn:
+            less = so_much_more(evidence, row, -as_drawn[row])
+            yield Hypothesis("the value of the drawing is subtracted", less)
         gap = constant_gap(evidence, row, MEANT) if row.order == 0 else None
         if gap is not None:
             unit, factor = evidence.unit_of(row)
-            amount = ", ".join(f"{component:.6g}" for component in np.ravel(gap / factor))
+            amount = ", ".join(f"{component + 0.0:.6g}" for component in np.ravel(gap / factor))
             amount = f"({amount})" if gap.ndim else amount
             words = f"a constant offset of {amount} {unit}"
             count = int(np.count_nonzero(gap))
@@ -259,6 +286,19 @@ def constant_gap(evidence: Evidence, row: Row, least: float = 1.0) -> Array | No
 def so_much_more(evidence: Evidence, row: Row, amount: Array) -> dict[Row, WouldBe]:
     """The numbers of a row with an amount added."""
     return {row: (evidence.held[row] + amount, evidence.rounded(row, amount))}
+
+
+def _as_drawn(evidence: Evidence) -> dict[Row, Array]:
+    """The drawn values of the positions and of the numbers of the car that disagree."""
+    rows = [row for row in evidence.wrong if row.of != "body" and row.order == 0]
+    try:
+        scene = evidence.solved.fine
+        numbers = solve_poses(scene, drawn_inputs(scene)).numbers if rows else {}
+    except PointcoordError:
+        return {}
+    return {
+        row: np.asarray(numbers[row.quantity][row.name]) for row in rows if row.name in numbers[row.quantity]
+    }
 
 
 def printed_digits(evidence: Evidence) -> Iterator[Hypothesis]:
