@@ -15,7 +15,7 @@ from validate.errors import NotFinished, UsageError
 from validate.exit_status import HELP, ExitStatus, of_interruption
 from validate.extras import needing
 from validate.output.console import Console
-from validate.output.document import program_version, schema_text
+from validate.output.document import program_version
 
 COMMANDS: Mapping[str, str] = {
     "validate": "comparison",
@@ -122,11 +122,18 @@ def _overview() -> str:
     return filled("overview", {"commands": listed, "exit_status": HELP})
 
 
+def _schema() -> str:
+    # Imported here: it needs the classes of all results.
+    from validate.commands.schema import schema_text
+
+    return schema_text()
+
+
 ANSWERS: Mapping[str, Callable[[], str]] = {
     "-h": _overview,
     "--help": _overview,
     "--version": lambda: f"pointcoord {program_version()}",
-    "--schema": schema_text,
+    "--schema": _schema,
 }
 
 

@@ -36,10 +36,9 @@ def measured(
     rows = []
     for quantity, largest in errors.items():
         each = time + (0.0 if quantity == "position" else rates)
-        error = {"error": largest, "rms": 0.5 * largest, "radius": RADIUS}
+        error = {"error": largest, "radius": RADIUS}
         quartiles = {"time": each, "lower": each * (1.0 - spread), "upper": each * (1.0 + spread)}
-        first = 3.0 * POSES * each
-        rows.append(replace(row, quantity=quantity, numbers=900, first=first, **error, **quartiles))
+        rows.append(replace(row, quantity=quantity, **error, **quartiles))
     return rows
 
 

@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 import pointcoord
-from validate.output.document import schema_text
+from validate.commands.schema import schema_text
 
 ROOT = Path(pointcoord.__file__).parent.parent
 CHECK = jsonschema.Draft202012Validator(json.loads(schema_text()))

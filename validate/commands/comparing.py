@@ -14,8 +14,7 @@ from pointcoord import Scene
 from validate.ci.baseline import Since, written
 from validate.ci.record import Record
 from validate.comparison.examined import Examined
-from validate.errors import NotFinished, UsageError
-from validate.exit_status import ExitStatus
+from validate.errors import UsageError
 from validate.extras import needed
 from validate.output.console import Console
 from validate.output.document import Ending, Journal, at_the_end
@@ -141,34 +140,24 @@ def _leave_files(options: argparse.Namespace, record: Record, console: Console, 
     """Write JUnit, summary and baseline if any scene was examined; the baseline only after a whole run.
 
     Raises:
-        NotFinished: a file cannot be written; the others are still tried.
+        NotFinished: a file cannot be written.
     """
     if not record.examined:
         return
-    problems: list[NotFinished] = []
-
-    def attempt(target: str, content: str | bytes) -> None:
-        try:
-            console.put(target, content, f"{len(record.examined)} of {len(record.names)} scenes")
-        except NotFinished as error:
-            problems.append(error)
-
+    what = f"{len(record.examined)} of {len(record.names)} scenes"
     if record.kept is not None:
         why = "" if record.kept else "no scene was compared"
         if why := why if record.ended else record.stopped:
             console.complain(f"baseline {options.save_baseline}: not written, because {why}")
         else:
-            attempt(options.save_baseline, written(record.kept))
+            console.put(options.save_baseline, written(record.kept), what)
     # Imported here: most runs do not write these files.
     if options.junit is not None:
         from validate.ci.junit import junit
 
-        attempt(options.junit, junit(record))
+        console.put(options.junit, junit(record), what)
     if options.summary is not None:
         from validate.ci.summary import summary
 
-        # The summary is last, so that its status reflects a file that could not be written.
         status = record.status if ending.complete else ending.status
-        attempt(options.summary, summary(record, ExitStatus.NOT_FINISHED if problems else status))
-    if problems:
-        raise problems[0]
+        console.put(options.summary, summary(record, status), what)

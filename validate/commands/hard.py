@@ -66,7 +66,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             from validate.html.run import Run
 
             document = journal.head.document(report.results_data(results), ending.status, complete=True)
-            ending.status = page.write(Run(journal.head, hard=HardCases.of(document)), console).status
+            ending.status = page.write(Run(journal.head, hard=HardCases(document)), console).status
     return ending.status
 
 

@@ -62,7 +62,7 @@ def _some_hard_cases(run: Run, console: Console) -> HardCases:
         results = [hard_report.examine(case) for case in chosen(HARD)]
     status = ExitStatus.AGREE if hard_report.as_expected(results) else ExitStatus.DISAGREE
     head = replace(run.head, kind="hard")
-    return HardCases.of(head.document(hard_report.results_data(results), status, complete=True))
+    return HardCases(head.document(hard_report.results_data(results), status, complete=True))
 
 
 def _first_look_at_cost(run: Run, console: Console) -> Report:

@@ -17,11 +17,10 @@ from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.files import require_known_ending, require_writable, write_content
-from validate.plain_text import one_line, shown
+from validate.plain_text import shown
 
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
-LONGEST_FILE_NAME = 255  # characters, on the usual file systems
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
 TOML = (".toml",)
 
@@ -125,11 +124,8 @@ def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
 
 
 def name_of(scene: str) -> str:
-    """The name of a scene in messages; a name too long for any file is shortened."""
-    if scene == STANDARD_INPUT:
-        return STANDARD_INPUT_NAME
-    of_a_file = all(len(part) <= LONGEST_FILE_NAME for part in scene.split(os.sep))
-    return shown(scene) if of_a_file else one_line(shown(scene))
+    """The name of a scene in messages."""
+    return STANDARD_INPUT_NAME if scene == STANDARD_INPUT else shown(scene)
 
 
 def require_input_once(names: Sequence[str]) -> None:

@@ -17,13 +17,12 @@ from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.arrays import Array
 from validate.cost.race import Found, absent
-from validate.cost.way import Answer
 from validate.errors import NoAnswer
-from validate.formulations.protocol import Solution
+from validate.formulations.protocol import Numbers, Solution
 from validate.formulations.reference_solution import as_solution, reference_motion, told_by
 
 
-def judge(scene: Scene, instants: Array, positions: bool = True) -> Callable[[Answer], Found]:
+def judge(scene: Scene, instants: Array, positions: bool = True) -> Callable[[Numbers], Found]:
     """A function that returns the errors of an answer; it solves the reference once, when first called.
 
     Args:
@@ -31,7 +30,7 @@ def judge(scene: Scene, instants: Array, positions: bool = True) -> Callable[[An
         positions: whether to judge positions, in addition to all other quantities.
     """
     truth = cache(lambda: truth_of(scene, instants))
-    return lambda answer: errors_of(answer, truth(), positions)
+    return lambda numbers: errors_of(numbers, truth(), positions)
 
 
 def truth_of(scene: Scene, instants: Array) -> Solution:
@@ -41,7 +40,7 @@ def truth_of(scene: Scene, instants: Array) -> Solution:
         NoReferenceError: an instant has no pose, or none can be proven.
     """
     solved = as_solution(scene, reference_motion(scene, instants.tolist()), instants)
-    # A point of the chassis is at its drawn position: it would dilute the mean, and tests no method.
+    # A point of the chassis is at its drawn position, which tests no method.
     fixed = set(scene.mechanism.topology.chassis)
     numbers: dict[str, dict[str, Array]] = {}
     for quantity, names in told_by(solved, scene).items():
@@ -50,7 +49,7 @@ def truth_of(scene: Scene, instants: Array) -> Solution:
     return replace(solved, numbers=numbers)
 
 
-def errors_of(answer: Answer, truth: Solution, positions: bool = True) -> Found:
+def errors_of(numbers: Numbers, truth: Solution, positions: bool = True) -> Found:
     """The columns of a row for each quantity that the scene asks for, with verdict `left out` if not given.
 
     If any number of a quantity is given, all its numbers must be given.
@@ -59,21 +58,16 @@ def errors_of(answer: Answer, truth: Solution, positions: bool = True) -> Found:
         NoAnswer: a number is missing or not finite, or has a wrong shape.
     """
     found: Found = {}
-    work = ", ".join(f"{name} {count}" for name, count in answer.work.items())
     for quantity, names in truth.numbers.items():
         if quantity == "position" and not positions:
             continue
-        given = answer.numbers.get(quantity) or {}
+        given = numbers.get(quantity) or {}
         if quantity != "position" and not any(name in given for name in names):
             found[quantity] = absent("left out", f"gives no {QUANTITIES[quantity].words}")
             continue
-        errors = np.concatenate([_error(quantity, n, given, exact).ravel() for n, exact in names.items()])
-        largest = float(np.abs(errors).max())
-        # Relative to the largest error, so that no square overflows or underflows.
-        mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
-        sizes = {"error": largest, "rms": largest * mean**0.5, "numbers": errors.size}
+        error = max(float(np.abs(_error(quantity, n, given, exact)).max()) for n, exact in names.items())
         radius = max(float(truth.accuracy.claims[quantity][name].max()) for name in names)
-        found[quantity] = {**sizes, "radius": radius, "work": work}
+        found[quantity] = {"error": error, "radius": radius}
     return found
 
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pandas as pd
 
 from validate.cost.findings import ACCURACIES, heights, timed, unit_of, words_of
 from validate.cost.looks import KEY, looks
 from validate.cost.way import power
-from validate.extras import needing
-from validate.output.figure import GREY, SETTINGS, plain
+from validate.output.figure import GREY, LOOK, panels
 
-with needing("a picture"):
-    import matplotlib as mpl
+if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@mpl.rc_context(SETTINGS)
+@LOOK
 def headline(table: pd.DataFrame) -> Figure | None:
     """Error of positions against time, for the first measured scene; None if nothing was measured."""
     here = timed(table)
@@ -23,11 +23,11 @@ def headline(table: pd.DataFrame) -> Figure | None:
     if here.empty:
         return None
     here = here[here.scene == here.scene.iloc[0]]
-    page = Figure(figsize=(7.0, 5.0), layout="constrained")
-    axes = page.add_subplot()
+    title = f"{here.scene.iloc[0]}: largest error against time of a pose, {here.poses.max()} poses a run"
+    page, (axes,) = panels((7.0, 5.0), title, 1, 1)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    plain(axes)
+    axes.minorticks_off()
     errors, nothing = heights(here.error)
     for way, look in looks(here.way).items():
         line = here[here.way == way].sort_values("value", ascending=False)
@@ -51,8 +51,6 @@ def headline(table: pd.DataFrame) -> Figure | None:
     axes.set_title(words_of("position") + nothing, loc="left")
     axes.set_xlabel("time of a pose, us")
     axes.set_ylabel(f"largest error, {unit_of('position')}")
-    title = f"{here.scene.iloc[0]}: largest error against time of a pose, {here.poses.max()} poses a run"
-    page.suptitle(title, x=0.01, ha="left", fontsize=11)
     key = f"{KEY.replace('. ', '.' + chr(10))} Grey: {', '.join(map(power, ACCURACIES))}; without the set-up."
     legend = page.legend(
         loc="outside lower left", ncols=4, frameon=False, fontsize=7.5, title=key, title_fontsize=7.5

@@ -128,7 +128,7 @@ def _course(runner: Runner, effort: Effort, clock: Clock) -> Iterator[list[Row]]
     found = runner.found(answer)
     del answer
     gc.collect()
-    row, samples, loops = replace(runner.row, first=sum(took)), [took], 0
+    row, samples, loops = runner.row, [took], 0
     if 2.0 * sum(took) <= effort.most:
         seconds = max(sum(run()[0]), 1e-9)
         samples, loops = [], min(max(math.ceil(effort.least / seconds), 1), MOST_LOOPS)

@@ -131,6 +131,8 @@ class Report:
 
 def _reached(table: pd.DataFrame) -> Iterator[Table]:
     """Time of a pose with the fastest setting that reaches the finest accuracy, the fastest method first."""
+    from pandas import crosstab
+
     from validate.cost.findings import ACCURACIES, cheapest, duration, timed
     from validate.cost.way import power
 
@@ -144,15 +146,10 @@ def _reached(table: pd.DataFrame) -> Iterator[Table]:
         tried.way.unique(), columns=scenes
     )
     times = times.loc[times.median(axis=1).sort_values(na_position="last", kind="stable").index]
-    there = set(zip(tried.way, tried.scene, strict=True))
-
-    def cell(way: str, scene: str, time: float) -> str:
-        return duration(time) if time == time else "not reached" if (way, scene) in there else "-"
-
-    rows = (
-        (f"{way}*" if dense[way] else way, *(cell(way, *one) for one in zip(scenes, of, strict=True)))
-        for way, *of in times.itertuples()
-    )
+    there = crosstab(tried.way, tried.scene).loc[times.index, scenes]
+    texts = times.astype(object).map(duration, na_action="ignore")
+    texts = texts.where(times.notna(), there.map(lambda count: "not reached" if count else "-"))
+    rows = ((f"{way}*" if dense[way] else way, *cells) for way, *cells in texts.itertuples())
     caption = (
         f"Time of a pose to {power(ACCURACIES[-1])} mm of position, with the fastest setting; "
         f"{' to '.join(dict.fromkeys(map(str, (tried.poses.min(), tried.poses.max()))))} poses a run"

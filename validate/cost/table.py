@@ -39,12 +39,10 @@ class Row:
         dense: whether one solve serves any instant.
         poses: number of poses of one run.
         quantity: see `pointcoord.effects.registry.QUANTITIES`.
-        error, rms: largest and root mean square error of the components against the reference, in the unit of
-            the quantity. radius: proven error of the reference. numbers: number of components.
+        error: largest error of a component against the reference, in the unit of the quantity. radius: proven
+            error of the reference.
         time: from instants to arrays, s per pose, median of the repeats. lower, upper: quartiles.
-        set_up: time of the work before the instants are known, s per run, median. first: time of the first
-            run with its set-up, s.
-        work: counts of one run, such as `residuals 120, jacobians 40`.
+        set_up: time of the work before the instants are known, s per run, median.
         reason: why there are no numbers.
         quick: whether it was measured with `--quick`.
         program, machine, python, packages, command: where and how it was measured.
@@ -58,16 +56,12 @@ class Row:
     poses: int = 0
     quantity: str = ""
     error: float | None = None
-    rms: float | None = None
     radius: float | None = None
-    numbers: int | None = None
     time: float | None = None
     lower: float | None = None
     upper: float | None = None
     repeats: int | None = None
     set_up: float | None = None
-    first: float | None = None
-    work: str = ""
     verdict: Verdict = "measured"
     reason: str = ""
     quick: bool = False
@@ -101,8 +95,8 @@ def read_rows(path: str) -> list[Row]:
 
     try:
         table = parquet.read_table(BytesIO(Path(path).read_bytes()), use_threads=False, pre_buffer=False)
-        if odd := set(table.column_names) ^ set(COLUMNS):
-            raise ValueError(f"the columns {', '.join(sorted(odd))} are missing or unknown")
+        if missing := sorted(set(COLUMNS) - set(table.column_names)):
+            raise ValueError(f"the columns {', '.join(missing)} are missing")
         if rows := TypeAdapter(list[Row]).validate_python(table.to_pylist()):
             return rows
         why = "it has no rows"

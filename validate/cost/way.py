@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
 from typing import Any
@@ -21,16 +21,11 @@ def power(number: float) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
-@dataclass(frozen=True)
-class Answer:
-    """The numbers of a method, by quantity and name, in the scene's axes and units, and counts of work."""
+Solve = Callable[[Array], Numbers]
+"""Solves at N increasing instants, (N,), s, of which the first may be after the scene's start.
 
-    numbers: Numbers
-    work: Mapping[str, int] = field(default_factory=dict)
-
-
-Solve = Callable[[Array], Answer]
-"""Solves at N increasing instants, (N,), s; the first may be after the scene's start."""
+Returns numbers by quantity and name, in the scene's axes and units.
+"""
 
 
 def laws_at(scene: Scene, instants: Array) -> dict[str, Array]:
@@ -64,7 +59,7 @@ class Way:
         """A setting in words, such as `1e-9 mm`."""
         return "" if value is None else self.setting.format(power(value))
 
-    def ready(self, scene: Scene, value: float | None, instants: Array) -> Callable[[], Answer]:
+    def ready(self, scene: Scene, value: float | None, instants: Array) -> Callable[[], Numbers]:
         """Set up a scene; returns the function that solves it at the instants.
 
         Raises:

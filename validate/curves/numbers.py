@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import Any
 
 import numpy as np
 
@@ -25,7 +24,6 @@ from validate.tables.units import degrees_of
 
 Sampled = Samples | Solution
 """Numbers of a motion, or of another solution, at instants."""
-Read = Callable[[Motion | None, Sampled], Array]
 
 TIME, TRAVEL = "time", "travel"
 COMPONENTS = "xyz"
@@ -42,7 +40,6 @@ class Number:
         words: its name in words.
         unit: unit of the values from `read`.
         sign: its positive direction in words; empty if it needs no statement.
-        read: returns its values at the N instants of samples, (N,); KeyError if the samples lack it.
         missing: why the scene does not give it; None if the scene asks for it.
         minus: whether it is shown with the opposite sign of pointcoord's number with this path.
     """
@@ -51,7 +48,7 @@ class Number:
     words: str
     unit: str
     sign: str
-    read: Read
+    scene: Scene = field(repr=False, compare=False)
     missing: NotComputed | None = None
     minus: bool = False
 
@@ -84,12 +81,27 @@ class Number:
         """Its short name: without the quantity for numbers of the car and for positions."""
         return ".".join(self.path[1:] if self.of_the_car or self.path[0] == PLACE.name else self.path)
 
-    def shown(self, motion: Motion | None, samples: Sampled) -> Array:
-        """Its values as shown, (N,).
+    def read(self, motion: Motion | None, samples: Sampled) -> Array:
+        """Its values at the N instants of samples, (N,).
 
         Args:
-            motion: may be None for a number of the car at poses without a motion.
+            motion: None for a number of the car at poses without a motion.
+        Raises:
+            KeyError: the samples lack it.
         """
+        name = self.path[0]
+        if len(self.path) > 1:
+            array = samples.numbers[name][self.path[1]]
+            return array[..., COMPONENTS.index(self.path[2])] if len(self.path) > 2 else array
+        if name in self.scene.functions:
+            return self.scene.functions[name].series(samples.times, 0)[:, 0]
+        if name == TIME:
+            return samples.times
+        assert motion is not None  # poses without a motion are not asked for the travel
+        return np.asarray(movement(self.scene, motion, samples) @ np.array(self.scene.mechanism.up))
+
+    def shown(self, motion: Motion | None, samples: Sampled) -> Array:
+        """Its values as shown, (N,); see `read`."""
         return self.factor * self.read(motion, samples)
 
     @property
@@ -110,18 +122,19 @@ class Number:
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:
     """Time, wheel travel and inputs of a scene, and every number that the scene can ask for."""
-    time = Number((TIME,), TIME, "s", "", lambda _, samples: samples.times)
-    topology = scene.mechanism.topology
+    topology, centre = scene.mechanism.topology, scene.mechanism.topology.wheel_centre
+    time = Number((TIME,), TIME, "s", "", scene)
+    missing = _missing(ALWAYS, PLACE, centre, scene)
+    travel = Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", scene, missing)
     givers = gathered(
         ((quantity, name), effect)
         for effect in (*ALWAYS, *EFFECTS.values())
         for quantity, names in names_of([effect], topology, tuple(topology.points)).items()
         for name in names
     )
-    travel = [_travel(scene)] if topology.wheel_centre else []
     had = scene.mechanism.effects
     others = (number for path, effects in givers.items() for number in _called(*path, effects, scene, had))
-    return (time, *travel, *_inputs(scene), *others)
+    return (time, *([travel] if centre else []), *_inputs(scene), *others)
 
 
 def numbers_asked(
@@ -194,18 +207,6 @@ def asking_for(scene: Scene, numbers: Iterable[Number]) -> Scene:
     return scene.model_copy(update={"effects": tuple(dict.fromkeys((*scene.effects, *wanted)))})
 
 
-def _travel(scene: Scene) -> Number:
-    """Height of the wheel centre above its position in the closed drawing, relative to the chassis, mm."""
-    up = np.array(scene.mechanism.up)
-
-    def read(motion: Motion | None, samples: Sampled) -> Array:
-        assert motion is not None  # poses without a motion are not asked for it
-        return np.asarray(movement(scene, motion, samples) @ up)
-
-    missing = _missing(ALWAYS, PLACE, scene.mechanism.topology.wheel_centre, scene)
-    return Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", read, missing)
-
-
 def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
     """Displacement of the wheel centre from the closed drawing, relative to the chassis, (N, 3), mm."""
     centre = scene.mechanism.topology.wheel_centre
@@ -221,12 +222,8 @@ def _inputs(scene: Scene) -> list[Number]:
         name: f"right-handed about {along} through {about}" if about else f"{along}ward"
         for name, (along, about) in topology.chassis_inputs.items()
     }
-
-    def reader(name: str) -> Read:
-        return lambda _, samples: scene.functions[name].series(samples.times, 0)[:, 0]
-
     return [
-        Number((name,), name.replace("_", " "), unit, signs.get(name, ""), reader(name))
+        Number((name,), name.replace("_", " "), unit, signs.get(name, ""), scene)
         for name, unit in topology.input_units.items()
         if name in scene.functions
     ]
@@ -245,13 +242,13 @@ def _called(
     if quantity.of == "car":
         known = number_called(name)
         sign = known.sign if known else ""
-        yield Number(path, words_of(name), quantity.unit, sign, _reader(*path), missing)
+        yield Number(path, words_of(name), quantity.unit, sign, scene, missing)
         return
     for i, axis in enumerate(COMPONENTS):
         along = _along(scene, i)
         sign = f"about {along}" if along and quantity.of == "body" else along
         words = f"{quantity.words} of {name.replace('_', ' ')}, {axis}"
-        yield Number((*path, axis), words, quantity.unit, sign, _reader(*path, (..., i)), missing)
+        yield Number((*path, axis), words, quantity.unit, sign, scene, missing)
 
 
 def _missing(
@@ -265,10 +262,6 @@ def _missing(
     if asked[0].reports_states and name in scene.unreported_points:
         return NotComputed(what, "", f"add {name!r} to the scene's points")
     return None
-
-
-def _reader(quantity: str, name: str, at: Any = ...) -> Read:
-    return lambda _, samples: samples.numbers[quantity][name][at]
 
 
 def _along(scene: Scene, i: int) -> str:

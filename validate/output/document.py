@@ -1,6 +1,6 @@
 """The JSON documents of the program: the results, with the command, machine and time of the run.
 
-The JSON Schema is `schema.json` in this folder; `pointcoord --schema` prints it.
+`pointcoord --schema` prints the JSON Schema.
 """
 
 from __future__ import annotations
@@ -60,11 +60,6 @@ def code_digest(places: Sequence[str]) -> str:
         for file in sorted(files):
             digest.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
     return digest.hexdigest()[:12]
-
-
-def schema_text() -> str:
-    """The JSON Schema of every document that the program writes."""
-    return Path(__file__).with_name("schema.json").read_text(encoding="utf-8")
 
 
 @cache

@@ -49,6 +49,8 @@ def panels(
 ) -> tuple[Figure, list[Axes]]:
     """A new page and its panels, row by row, below a title that is wrapped to the width.
 
+    Only the left and bottom sides of the frames are drawn, and a faint grid at the major ticks.
+
     Args:
         size: width and height, inches. sharex, sharey: whether the panels share this axis.
     """
@@ -57,16 +59,11 @@ def panels(
     page.suptitle(heading, x=0.02, ha="left", fontsize=9.0, parse_math=False)
     every = [*page.subplots(rows, columns, squeeze=False, sharex=sharex, sharey=sharey).flat]
     for axes in every:
-        plain(axes)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.grid(True, which="major", color=FAINT, linewidth=0.4)
+        axes.set_axisbelow(True)
+        axes.minorticks_off()
     return page, every
-
-
-def plain(axes: Axes) -> None:
-    """Draw only the left and bottom sides of the frame, and a faint grid at the major ticks."""
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.grid(True, which="major", color=FAINT, linewidth=0.4)
-    axes.set_axisbelow(True)
-    axes.minorticks_off()
 
 
 @LOOK

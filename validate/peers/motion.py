@@ -36,14 +36,12 @@ class Poses:
         coordinates: of the program's joints, (N, ...).
         places: of every moving point, (N, 3).
         last_step: the last correction of Newton's method, rad and car sizes, (N,).
-        counts: effort of the solver.
     """
 
     inputs: Array
     coordinates: Array
     places: Mapping[str, Array]
     last_step: Array
-    counts: Mapping[str, int]
 
     def first(self, count: int) -> Poses:
         """The first poses."""

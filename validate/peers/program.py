@@ -22,7 +22,6 @@ near to a singular pose that rounding mixes the branches is not followed further
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -78,7 +77,7 @@ class Program(ABC):
         rows: the rows that are solved.
         blocks: rows and columns of the diagonal blocks of J_u.
         drawn: signs of the determinants of these blocks as drawn.
-        tolerance, counted: of the present call of `closed` or `poses`: limit of the last correction, effort.
+        tolerance: limit of the last correction in the present call of `closed` or `poses`.
         jacobian: J of the last Newton step.
         way: direction of the path at the last pose.
         begun: condition number at the start of the path.
@@ -90,7 +89,6 @@ class Program(ABC):
     blocks: Sequence[tuple[Integers, Integers]] = ()
     drawn: Array
     tolerance: float
-    counted: Counter[str]
     jacobian: Array
     way: Array
     begun: float = 1.0
@@ -168,7 +166,7 @@ class Program(ABC):
         Raises:
             NoAnswer: its inputs do not drive the mechanism, or it does not close in the drawn assembly.
         """
-        self.tolerance, self.counted, drawn = tolerance, Counter(), self.tree.drawn_inputs
+        self.tolerance, drawn = tolerance, self.tree.drawn_inputs
         self.put(self.as_drawn)
         self._at(drawn)
         jacobian = self.misses()[1]
@@ -203,7 +201,7 @@ class Program(ABC):
         Raises:
             NoAnswer: a pose is not reached without meeting another assembly; `partial` has those before.
         """
-        self.tolerance, self.counted, count = tolerance, Counter(), len(inputs)
+        self.tolerance, count = tolerance, len(inputs)
         coordinates = np.empty((count, start.coordinates.shape[1]))
         places, steps = np.empty((count, len(self.tree.moving), 3)), np.empty(count)
         here = start.inputs[-1]
@@ -336,7 +334,6 @@ class Program(ABC):
         for number in range(LIMIT):
             missed, self.jacobian = self.misses()
             step = np.zeros(self.jacobian.shape[1])
-            self.counted.update(factorisations=1, jacobians=1, residuals=1)
             square = self.jacobian[self.rows][:, self.unknown]
             try:
                 step[self.unknown] = np.linalg.solve(square, -missed[self.rows])
@@ -350,7 +347,6 @@ class Program(ABC):
             elif number == 1 and size > CONTRACTED * previous and size > ROUNDING_STEP and not shorten:
                 return None
             self.move(step)
-            self.counted["newton_steps"] += 1
             if size <= self.tolerance or (size < ROUNDING_STEP and size >= 0.5 * previous):
                 return size if (self.signs(square) == self.drawn).all() else None
             previous = size
@@ -396,7 +392,7 @@ class Program(ABC):
         self, inputs: Array, coordinates: Array, places: Array, steps: Sequence[float] | Array
     ) -> Poses:
         named = {name: places[:, k] for k, name in enumerate(self.tree.moving)}
-        return Poses(inputs, coordinates, named, np.asarray(steps), dict(self.counted))
+        return Poses(inputs, coordinates, named, np.asarray(steps))
 
 
 def _apart(ends: Array) -> Array:

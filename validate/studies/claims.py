@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -81,35 +80,27 @@ def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
     """By suspension and quantity: count of numbers, largest error / claim, and median claim / error."""
     held = pd.DataFrame(rows, columns=["number", *COLUMNS]).dropna(subset="quantity")
     held["share"] = (held["error"] / held["claim"]).where(held["error"] != 0.0, 0.0)
-    data: list[dict[str, Any]] = []
-    for (suspension, quantity), part in held.groupby(["suspension", "quantity"], sort=False):
-        worst, off = part.loc[part["share"].idxmax()], part["share"][part["share"] > 0.0]
-        data.append(
-            {
-                "suspension": suspension,
-                "quantity": quantity,
-                "numbers": len(part),
-                "largest_error_over_claim": float(worst["share"]),
-                "scene": int(worst["number"]),
-                "kind": worst["kind"],
-                "claim_over_error": None if off.empty else float((1.0 / off).median()),
-            }
-        )
+    held["loose"] = (1.0 / held["share"]).where(held["share"] > 0.0)
+    groups = held.groupby(["suspension", "quantity"], sort=False)
+    table = groups.agg(
+        numbers=("share", "size"),
+        largest_error_over_claim=("share", "max"),
+        claim_over_error=("loose", "median"),
+    )
+    worst = held.loc[groups["share"].idxmax()]
+    table["scene"], table["kind"] = worst["number"].to_list(), worst["kind"].to_list()
     lines = (
         (
-            one["suspension"],
-            QUANTITIES[one["quantity"]].words,
-            str(one["numbers"]),
-            f"{one['largest_error_over_claim']:.7g}",
-            f"{one['scene']} ({one['kind']})",
-            "-" if one["claim_over_error"] is None else f"{one['claim_over_error']:.3g}",
+            *(suspension, QUANTITIES[quantity].words, str(one.numbers)),
+            *(f"{one.largest_error_over_claim:.7g}", f"{one.scene} ({one.kind})"),
+            "-" if pd.isna(one.claim_over_error) else f"{one.claim_over_error:.3g}",
         )
-        for one in data
+        for (suspension, quantity), one in zip(table.index, table.itertuples(), strict=True)
     )
     head = ("suspension", "quantity", "numbers", "largest error / bound", "scene", "median bound / error")
     scenes = held["number"].nunique()
     return Findings(
         (f"{scenes} scenes compared with the reference", Table(head, tuple(lines))),
-        {**settings, "scenes": scenes, "quantities": data},
+        {**settings, "scenes": scenes, "quantities": table.reset_index().to_dict("records")},
         ExitStatus.AGREE if (held["error"] <= held["claim"]).all() else ExitStatus.DISAGREE,
     )

@@ -35,7 +35,7 @@ def test_every_setting_is_raced_for_positions_alone_and_for_everything() -> None
     assert count == {"series": 24, "absolute": 2}
     assert len(runners_of("bare", BARE, ways)) == 13
     alone = next(one for one in runners if one.row.quantity == "position")
-    assert alone.set_up()().numbers.keys() == {"position"}
+    assert alone.set_up()().keys() == {"position"}
     rows = race(runners_of("steer", STEER, ways, quick=True), FEW)
     keys = [(row.way, row.setting, row.quantity) for row in rows]
     assert len(set(keys)) == len(keys)

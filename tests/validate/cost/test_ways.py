@@ -11,11 +11,11 @@ from changed_scenes import scene_with
 from pointcoord import PointcoordError, Scene
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.scenes import NEAR_TOGGLE, own_scene, study_instants
-from validate.cost.way import Answer, Way
+from validate.cost.way import Way
 from validate.cost.ways import scipy_solvers
 from validate.cost.ways.registry import OURS, WAYS, ways_named
 from validate.errors import NoAnswer
-from validate.formulations.protocol import Solution
+from validate.formulations.protocol import Numbers, Solution
 
 # What solves each instant, each as finely as it can be set.
 EXACT = [way.name for way in WAYS if way.name not in ("map", "series")]
@@ -29,7 +29,7 @@ def way(name: str) -> Way:
     return ways_named([name])[0]
 
 
-def answer(name: str, scene: Scene, instants: Any, value: float | None = None) -> Answer:
+def answer(name: str, scene: Scene, instants: Any, value: float | None = None) -> Numbers:
     found = way(name)
     return found.prepare(scene, found.values[-1] if value is None else value)(instants)
 
@@ -77,7 +77,7 @@ def test_a_way_gives_what_a_scene_asks_for_and_no_rates_beside(who: str, effects
     scene = own_scene("bounce").model_copy(update={"effects": effects})
     found = errors(who, scene, count=3)
     assert all(error < 1e-7 for error in found.values())
-    given = answer(who, scene, study_instants(scene, 3)).numbers
+    given = answer(who, scene, study_instants(scene, 3))
     # The tree and the programs tell of all rates or of none.
     assert "velocity" in found or not effects or "velocity" not in given
 
@@ -94,7 +94,7 @@ def test_a_motion_through_a_fold_is_no_answer(who: str) -> None:
     solve = way(who).prepare(scene, 1e-9)
     whole = scene.instants[scene.instants < 1.2]
     # Differences for a Jacobian fail where a coordinate is nearly zero, as at the middle of the rack.
-    assert len(solve(whole).numbers["position"]["wheel_centre"]) == len(whole)
+    assert len(solve(whole)["position"]["wheel_centre"]) == len(whole)
     with pytest.raises(Exception, match=r"t = 1\.|instant") as caught:
         solve(scene.instants)
     assert "Error" in type(caught.value).__name__ or isinstance(caught.value, NoAnswer | PointcoordError)

@@ -13,9 +13,10 @@ from counted_study import worked_out
 from program import PAST_ITS_END, document, short_scene
 
 from validate.cli import main
+from validate.commands.schema import schema_text
 from validate.exit_status import ExitStatus, combined
 from validate.output.console import Console
-from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
+from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text
 from validate.studies.bounds import bounds
 from validate.studies.hard_cases import hard
 from validate.studies.random_cars import random_cars

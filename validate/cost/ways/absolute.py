@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from pointcoord import Scene
 from validate.arrays import Array
-from validate.cost.way import Answer, Solve, Way, laws_at
+from validate.cost.way import Solve, Way, laws_at
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.modelled import asked_of
+from validate.formulations.protocol import Numbers
 
 
 def in_bodies(scene: Scene, _: float | None) -> Solve:
@@ -19,10 +20,8 @@ def in_bodies(scene: Scene, _: float | None) -> Solve:
 
     solved_at, asked = solver_of(scene), asked_numbers(scene)
 
-    def solve(instants: Array) -> Answer:
-        solved = solved_at(laws_at(scene, instants))
-        numbers = asked_of(found_of(solved, asked), scene)
-        return Answer(numbers, {"newton_steps": int(solved.iterations.sum())})
+    def solve(instants: Array) -> Numbers:
+        return asked_of(found_of(solved_at(laws_at(scene, instants)), asked), scene)
 
     return solve
 

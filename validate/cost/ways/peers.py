@@ -13,10 +13,11 @@ import numpy as np
 from pointcoord import Scene
 from pointcoord.effects.registry import plan_effects
 from validate.arrays import Array
-from validate.cost.way import Answer, Solve, Way, laws_at
+from validate.cost.way import Solve, Way, laws_at
 from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import asked_of
+from validate.formulations.protocol import Numbers
 from validate.formulations.registry import OUTSIDE, WORDS, program_of
 from validate.formulations.trees import closed_in
 from validate.peers.motion import numbers
@@ -35,7 +36,7 @@ def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
     start = program.poses(first[..., 0], tolerance, closed)
     moves = plan_effects(scene.effects).derivative > 0
 
-    def solve(instants: Array) -> Answer:
+    def solve(instants: Array) -> Numbers:
         laws = laws_at(scene, instants)
         series = tree.series(laws)
         try:
@@ -46,8 +47,7 @@ def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
             what = f"at t = {instants[error.instant]:.6g} s, {error.what}"
             raise NoAnswer(what, error.problem, error.allowed, instant=error.instant) from None
         rates = program.rates(poses, series) if moves else None
-        found = numbers(tree, laws, poses, rates, asked_of_the_car(scene))
-        return Answer(asked_of(found, scene), poses.counts)
+        return asked_of(numbers(tree, laws, poses, rates, asked_of_the_car(scene)), scene)
 
     return solve
 

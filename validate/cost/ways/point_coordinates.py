@@ -7,7 +7,6 @@ includes making the map, which serves any law of the inputs; other methods solve
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -19,9 +18,8 @@ from pointcoord.results.motion import read
 from pointcoord.results.samples import Samples
 from pointcoord.simulation import Task, prepare_task, solve_by_map, solve_task
 from validate.arrays import Array
-from validate.cost.way import Answer, Solve, Way
-
-COUNTED = ("factorisations", "residuals", "segments", "series_orders")
+from validate.cost.way import Solve, Way
+from validate.formulations.protocol import Numbers
 
 
 def task_of(scene: Scene, method: Method, tolerance: float) -> Task:
@@ -37,11 +35,10 @@ def by_method(method: Method, scene: Scene, tolerance: float) -> Solve:
     """Solve by a method of `simulate`, or by one with the same interface; it begins at the scene's start."""
     task = task_of(scene, method, tolerance)
 
-    def solve(instants: Array) -> Answer:
+    def solve(instants: Array) -> Numbers:
         start = [scene.time.start] if instants[0] > scene.time.start else []
         motion = solve_task(replace(task, instants=np.concatenate([start, instants])))
-        counts = {name: getattr(motion.work, name) for name in COUNTED}
-        return Answer(numbers_of(motion, len(instants)), {name: n for name, n in counts.items() if n})
+        return numbers_of(motion, len(instants))
 
     return solve
 
@@ -52,10 +49,10 @@ def by_map(scene: Scene, tolerance: float) -> Solve:
     error = solved.status.error(None)
     if error is not None:
         raise error
-    return lambda instants: Answer(numbers_of(read(solved, instants), len(instants)))
+    return lambda instants: numbers_of(read(solved, instants), len(instants))
 
 
-def numbers_of(samples: Samples, last: int) -> Mapping[str, Mapping[str, Array]]:
+def numbers_of(samples: Samples, last: int) -> Numbers:
     """The computed numbers at the `last` last instants."""
     return {
         quantity: {name: array[-last:] for name, array in channel.items()}

@@ -56,7 +56,7 @@ def in_scipy(
     """
     system, n = mechanism.map, mechanism.map.unknowns
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
-    y, here, residuals, jacobians = np.empty((len(times), system.size)), pose.y.copy(), 0, 0
+    y, here = np.empty((len(times), system.size)), pose.y.copy()
 
     def at(u: Array) -> Array:
         here[:n] = u
@@ -80,13 +80,11 @@ def in_scipy(
             who = f"scipy.optimize.{solver} at t = {instant:.6g} s"
             raise NoAnswer(who, words, f"a residual below {10.0 * size + NOISE:.3g}")
         y[i] = at(found.x)
-        residuals, jacobians = residuals + int(found.nfev), jacobians + int(found.get("njev") or 0)
     signs = np.linalg.slogdet(system.jacobian(y))[0]
     for instant in times[signs != signs[0]][:1]:
         who, allowed = f"scipy.optimize.{solver} at t = {instant:.6g} s", "the assembly mode of the drawing"
         raise NoAnswer(who, "converges to another assembly mode", allowed)
-    work = Work(residuals=residuals, factorisations=jacobians)
-    return with_rates(system, y, known, times, derivative, term, work, np.full(len(times), np.inf))
+    return with_rates(system, y, known, times, derivative, term, Work(), np.full(len(times), np.inf))
 
 
 def by_scipy(solver: str, with_jacobian: bool, scene: Scene, size: float) -> Solve:

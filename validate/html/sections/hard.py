@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import cycle
 
 from validate.html.blocks import Block, Panel, Paragraph, Plots, marks, panel, plain
-from validate.html.hard_cases import Case
+from validate.html.hard_cases import Case, answers_of
 from validate.html.run import Run
 from validate.output.table import Cell, Table
 from validate.plain_text import gathered
@@ -28,38 +28,43 @@ def hard(run: Run) -> Iterator[Block]:
     if (found := run.hard) is None:
         return
     # A run without times in its results has no start time.
-    when = "" if found.started is None else f", {found.started}"
-    yield Paragraph(f"Run by `{found.command_line}`{when}. {found.sentence}. {WORDS}")
-    outcomes = dict.fromkeys(outcome for counts in found.counts.values() for outcome in counts)
-    rows = tuple((n, *(str(counts.get(one, 0)) for one in outcomes)) for n, counts in found.counts.items())
+    document, cases = found.document, found.cases
+    when = f", {document['started']}" if document["started"] else ""
+    yield Paragraph(f"Run by `{document['command_line']}`{when}. {found.sentence}. {WORDS}")
+    counts = document["counts"]
+    outcomes = dict.fromkeys(outcome for of_one in counts.values() for outcome in of_one)
+    rows = tuple((n, *(str(of_one.get(one, 0)) for one in outcomes)) for n, of_one in counts.items())
     yield Table(("formulation", *outcomes), rows, caption="Answers by formulation.")
-    cases = sorted(found.cases, key=lambda case: not case.unexpected)
-    drawn = [case for case in cases if len({v for v, a in case.answers if a.error and v > 0.0}) >= FEWEST]
+    drawn = [case for case in cases if len({value for value, error, *_ in _points(case) if error}) >= FEWEST]
     if drawn:
         yield Plots("Error against distance", tuple(map(_panel, drawn[:MOST])))
     yield Table(("case", "why it is hard", "verdict"), tuple(map(_row, cases)), caption="Every case.")
 
 
+def _points(case: Case) -> list[tuple[float, float | None, str, str]]:
+    """Value, error, formulation and outcome of each answer that has a place on a logarithmic axis."""
+    keys = ("value", "error", "formulation", "outcome")
+    return [tuple(answer[key] for key in keys) for answer in answers_of(case) if answer["value"] > 0.0]
+
+
 def _panel(case: Case) -> Panel:
     """The errors of each formulation by outcome; an answer without one is drawn below the least error."""
-    floor = min(a.error for _, a in case.answers if a.error) / 10.0
-    colours = dict(zip(dict.fromkeys(a.formulation for _, a in case.answers), cycle(COLOURS)))
-    points = gathered(
-        ((a.formulation, a.outcome), (value, max(a.error or 0.0, floor)))
-        for value, a in case.answers
-        if value > 0.0
-    )
-    traces = []
-    for (name, outcome), some in sorted(points.items(), key=lambda one: [*colours].index(one[0][0])):
+    points = _points(case)
+    floor = min(error for _, error, *_ in points if error) / 10.0
+    curves = gathered(((who, came), (value, max(error or 0.0, floor))) for value, error, who, came in points)
+    colours, traces = dict(zip(dict.fromkeys(who for who, _ in curves), cycle(COLOURS))), []
+    for (who, came), some in curves.items():
         values, errors = zip(*some, strict=True)
-        traces.append(marks(plain(f"{name}: {outcome}"), values, errors, colours[name], SYMBOLS[outcome]))
-    words = f"{case.name}, over {case.parameter}"
-    return panel(words, "distance", f"error [{plain(case.unit)}]", traces, logarithmic="xy")
+        traces.append(marks(plain(f"{who}: {came}"), values, errors, colours[who], SYMBOLS[came]))
+    words = f"{case['name']}, over {case['parameter']}"
+    return panel(words, "distance", f"error [{plain(case['unit'])}]", traces, logarithmic="xy")
 
 
 def _row(case: Case) -> tuple[str | Cell, ...]:
     verdict, detail = "agrees", "as expected"
-    if case.unexpected:
-        wrong = (f"{u.formulation} is {u.outcome} at {u.value:g}: {u.reason}" for u in case.unexpected)
-        verdict, detail = "disagrees", f"not as expected: {'; '.join(wrong)}"
-    return Cell(case.name, case.group), case.why, Cell(verdict, detail, verdict)
+    if case["unexpected"]:
+        each = (
+            "{formulation} is {outcome} at {value:g}: {reason}".format(**one) for one in case["unexpected"]
+        )
+        verdict, detail = "disagrees", f"not as expected: {'; '.join(each)}"
+    return Cell(case["name"], case["group"]), case["why"], Cell(verdict, detail, verdict)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-
-import numpy as np
+from collections.abc import Iterator
 
 from validate.html.blocks import OTHER, OURS, Block, Panel, Paragraph, Plots, curve, marks, panel
 from validate.html.run import Run
 from validate.output.report import paper_sentence, paper_tables, printed_parts
 from validate.output.table import Cell, Table
 from validate.paper.errata import ERRATA
-from validate.paper.tables import WHY_NOT_EQUAL, Figure, PaperRow, figures
+from validate.paper.tables import WHY_NOT_EQUAL, Figure, figures
 from validate.published.tables import MODELS, Column, Published
 
 DASHES = ("solid", "dash")
@@ -24,10 +22,7 @@ def paper(run: Run) -> Iterator[Block]:
         drawn = tuple(map(_figure, figures()))
         yield Plots("Figures 5 to 8 of the paper: crosses as printed in its tables", drawn)
         yield Paragraph(f"{WHY_NOT_EQUAL} {paper_sentence(rows)}")
-        for table, number in zip(paper_tables(rows), (2, 3), strict=True):
-            panels = tuple(_panels([row for row in rows if row.printed.table == number]))
-            yield Plots(f"Table {number}: crosses as printed, rings as computed", panels)
-            yield table
+        yield from paper_tables(rows)
         lines = tuple(
             (str(number), one.where, one.wrong, one.measures or "changes no number")
             for number, one in enumerate(ERRATA, start=1)
@@ -43,21 +38,6 @@ def _figure(figure: Figure) -> Panel:
     traces = [curve(name, figure.times, values, OURS, dash=dash) for (name, values), dash in curves]
     traces += [marks("printed", *figure.printed, OTHER)] if figure.printed else []
     return panel(figure.words, "time [s]", f"[{figure.unit}]", traces)
-
-
-def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
-    kinds = (
-        ("wheel centre", "mm", [(row.printed.wheel_centre, row.wheel_centre) for row in rows]),
-        ("omega", "rad/s", [(row.printed.omega, row.omega) for row in rows]),
-        ("alpha", "rad/s^2", [(row.printed.alpha, row.alpha) for row in rows]),
-    )
-    times = [row.printed.time for row in rows]
-    for words, unit, pairs in kinds:
-        for i, component in enumerate("xyz"):
-            printed, ours = np.array(pairs)[:, :, i].T
-            crosses = marks("printed", times, printed, OTHER)
-            rings = marks("computed", times, ours, OURS, "circle-open")
-            yield panel(f"{words}, {component}, over time", "time [s]", f"[{unit}]", (crosses, rings))
 
 
 def published(run: Run) -> Iterator[Block]:
