@@ -21,10 +21,11 @@ def along_the_parabola(u: Array) -> Array:
 @given(
     u=st.floats(1e-3, 1e3),
     shares=st.tuples(*[st.floats(-1.0, 1.0)] * 3),
+    off=st.tuples(*[st.sampled_from([0.0, 0.1, 0.4])] * 2),
     exact=st.sampled_from([None, 1, 2, 3]),
 )
 def test_a_box_is_proven_as_far_as_the_condition_holds(
-    u: float, shares: tuple[float, float, float], exact: int | None
+    u: float, shares: tuple[float, float, float], off: tuple[float, float], exact: int | None
 ) -> None:
     """X = 1 / (2 u) and omega = 1 / u; one unknown, so that no estimate loses anything.
 
@@ -32,7 +33,8 @@ def test_a_box_is_proven_as_far_as_the_condition_holds(
     """
     series = along_the_parabola(u * np.array([1.0, *shares]))
     a, b, c = np.abs(shares)
-    z, eta = a + b + c, (2.0 * a * c + b * b + 2.0 * b * c + c * c) / 2.0
+    lacking, defect = off
+    z, eta = a + b + c + defect, (2.0 * a * c + b * b + 2.0 * b * c + c * c + lacking) / 2.0
     condition = z + float(np.sqrt(2.0 * eta))
     assume(abs(condition - ROOM) > 1e-9)
     sizes = np.abs(series[1:, None])
@@ -41,7 +43,10 @@ def test_a_box_is_proven_as_far_as_the_condition_holds(
             patch.setattr(proven_step, "LARGE", 1)
             patch.setattr(proven_step, "EXACT_OF_LARGE", exact)
         moving, inverse = series[:, None], np.full((1, 1, 1), 0.5 / u)
-        proof = prove_box(PARABOLA, inverse, moving[0], moving, slice(None), sizes, np.zeros((1, 1)))
+        rest = np.full((1, 1), lacking * u * u)
+        proof = prove_box(
+            PARABOLA, inverse, moving[0], moving, slice(None), sizes, rest, np.full((1, 1, 1), defect)
+        )
     assert proof.holds.tolist() == [condition < ROOM]
     # The other branch is twice as far as the fold, which is at least 1 - z of u away.
     assert proof.alone[0] * proof.weights[0, 0] <= (1.0 - z) * u * (1.0 + 1e-9) or condition > ROOM
