@@ -62,3 +62,20 @@ def test_a_segment_is_proven_by_parts_as_far_as_the_last_one_is(share: float, s:
     proof = prove_segment(PARABOLA, series, s)
     assert bool(proof.holds) == (share < end)
     assert share >= end or proof.alone * proof.weights[0] <= 1.0 - share + 1e-9
+
+
+@pytest.mark.parametrize("lacking", [0.0, 0.05, 0.2])
+def test_a_segment_is_proven_as_far_as_the_condition_holds_about_its_middle(lacking: float) -> None:
+    """u = 1 + a t + b t^2, t = 0 .. 1; the powers t^3 and t^4 of u^2 are cut off."""
+    s = 3.0
+    a, b = (bend.ravel() for bend in np.meshgrid(*[np.linspace(-0.8, 0.8, 41)] * 2))
+    middle = 1.0 + 0.5 * a + 0.25 * b
+    z, cut = (0.5 * np.abs(a + b) + 0.25 * np.abs(b)) / middle, 2.0 * np.abs(a * b) + b * b
+    condition = z + np.sqrt(cut + lacking) / middle
+    series = np.stack(
+        [along_the_parabola(np.array([1.0, *bends])) for bends in zip(a / s, b / s**2, strict=True)]
+    )
+    proof = prove_segment(PARABOLA, series, s, np.full((len(a), 1), -lacking), parts=(1,))
+    clear = np.abs(condition - ROOM) > 1e-9
+    assert (proof.holds == (condition < ROOM))[clear].all()
+    assert 100 < np.count_nonzero(proof.holds) < len(a) - 100
