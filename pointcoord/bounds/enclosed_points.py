@@ -169,9 +169,10 @@ def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt
     largest = np.where(room > 0.0, whole.max(axis=-1) / room, np.inf)[:, None]
     tail = np.matvec(spoilt, whole + np.matvec(spoilt, np.broadcast_to(largest, whole.shape)))
     rounded = np.matvec(magnitude, rest.radius[1, :, 0])
-    # All rates are solved for together. So after one refinement a rate still has a rounding error of the
-    # others, also if it does not depend on them.
-    shared = gamma * poses.factors.condition * rounded.max(axis=-1)
+    # All rates are solved for together. So after one refinement a rate still has |I - X C_u| times a rounding
+    # error of the others, also if it does not depend on them; X may be the inverse of a pose near by.
+    refined = np.maximum(gamma * poses.factors.condition, EPS**0.5)  # (see `factors_at`)
+    shared = refined * rounded.max(axis=-1)
     return _moved(computed, step, proven + tail, rounded + shared[:, None])
 
 
