@@ -31,8 +31,9 @@ def as_given(scene: Scene) -> Car:
 
 def _cars() -> dict[str, Car]:
     """The paper's strut, a double wishbone, and their variants in `cars.toml`."""
+    paper = Scene.load("bounce").mechanism
     cars = {
-        "paper": Car(Scene.load("bounce").mechanism.points, closure="collinear"),
+        "paper": Car({n: paper.points[n] for n in paper.topology.points}, closure="collinear"),
         "wishbone": as_given(Scene.load("double-wishbone")),
     }
     rows = tomllib.loads(files("validate.hard").joinpath("cars.toml").read_text(encoding="utf-8"))

@@ -146,9 +146,31 @@ class _Cutter:
             for p in slide["points"]:
                 if p in self.free:
                     self.at[p] = self._foot(slide, p)
+        self.sliding_rods = self._sliding_rods()
         self.rods_made: dict[str, Array] = {}
         self.loops: list[Loop] = []
         self.driven: list[Driven] = []
+
+    def _sliding_rods(self) -> dict[str, tuple[str, str, str, Array]]:
+        """Rods along a slide's line with one end at a point of a body: the rod slides with its other end.
+
+        Returns:
+            For each rod its slide, the end at the body, the other end, and the first end's foot on the line.
+        """
+        found: dict[str, tuple[str, str, str, Array]] = {}
+        for rod, ends in self.rods.items():
+            for p, q in (ends, reversed(ends)):
+                on = [name for name, slide in self.slides.items() if q in slide["points"]]
+                taken = {(name, held) for name, held, _, _ in found.values()}
+                if len(on) != 1 or q not in self.free or p in self.free or (on[0], p) in taken:
+                    continue
+                slide = self.slides[on[0]]
+                if p in slide["points"]:
+                    reach, axis = self.drawn[q] - self.drawn[p], self._line(slide)[1]
+                    foot, length = self._foot(slide, p), float(np.linalg.norm(reach))
+                    found[rod] = on[0], p, q, foot
+                    self.at[q] = foot + math.copysign(length, float(reach @ axis)) * axis
+        return found
 
     def tree(self) -> SpanningTree:
         edges = self._edges()
@@ -307,6 +329,7 @@ class _Cutter:
                     self._on_line(f"closure {number} {p}", p, first, second, edge.axis)
                 else:
                     self.loops.append(Loop(p, first, second))
+        on_rods = {(slide, p) for slide, p, _, _ in self.sliding_rods.values()}
         for name, slide in self.slides.items():
             axis = self._line(slide)[1]
             through = Place(slide["body"], self.at[slide["through"]])
@@ -314,7 +337,10 @@ class _Cutter:
                 if (name, frozenset((slide["body"], body))) in self.made:
                     continue
                 for p in points[:2]:
-                    self._on_line(f"closure {next(numbers)} {p}", p, Place(body, self.at[p]), through, axis)
+                    if (name, p) not in on_rods:
+                        self._on_line(
+                            f"closure {next(numbers)} {p}", p, Place(body, self.at[p]), through, axis
+                        )
                 if len(points) > 1 and not slide["turns"]:
                     # Two places of the body stay level: its frame's origin, and one along u, rotated by the
                     # smallest rotation of the slide's line onto the body's line.
@@ -324,8 +350,12 @@ class _Cutter:
                     ends = Place(body, start), Place(body, start + turned_least(u, axis, own))
                     self._level(f"closure {next(numbers)} {name}", name, slide["body"], v, *ends)
         for name, (one, other) in self.rods.items():
-            length = self._distance(one, other, f"{name} has no length")
-            self._rod(f"closure {next(numbers)} {name}", name, self.points[one], self.points[other], length)
+            length, number = self._distance(one, other, f"{name} has no length"), next(numbers)
+            if name in self.sliding_rods:
+                _, p, q, foot = self.sliding_rods[name]
+                self.loops.append(Loop(p, self.points[p], Place(self.free[q], foot)))
+            else:
+                self._rod(f"closure {number} {name}", name, self.points[one], self.points[other], length)
 
     def _distance(self, one: str, other: str, without: str) -> float:
         length = float(np.linalg.norm(self.drawn[one] - self.drawn[other]))
