@@ -170,8 +170,9 @@ def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt
     tail = np.matvec(spoilt, whole + np.matvec(spoilt, np.broadcast_to(largest, whole.shape)))
     rounded = np.matvec(magnitude, rest.radius[1, :, 0])
     # All rates are solved for together. So after one refinement a rate still has |I - X C_u| times a rounding
-    # error of the others, also if it does not depend on them; X may be the inverse of a pose near by.
-    refined = np.maximum(gamma * poses.factors.condition, EPS**0.5)  # (see `factors_at`)
+    # error of the others, also if it does not depend on them. The solver's X may be the inverse at a pose
+    # near by, as far as |I - X C_u|^2 is below rounding (see `factors_at`).
+    refined = np.maximum(gamma * poses.factors.condition, EPS**0.5)
     shared = refined * rounded.max(axis=-1)
     return _moved(computed, step, proven + tail, rounded + shared[:, None])
 
