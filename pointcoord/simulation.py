@@ -309,7 +309,8 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
     times = task.instants[task.instants <= solved.stop]
     if not len(times):
         return None
-    samples = read(solved, times)
+    rows = solved.readout.room(len(times))
+    samples = read(solved, times, rows)
     require_known(solved, samples, task.scene.tolerance)
     return Motion(
         times=samples.times,
@@ -319,20 +320,28 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
         start=task.start,
         closing=task.closing,
         work=task.start.work + solved.work,
-        notes=_notes(task, solved, samples),
+        notes=_notes(task, solved, rows),
         solved=solved,
     )
 
 
-def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
-    """Notes for the user: on the drawing, on the solution, and on missing numbers."""
+def _notes(task: Task, solved: SolvedScene, rows: Array) -> tuple[str, ...]:
+    """Notes for the user: on the drawing, on the solution, and on missing numbers.
+
+    Args:
+        rows: the table of the motion's numbers.
+    """
     notes = [task.closing.words] if task.closing.noticeable else []
     if task.unsolved:
         notes.append(
             f"not solved for, because nothing reported depends on them: {', '.join(task.unsolved)}; "
             "whether these points can follow the inputs is not checked"
         )
-    return (*notes, *task.scene.mechanism.doubts, *solved.notes, *_missing_numbers(solved, samples))
+    missing = (
+        f"{number} is not a number at {np.count_nonzero(where)} of {len(where)} instants{why}"
+        for number, why, where in solved.readout.table.missing(rows)
+    )
+    return (*notes, *task.scene.mechanism.doubts, *solved.notes, *missing)
 
 
 def require_the_drawn_car(scene: Scene, moved: Closing) -> None:
@@ -474,19 +483,3 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
         value, law = float(function.series(instant, 0)[0]), type(function).__name__.lower()
         uncertainty = float(rounding[name][place])
         raise InputOutOfRange(name, value, "", instant, doubt=uncertainty, law=law)
-
-
-def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
-    """Notes on the numbers that do not exist, and why."""
-    notes, count = [], len(samples.times)
-    for effect in solved.readout.plan.computed:
-        why = f": {effect.no_number}" if effect.no_number else ""
-        for quantity, names in effect.gives_numbers(solved.readout.mechanism.topology).items():
-            channel = samples.numbers[quantity]
-            for name in channel if names is None else names:
-                known = np.isfinite(channel[name])
-                if not known.all():
-                    bad = count - np.count_nonzero(known.reshape(count, -1).all(axis=-1))
-                    what = f"{channel.quantity.words} of {name}"
-                    notes.append(f"{what} is not a number at {bad} of {count} instants{why}")
-    return tuple(notes)

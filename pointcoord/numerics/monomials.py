@@ -54,7 +54,6 @@ def monomials(states: Sequence[Array], order: int, room: Array | None = None) ->
             N); allocating a new array takes longer than filling it.
     Returns:
         As many arrays of shape (powers, N).
-        As many arrays of shape (powers, N).
     """
     inputs, count = states[0].shape
     every = comb(order + inputs, inputs)

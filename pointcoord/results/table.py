@@ -7,13 +7,15 @@ complete.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+
+import numpy as np
 
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import QUANTITIES, Plan
 from pointcoord.linkage.topology import Topology
-from pointcoord.numerics.arrays import Array
+from pointcoord.numerics.arrays import Array, Flags
 from pointcoord.results.samples import Channel, Samples
 
 State = tuple[int, str]
@@ -99,6 +101,29 @@ class Table:
             found = {part: _seen(rows, place) for part, place in self.places.get(name, {}).items()}
             numbers[name] = Channel(quantity, found, self.plan, self.topology)
         return Samples(times.copy(), numbers)
+
+    def missing(self, rows: Array) -> Iterator[tuple[str, str, Flags]]:
+        """The numbers that do not exist at some instants, though the mechanism has them.
+
+        Args:
+            rows: the table, shape (..., height, N).
+        Returns:
+            Of each, the number in words, why it may not exist, and where it does not, (..., N).
+        """
+        # A sum finds every number that is not finite. If the sum itself overflows, the search is in vain.
+        with np.errstate(over="ignore", invalid="ignore"):
+            if np.isfinite(rows.sum()):
+                return
+        for effect in self.plan.computed:
+            why = f": {effect.no_number}" if effect.no_number else ""
+            gives = effect.gives_numbers(self.topology)
+            for quantity in effect.quantities:
+                own = gives[quantity.name]
+                for name, place in self.places[quantity.name].items():
+                    if own is None or name in own:
+                        where = np.asarray(~np.isfinite(rows[..., place, :]).all(axis=-2))
+                        if where.any():
+                            yield f"{quantity.words} of {name}", why, where
 
     def put(self, rows: Array, quantity: str, name: str, array: Array) -> None:
         """Write the values of one number at all instants, as an effect returns them, into a table."""

@@ -335,22 +335,9 @@ class _Block:
         # Consecutive designs are read in place: copying all numbers would cost as much as computing them.
         apart = places[-1] - places[0] != len(places) - 1
         rows = self.rows[places] if apart else self.rows[places[0] : places[-1] + 1]
-        # A sum finds every number that is not finite. If the sum itself overflows, the search is in vain.
-        with np.errstate(over="ignore", invalid="ignore"):
-            if np.isfinite(rows.sum()):
-                return
-        missing = np.asarray(~np.isfinite(rows).all(axis=-1))
-        for effect in self.course.plan.computed:
-            why = f": {effect.no_number}" if effect.no_number else ""
-            gives = effect.gives_numbers(self.course.scene.mechanism.topology)
-            for quantity in effect.quantities:
-                names = gives[quantity.name]
-                for name, place in self.course.table.places[quantity.name].items():
-                    if names is None or name in names:
-                        words = f"{quantity.words} of {name} is not a number at some instants{why}"
-                        where = np.asarray(missing[:, place].any(axis=-1))
-                        kind = f"{quantity.name} {name}"
-                        self._note(kind, members, where, words, warns=False)
+        for number, why, where in self.course.table.missing(rows):
+            words = f"{number} is not a number at some instants{why}"
+            self._note(number, members, np.asarray(where.any(axis=-1)), words, warns=False)
 
 
 def _suspicious(designs: Designs, points: Points) -> Flags:
