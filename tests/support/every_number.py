@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from changed_scenes import content_of
 from mechanism_files import SCENES
 
 from pointcoord import Scene
@@ -14,6 +16,7 @@ from pointcoord.effects.registry import EFFECTS
 from validate.cars.car import any_rotation
 from validate.formulations.protocol import Solution
 from validate.formulations.reference_solution import reference_solution
+from validate.toml_written import written
 
 NUMBERS_OF_A_CAR = {
     "wheelbase": 2618.5,
@@ -115,3 +118,11 @@ def asking_for_all(scene: Scene) -> Scene:
     """The same of any scene."""
     had = [name for name in scene.mechanism.effects if not EFFECTS[name].way]
     return scene.model_copy(update={"effects": had})
+
+
+def loaded(name: str, samples: int, effects: list[str] | None = None, **more: Any) -> str:
+    """A file of a scene with loads, springs and a car, which asks for some effects or for all."""
+    content = with_everything(content_of(name, samples=samples, **more), name)
+    content |= {"effects": effects or content["effects"]}
+    content.pop("points", None)
+    return "\n".join(written(json.loads(json.dumps(content))))

@@ -60,8 +60,8 @@ def run(*words: str, **more: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run([*PROGRAM, *words], check=False, timeout=600, **options)
 
 
-def in_shell(script: str, *words: str, **more: object) -> subprocess.CompletedProcess[str]:
-    """Run a shell script in which "$@" is the program with its words."""
+def in_shell(line: str, **more: object) -> subprocess.CompletedProcess[str]:
+    """Run a line of a shell in which `pointcoord` is the program."""
     options = {"capture_output": True, "text": True, "env": ENVIRONMENT, "cwd": ROOT} | more
-    command = ["bash", "-c", script, "bash", *PROGRAM, *words]
-    return subprocess.run(command, check=False, timeout=600, **options)
+    script = f'words=("$@"); pointcoord() {{ "${{words[@]}}" "$@"; }}; {line}'
+    return subprocess.run(["bash", "-c", script, "bash", *PROGRAM], check=False, timeout=600, **options)

@@ -1,23 +1,18 @@
-"""The program as its users meet it: what each command prints and writes."""
+"""The program as its users meet it: help, start, the main job, the picture of a car."""
 
-import csv
 import json
 import re
 import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
-import pyarrow.parquet
 import pytest
 
-from pointcoord import Scene, built_in_scenes, simulate
-from pointcoord.results.named_columns import columns
+from pointcoord import built_in_scenes
 from validate import cli
 from validate.cli import main
 from validate.commands.pages import summary
 from validate.exit_status import MEANINGS, ORDER, ExitStatus
-from validate.output.columns import csv_lines
 from validate.paper.scenes import DEFAULT_SCENES
 
 
@@ -26,15 +21,15 @@ def test_every_command_has_its_help_and_the_overview_names_it(
     name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([name, "--help"]) == 0
-    told = capsys.readouterr().out
-    assert told.startswith(f"usage: pointcoord {name} ")
+    page = capsys.readouterr().out
+    assert page.startswith(f"usage: pointcoord {name} ")
     assert main(["--help"]) == 0
     overview = capsys.readouterr().out
     assert re.search(rf"^  {name} +{re.escape(summary(name))}$", overview, flags=re.M)
     # Every status is explained where a user looks.
     for status in ExitStatus:
         line = rf"^ +{status.value}  {re.escape(MEANINGS[status])}$"
-        assert re.search(line, told, flags=re.M)
+        assert re.search(line, page, flags=re.M)
         assert re.search(line, overview, flags=re.M)
     assert {*ORDER, ExitStatus.INTERRUPTED, ExitStatus.TERMINATED} == set(ExitStatus)
 
@@ -54,61 +49,37 @@ def test_a_command_brings_nothing_with_it_that_it_does_not_need() -> None:
     assert not others & {*done.stderr.split()}
 
 
-# Of all built-in scenes, which `.ci/run` compares; one has the longest name.
-FEW = ("bounce", "steer", "bounce-on-a-heaving-chassis", "five-link")
-
-
 def test_the_main_job_prints_every_scene_and_ends_with_0(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert {*DEFAULT_SCENES} == {*built_in_scenes()}
-    monkeypatch.setattr("validate.commands.comparison.DEFAULT_SCENES", FEW)
+    # One of them has the longest name.
+    few = ("bounce", "steer", "bounce-on-a-heaving-chassis", "five-link")
+    monkeypatch.setattr("validate.commands.comparison.DEFAULT_SCENES", few)
     assert main(["validate", "--json", str(tmp_path / "all.json")]) == 0
     out, err = capsys.readouterr()
     # A warning is said once, with the scenes that it is about.
     (warning,) = err.splitlines()
-    assert warning.startswith(f"pointcoord: warning: {', '.join(FEW[:3])}: closing the drawing moves ")
+    assert warning.startswith(f"pointcoord: warning: {', '.join(few[:3])}: closing the drawing moves ")
     head, _, titles, *lines = out.splitlines()
     assert head == "pointcoord and absolute; pointcoord-newton and absolute: 4 scenes"
     assert titles.split()[:3] == ["scene", "verdict", "time"]
     line = re.compile(r"(\S+) +agrees +\d+\.\d s +\d+%  .* at .* s(, .*)?")
-    assert [found[1] for one in lines if (found := line.fullmatch(one))] == list(FEW)
+    assert [found[1] for one in lines if (found := line.fullmatch(one))] == [*few]
     assert lines[-1] == "4 of 4 scenes agree."
     assert max(map(len, lines)) <= 120  # names of scenes and of points are as long as they are
     data = json.loads((tmp_path / "all.json").read_text())
-    assert [scene["scene"] for scene in data["scenes"]] == list(FEW)
+    assert [scene["scene"] for scene in data["scenes"]] == [*few]
     assert len(data["printed_tables"]["rows"]) == 18
+    monkeypatch.setattr("validate.commands.comparison.DEFAULT_SCENES", few[:1])
     assert main(["validate", "-v"]) == 0
     out = capsys.readouterr().out
-    told = ("factor 2", "10.3 mm r.m.s.", "cannot be matched to better than about 10 mm")
-    assert [
-        words for words in (*told, *(f"{n}: pointcoord and absolute" for n in FEW)) if words not in out
-    ] == []
-
-
-def test_every_kind_of_file_gives_back_the_same_bits(tmp_path: Path) -> None:
-    """At instants that are evenly over the scene's time, in several blocks."""
-    (motion,) = simulate(Scene.load("double-wishbone")).blocks(7000, 7000)
-    for name in ("m.csv", "m.npz", "m.parquet"):
-        assert main(["simulate", "double-wishbone", "--instants", "7000", "-o", str(tmp_path / name)]) == 0
-    with (tmp_path / "m.csv").open(newline="") as stream:
-        head, *rows = csv.reader(stream)
-    texts = np.array(rows, dtype=float).T
-    arrays, table = np.load(tmp_path / "m.npz"), pyarrow.parquet.read_table(tmp_path / "m.parquet")
-    wanted = dict(columns(motion))
-    assert head == list(arrays) == table.column_names == list(wanted)
-    assert {"position.wheel_centre.x [mm]", "wheel.camber [deg]"} <= {*head}
-    for name, text in zip(head, texts, strict=True):
-        np.testing.assert_array_equal(text, arrays[name])
-        np.testing.assert_array_equal(text, table[name].to_numpy())
-        # How a sum of 21 terms is rounded depends on the block that it is computed in.
-        most = 21 * 50 * float(np.finfo(float).eps) * np.abs(wanted[name]).max()
-        assert np.abs(text - wanted[name]).max() <= most
-
-
-def test_numbers_that_are_none_are_written_so_that_they_can_be_read() -> None:
-    block = {"a": np.array([np.nan, np.inf, -np.inf])}
-    assert "".join(csv_lines([block])).split() == ["a", "nan", "inf", "-inf"]
+    paper = (
+        "bounce: pointcoord and absolute",
+        "10.3 mm r.m.s.",
+        "cannot be matched to better than about 10 mm",
+    )
+    assert [words for words in paper if words not in out] == []
 
 
 def test_the_readme_s_picture_is_what_its_command_makes(

@@ -8,39 +8,30 @@ import pytest
 from pointcoord import Scene, built_in_scenes
 from validate.cli import main
 
-
-def copied(scene: str, target: Path) -> tuple[Scene, Scene]:
-    """A scene, and the copy that the command made of it."""
-    assert main(["new", str(target), "--from", scene]) == 0
-    return Scene.load(scene), Scene.load(target.with_suffix(".toml"))
+NAMES = ('my "car"', "back\\1slash", "#5", "it's")
 
 
-def same(one: Scene, other: Scene) -> bool:
-    """Whether two scenes are the same mechanism, drawn and driven alike."""
-    plain = [{**s.mechanism.plain(tuple(s.inputs)), "name": ""} for s in (one, other)]
-    return plain[0] == plain[1] and one.inputs == other.inputs and one.time == other.time
+def plain(scene: Scene) -> object:
+    """The mechanism and what drives it, without the name."""
+    return {**scene.mechanism.plain(tuple(scene.inputs)), "name": ""}, scene.inputs, scene.time
 
 
-@pytest.mark.parametrize("scene", built_in_scenes())
-def test_a_copy_of_a_built_in_scene_is_that_scene_and_says_of_which(
-    scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("scene", "name"),
+    [*((scene, "mine") for scene in built_in_scenes()), *(("five-link", name) for name in NAMES)],
+)
+def test_a_copy_is_that_scene_says_of_which_and_the_hint_can_be_typed(
+    scene: str, name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A name is no kind of suspension: `new five_link` alone is no five-link."""
-    source, copy = copied(scene, tmp_path / "mine")
-    assert same(source, copy)
+    assert main(["new", str(tmp_path / name), "--from", scene]) == 0
+    source, copy = Scene.load(scene), Scene.load(tmp_path / f"{name}.toml")
+    assert plain(source) == plain(copy)
     # What the scene names by its type is a file of its own now.
-    assert (source.mechanism.type is not None) == (tmp_path / "mine-mechanism.toml").exists()
+    assert (source.mechanism.type is not None) == (tmp_path / f"{name}-mechanism.toml").exists()
     assert copy.mechanism.type is None
     said = capsys.readouterr().out
     assert f"copied from {scene}" in said
     assert "--from SCENE" in said
-
-
-@pytest.mark.parametrize("name", ['my "car"', "back\\1slash", "#5", "it's"])
-def test_a_copy_may_have_any_name_and_the_hint_can_be_typed(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    source, copy = copied("five-link", tmp_path / name)
-    assert same(source, copy)
-    typed = capsys.readouterr().out.rpartition("try: ")[2]
-    assert shlex.split(typed, comments=True) == ["pointcoord", "plan", str(tmp_path / f"{name}.toml")]
+    typed = shlex.split(said.rpartition("try: ")[2], comments=True)
+    assert typed == ["pointcoord", "plan", str(tmp_path / f"{name}.toml")]

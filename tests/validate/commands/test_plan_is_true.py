@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from changed_scenes import scene_with
 
-from pointcoord import Scene, simulate
-from pointcoord.simulation import effort
+from pointcoord import Motion, Scene, simulate
+from pointcoord.simulation import Effort, effort
 from validate.cli import main
 
 TAKES = re.compile(
@@ -19,34 +19,40 @@ TAKES = re.compile(
 )
 
 
+def solved_as_planned(scene: Scene) -> tuple[Effort, Motion]:
+    """The planned and the real effort, which are the same."""
+    planned, motion = effort(scene), simulate(scene)
+    work = motion.work
+    assert (len(planned.solved.orders), sum(planned.solved.orders)) == (work.segments, work.series_orders)
+    assert planned.work.factorisations == work.factorisations
+    assert planned.work.residuals == work.residuals
+    return planned, motion
+
+
 @pytest.mark.parametrize("name", ["bounce", "five-link", "axle-roll", "bricard"])
 def test_the_effort_that_is_planned_and_printed_is_the_work_of_the_solved_motion(
     name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["plan", name]) == 0
-    told = TAKES.search(capsys.readouterr().out)
-    assert told is not None
+    said = TAKES.search(capsys.readouterr().out)
+    assert said is not None
     scene = Scene.load(name)
-    planned, motion = effort(scene), simulate(scene)
+    planned, motion = solved_as_planned(scene)
     work = motion.work
-    assert (len(planned.solved.orders), sum(planned.solved.orders)) == (work.segments, work.series_orders)
-    assert (int(told["segments"]), int(told["orders"])) == (work.segments, work.series_orders)
-    assert planned.work.factorisations == work.factorisations == int(told["all"])
-    assert planned.work.residuals == work.residuals
-    assert planned.task.start.work.factorisations == motion.start.work.factorisations == int(told["start"])
+    assert (int(said["segments"]), int(said["orders"])) == (work.segments, work.series_orders)
+    assert work.factorisations == int(said["all"])
+    assert planned.task.start.work.factorisations == motion.start.work.factorisations == int(said["start"])
     assert (planned.solved.stop, planned.solved.status.complete) == (scene.time.stop, True)
-    assert planned.tolerance == scene.tolerance == float(told["tolerance"])
+    assert planned.tolerance == scene.tolerance == float(said["tolerance"])
     assert planned.part == pytest.approx(planned.tolerance / motion.unit, rel=1e-12)
-    assert int(told["few"]) <= work.series_orders / work.segments <= int(told["many"] or told["few"])
+    assert int(said["few"]) <= work.series_orders / work.segments <= int(said["many"] or said["few"])
     # Nothing is summed at the instants.
     assert planned.work.coordinates_evaluated == 0 < work.coordinates_evaluated
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-15])
 def test_the_tolerance_that_is_planned_is_the_asked_one_or_the_finest(tolerance: float) -> None:
-    scene = Scene.load("five-link").model_copy(update={"tolerance": tolerance})
-    planned, motion = effort(scene), simulate(scene)
-    assert sum(planned.solved.orders) == motion.work.series_orders
+    planned, motion = solved_as_planned(Scene.load("five-link").model_copy(update={"tolerance": tolerance}))
     noted = any(note.startswith("the tolerance of ") for note in motion.notes)
     finest = planned.tolerance != pytest.approx(tolerance, rel=1e-12, abs=0.0)
     assert noted == finest == (tolerance < 1e-13)
@@ -58,14 +64,11 @@ def test_a_long_table_is_planned_by_a_map_and_says_why(
     times = np.linspace(0.0, 0.4, 2100)
     table = {"times": times.tolist(), "values": (9.0 * np.sin(times)).tolist()}
     scene = scene_with("steer", laws={"rack": {"table": table}})
-    planned, motion = effort(scene), simulate(scene)
+    planned, motion = solved_as_planned(scene)
     assert planned.task.method.name == motion.method == "map"
     assert planned.solved.notes[0] in motion.notes
-    work = motion.work
-    assert (len(planned.solved.orders), sum(planned.solved.orders)) == (work.segments, work.series_orders)
-    assert planned.work.factorisations == work.factorisations
     monkeypatch.setattr("validate.commands.usage.load_scene", lambda _: scene)
     assert main(["plan", "steer"]) == 0
-    told = capsys.readouterr().out
-    assert "solved by a map of the inputs: series in time would be about 2.1e+03, and 2000 are" in told
-    assert "in the inputs, each proven on a patch of their path, of order" in told
+    out = capsys.readouterr().out
+    assert "solved by a map of the inputs: series in time would be about 2.1e+03, and 2000 are" in out
+    assert "in the inputs, each proven on a patch of their path, of order" in out

@@ -6,14 +6,11 @@ import numpy as np
 import pytest
 from program import short_scene
 
-from pointcoord import NotComputed, Scene, simulate, sweep
+from pointcoord import NotComputed, Scene, simulate
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
 from validate.cli import main
 from validate.curves import picture
 from validate.curves.numbers import Curves, angles_of, asking_for, found, numbers_of, usual
-from validate.curves.of_sweep import columns_called, read_sweep
-from validate.errors import UsageError
-from validate.output.columns import ENDINGS
 
 WISHBONE = Scene.load("double-wishbone")
 MOTION = simulate(WISHBONE)
@@ -38,19 +35,17 @@ def test_few_words_name_the_number_that_the_motion_has() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "effects", "expected"),
+    ("name", "changes", "expected"),
     [
-        ("double-wishbone", None, (["camber", "kingpin", "toe", "caster"], ["travel"])),
-        ("steer", None, (["rack"], ["camber", "kingpin"])),
-        ("steer", (), (["time"], ["wheel_centre.x", "wheel_centre.y", "wheel_centre.z"])),
+        ("double-wishbone", {}, (["camber", "kingpin", "toe", "caster"], ["travel"])),
+        ("steer", {}, (["rack"], ["camber", "kingpin"])),
+        ("steer", {"effects": ()}, (["time"], ["wheel_centre.x", "wheel_centre.y", "wheel_centre.z"])),
     ],
 )
 def test_without_a_word_the_curves_are_those_of_an_engineer(
-    name: str, effects: tuple[str, ...] | None, expected: tuple[list[str], list[str]]
+    name: str, changes: dict[str, object], expected: tuple[list[str], list[str]]
 ) -> None:
-    scene = Scene.load(name)
-    if effects is not None:
-        scene = scene.model_copy(update={"effects": effects})
+    scene = Scene.load(name).model_copy(update=changes)
     curves = usual(scene, simulate(scene), angles_of(scene))
     assert ([n.short for n in curves.across], [n.short for n in curves.up]) == expected
 
@@ -92,40 +87,15 @@ def test_the_same_scene_gives_the_same_bytes_and_titles_files_and_columns_are_te
     assert (out, err) == (target.read_bytes(), b"")
     assert out.startswith(b"<?xml")
     assert b"<script>" not in out
-    file, drawn = tmp_path / "$\\frac{1$.csv", tmp_path / "a.png"
+    file = tmp_path / "$\\frac{1$.csv"
     file.write_text("time [s],$\\frac{2$\n0,1\n1,2\n", encoding="utf-8")
-    assert main(["plot", str(file), "--y", "$\\frac{2$", "-o", str(drawn)]) == 0
-    assert drawn.read_bytes().startswith(b"\x89PNG")
+    assert main(["plot", str(file), "--y", "$\\frac{2$", "-o", str(tmp_path / "a.png")]) == 0
 
 
 def test_what_is_named_is_computed_and_a_point_that_is_not_reported_is_said_how_to_have() -> None:
-    (toe,) = found("toe", numbers_of(Scene.load("bounce")))
-    assert "toe" in asking_for(Scene.load("bounce"), [toe]).effects
+    bounce = Scene.load("bounce")
+    assert "toe" in asking_for(bounce, found("toe", numbers_of(bounce))).effects
     scene = WISHBONE.model_copy(update={"points": ("tie_rod_outer",)})
     for words in ("wheel_centre.z", "travel"):
         with pytest.raises(NotComputed, match="add 'wheel_centre' to the scene's points"):
             asking_for(scene, found(words, numbers_of(scene)))
-    with pytest.raises(UsageError, match="names more than one number"):
-        found("z", numbers_of(scene))
-
-
-@pytest.mark.parametrize("ending", ENDINGS)
-def test_a_file_of_a_sweep_has_a_curve_for_each_design(ending: str, tmp_path: Path) -> None:
-    """The middle one of three designs cannot be solved."""
-    target, words = tmp_path / f"sweep{ending}", ("--designs", str(tmp_path / "designs.csv"))
-    (tmp_path / "designs.csv").write_text("tie_rod_inner.y\n178\n640\n180\n", encoding="utf-8")
-    assert main(("sweep", "double-wishbone", *words, "--instants", "7", "-q", "-o", str(target))) == 3
-    table = read_sweep(str(target))
-    across, up = columns_called(table, ["time"]), columns_called(table, ["camber", "wheel.toe"])
-    assert (across, up) == (["time [s]"], ["wheel.camber [deg]", "wheel.toe [deg]"])
-    few = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"samples": 7})})
-    designs = sweep(few, {"tie_rod_inner.y": [178.0, 180.0]})
-    for axes, name in zip(
-        picture.figure_of(table, across[0], up, "a car").axes, ("camber", "toe"), strict=True
-    ):
-        one, none, other = (line.get_xydata() for line in axes.lines)
-        assert np.isnan(none[:, 1]).all()
-        for drawn, solved in zip((one, other), np.degrees(designs.numbers["wheel"][name]), strict=True):
-            # Degrees are one rounding away.
-            assert np.asarray(drawn) == pytest.approx(np.stack([few.instants, solved], axis=-1), rel=1e-14)
-    assert main(("plot", str(target), "-o", str(tmp_path / "a.png"))) == 0

@@ -10,11 +10,11 @@ import jsonschema
 import numpy as np
 import pytest
 from counted_study import worked_out
-from program import PAST_ITS_END, document, short_scene
+from program import document
 
 from validate.cli import main
 from validate.commands.schema import schema_text
-from validate.exit_status import ExitStatus, combined
+from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text
 from validate.studies.bounds import bounds
@@ -62,27 +62,6 @@ def test_numbers_that_do_not_exist_and_bytes_that_are_no_text_have_a_place_in_js
     assert "NaN" not in text
     assert "Infinity" not in text
     assert json.loads(text) == {"a": [None, None, 1.0], "b": [{"c": None}], "d": "\\udcff"}
-
-
-def test_every_ending_of_a_comparison_keeps_to_the_schema(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    good, past = short_scene(tmp_path), short_scene(tmp_path, "past.toml", samples="27", **PAST_ITS_END)
-    bad = short_scene(tmp_path, "bad.toml", samples="0")
-    endings = {
-        (good,): 0,
-        (good, "--second", "printed"): 1,
-        (bad,): 2,
-        (past,): 3,
-        (past, bad, good): 2,
-        (past, bad, good, "--second", "printed"): 1,
-    }
-    for words, status in endings.items():
-        assert main(["validate", *words, "--json", "-"]) == status, words
-        data = document(capsys.readouterr().out)
-        assert (data["exit_status"], data["verdict"]) == (status, ExitStatus(status).verdict)
-        assert [scene["scene"] for scene in data["scenes"]] == [word for word in words if "/" in word]
-        assert combined(ExitStatus(scene["exit_status"]) for scene in data["scenes"]) == status
 
 
 @pytest.mark.parametrize("study", [random_cars(1), bounds(1), hard(["link-twice"])], ids=lambda one: one.name)

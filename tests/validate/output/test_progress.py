@@ -13,14 +13,10 @@ from validate.output.progress import Progress
 def test_lines_go_to_standard_error_of_a_pipe_unless_the_run_is_quiet(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    console = Console()
-    with (
-        console.progress("scenes", total=2, first=0.05),
-        console.progress("cost") as told,
-    ):
-        # What is done inside is said in the same lines.
+    console, err = Console(), ""
+    # What is done inside is said in the same lines.
+    with console.progress("scenes", total=2, first=0.05), console.progress("cost") as told:
         told("series", 60, 150)
-        err = ""
         while not err.endswith("\n"):
             time.sleep(0.01)
             out, more = capsys.readouterr()
