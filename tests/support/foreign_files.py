@@ -78,6 +78,13 @@ FOUR_BAR = """
 </mujoco>
 """
 
+# The same with a body more, on the rocker's end: the coupler and it are one.
+WELDED = FOUR_BAR.replace(
+    '<joint class="pin"/><geom size="0.1"/>',
+    '<joint class="pin"/><geom size="0.1"/><body name="tip" '
+    'pos="-0.018092213764227 0 0.189208583376144"><joint class="pin"/><geom size="0.1"/></body>',
+).replace('<connect body1="coupler" body2="rocker" anchor="0.3 0 0"/>', '<weld body1="coupler" body2="tip"/>')
+
 
 def imported(folder: Path, text: str, name: str = "car.txt", **choices: Any) -> Imported:
     """What becomes of a file of such a text."""
@@ -118,32 +125,10 @@ def lotus_report(points: Points = WISHBONE.mechanism.points, static: Mapping[str
     )
 
 
-def table(
-    points: Points = WISHBONE.mechanism.points,
-    *,
-    order: tuple[int, int, int] = (0, 1, 2),
-    signs: tuple[int, int, int] = (-1, -1, 1),
-    per_unit: str = "1",
-    titles: str = "Point,X,Y,Z\n",
-    separator: str = ",",
-    ending: str = "",
-    names: Mapping[str, str] = OPTIMUMK,
-) -> str:
-    """A table of points; x forward, y left, z up and mm unless said otherwise.
-
-    Args:
-        order, signs: which of our coordinates each of its columns is, and its sign there.
-        per_unit: mm in its unit.
-    """
-    rows = []
-    for ours, theirs in names.items():
-        if ours in points:
-            numbers = [
-                Decimal(repr(n)) * sign / Decimal(per_unit)
-                for n, sign in zip(points[ours], signs, strict=True)
-            ]
-            rows.append(separator.join([theirs + ending, *(f"{numbers[at]:f}" for at in order)]))
-    return titles + "\n".join([*rows, separator.join(["NSMA_PPAttPnt" + ending, "1", "2", "3"])]) + "\n"
+def table(points: Points = WISHBONE.mechanism.points) -> str:
+    """A table of points with OptimumK's names; x forward, y left, z up; mm."""
+    rows = (f"{OPTIMUMK[name]},{-x},{-y},{z}" for name, (x, y, z) in points.items() if name in OPTIMUMK)
+    return "\n".join(["Point,X,Y,Z", *rows, "NSMA_PPAttPnt,1,2,3", ""])
 
 
 def chrono(kind: str, points: Points, out: int, camber: str = "", toe: str = "") -> str:

@@ -15,10 +15,10 @@ def late(values: Array) -> Array:
 
 
 def misread(scene: Scene, amount: float, *coordinates: str) -> Numbers:
-    """The numbers of the car with some coordinates drawn so much more, nearly to rounding."""
+    """The numbers of the car with some coordinates drawn so much more, or less after a minus; to rounding."""
     content = scene.model_dump(exclude_none=True) | {"tolerance": 1e-13}
     points = {name: list(place) for name, place in content["mechanism"]["points"].items()}
     for point, _, axis in (coordinate.rpartition(".") for coordinate in coordinates):
-        points[point]["xyz".index(axis)] += amount
+        points[point.removeprefix("-")]["xyz".index(axis)] += -amount if point.startswith("-") else amount
     content["mechanism"]["points"] = points
     return simulate(Scene.from_mapping(content, "misread")).numbers

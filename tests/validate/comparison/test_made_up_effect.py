@@ -4,22 +4,19 @@ Nothing in `validate` names an effect or a quantity: a made-up length with a qua
 the registries.
 """
 
-from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import scene_with
 from program import document, short_scene
 
 import absolute
 from absolute.effects import Effect as AbsoluteEffect
 from absolute.results import Motion
-from pointcoord import Scene
-from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 from pointcoord.effects import registry
-from pointcoord.effects.effect import Effect, Poses, Quantity
-from pointcoord.linkage.topology import Topology
+from pointcoord.effects.car_number import CarNumbers, Number
+from pointcoord.effects.effect import Quantity
 from validate.cli import main
 from validate.comparison.compare import compare
 from validate.reference.car_data import WHEEL
@@ -27,89 +24,62 @@ from validate.reference.effects import registry as reference_registry
 from validate.reference.effects.car import Effect as ReferenceEffect
 from validate.reference.vectors import dot
 
+PAIR = ("pointcoord", "absolute")
 STUB = Quantity("stub", "stub length", "mm", "car")
 
 
-class Stub(Effect):
-    """How far the wheel centre lies outboard of the inner point of the spin axis, mm."""
-
-    def needs(self, topology: Topology) -> Collection[str]:
-        return topology.wheel_axis
-
-    def evaluate(self, poses: Poses) -> dict[str, dict[str, np.ndarray]]:
-        inner, centre = (poses.states[0][name] for name in poses.mechanism.topology.wheel_axis)
-        return {STUB.name: {"stub_axle": poses.axes.component(centre - inner, "outboard")}}
-
-    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, np.ndarray]]:
-        inner, centre = (poses.points[0][name] for name in poses.mechanism.topology.wheel_axis)
-        exact = poses.axes.component(centre - inner, "outboard").scaled(float(poses.mechanism.unit))
-        found = numbers[STUB.name]["stub_axle"]
-        return {STUB.name: {"stub_axle": exact.errors(found)}}
+LENGTH = Number(
+    name="stub_axle",
+    words="stub axle",
+    sign="outboard",
+    formula=lambda corner: corner.seen.along(corner.seen.spin, "outboard"),
+    quantity=STUB,
+    needs_radius=False,
+)
+OURS = CarNumbers.of("stub_axle", "length of the stub axle, mm", LENGTH)
+# In the reference, whose derivatives make bounds of the absolute model's stated accuracy.
+REFERENCE = ReferenceEffect("stub_axle", "mm", (WHEEL,), lambda car: dot(car.wheel.along, car.outboard))
 
 
-OURS = Stub("stub_axle", "length of the stub axle, mm", "positive outboard", 0, (STUB,), ("stub_axle",))
-
-
-def stub_axle(scale: float = 1.0) -> AbsoluteEffect:
-    """The absolute model's own, right or too long."""
+def known_to_absolute(monkeypatch: pytest.MonkeyPatch, scale: float | None) -> None:
+    """The absolute model's own, right or too long; None for a model that does not know it."""
 
     def value(motion: Motion) -> np.ndarray:
         return scale * motion.components(motion.line(*motion.corner.ends("wheel_axis")))[0].value
 
-    return AbsoluteEffect("mm", value)
+    own = {} if scale is None else {"stub_axle": AbsoluteEffect("mm", value)}
+    monkeypatch.setattr("absolute.effects.EFFECTS", {**absolute.EFFECTS, **own})
 
 
-# In the reference, whose derivatives make bounds of the absolute model's stated accuracy.
-REFERENCE = ReferenceEffect("stub_axle", "mm", (WHEEL,), lambda car: dot(car.wheel.along, car.outboard))
-
-Plant = Callable[..., None]
-
-
-@pytest.fixture
-def planted(monkeypatch: pytest.MonkeyPatch) -> Plant:
-    """Registers the effect in pointcoord and the reference, and in absolute one that it is to know."""
+@pytest.fixture(autouse=True)
+def planted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The effect in the registries of pointcoord and of the reference."""
     monkeypatch.setitem(registry.EFFECTS, OURS.name, OURS)
     monkeypatch.setitem(registry.QUANTITIES, STUB.name, STUB)
+    monkeypatch.setitem(registry.NUMBERS_OF_THE_CAR, LENGTH.name, LENGTH)
     monkeypatch.setitem(reference_registry.EFFECTS, REFERENCE.name, REFERENCE)
-
-    def in_absolute(stub: AbsoluteEffect) -> None:
-        known = {**absolute.EFFECTS, "stub_axle": stub}
-        monkeypatch.setattr(absolute, "EFFECTS", known)
-        monkeypatch.setattr("absolute.effects.EFFECTS", known)
-
-    in_absolute(stub_axle())
-    return in_absolute
-
-
-def asked(name: str) -> Scene:
-    """A built-in scene that asks for the new effect, and for one that has always been there."""
-    content: dict[str, Any] = Scene.load(name).model_dump(mode="json", exclude_none=True)
-    return Scene.from_mapping({**content, "effects": ["velocity", "camber", "stub_axle"]})
 
 
 @pytest.mark.parametrize(
     ("scale", "verdict"), [(1.0, "agrees"), (1.0 + 1e-11, "disagrees"), (None, "not given")]
 )
 def test_it_is_compared_like_every_other(
-    scale: float | None, verdict: str, planted: Plant, monkeypatch: pytest.MonkeyPatch
+    scale: float | None, verdict: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Right, with a fault, and in a model that does not know it, of which there is no verdict."""
-    if scale is None:
-        known = {name: effect for name, effect in absolute.EFFECTS.items() if name != "stub_axle"}
-        monkeypatch.setattr("absolute.effects.EFFECTS", known)
-    else:
-        planted(stub_axle(scale))
-    outcome = compare(asked("off-axis-strut"), "pointcoord", "absolute")
-    assert {(r.quantity, r.name): r.verdict for r in outcome.rows if r.name == "stub_axle"} == {
-        ("stub", "stub_axle"): verdict
-    }
+    known_to_absolute(monkeypatch, scale)
+    outcome = compare(scene_with("off-axis-strut", effects=["velocity", "camber", "stub_axle"]), *PAIR)
+    assert [r.verdict for r in outcome.rows if (r.quantity, r.name) == ("stub", "stub_axle")] == [verdict]
     assert {row.quantity for row in outcome.rows} == {"position", "velocity", "wheel", "stub"}
     assert outcome.agreed == (verdict == "agrees")
     assert len(outcome.disagreements) == (verdict == "disagrees")
     assert {*outcome.missing} == ({"absolute gives no stub length"} if scale is None else set())
 
 
-def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_command_has_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    known_to_absolute(monkeypatch, 1.0)
     path = short_scene(tmp_path, effects='["stub_axle"]')
     assert main(["plan", path]) == 0
     out = capsys.readouterr().out

@@ -18,8 +18,10 @@ from validate.measured.poses import Driven
 AWAY = np.array([-0.5, 0.0, 1.0])
 FAR = {"rad": 0.04, "mm": 0.01}
 RADIUS = 300.0  # mm
-TRAVELLING = ("wheel_centre", "contact")
 RATES = ("velocity", "acceleration", "angular_velocity", "camber_by_time")
+# Of a pose: made of places, and of their derivatives by an input where a row has all inputs.
+PLACED = [name for name, effect in EFFECTS.items() if effect.derivative == 0 and name != "loads"]
+STILL = [name for name in PLACED if not EFFECTS[name].way]
 
 
 def asking(name: str, effects: Sequence[str]) -> Scene:
@@ -29,12 +31,6 @@ def asking(name: str, effects: Sequence[str]) -> Scene:
     scene = Scene.from_mapping(content | {"effects": ()}, name)
     had = [effect for effect in effects if effect in scene.mechanism.effects]
     return scene.model_copy(update={"effects": tuple(had)})
-
-
-def of_a_pose(along_ways: bool = True) -> list[str]:
-    """Effects that are made of places, and of their derivatives by an input."""
-    some = (name for name, effect in EFFECTS.items() if effect.derivative == 0 and name != "loads")
-    return [name for name in some if along_ways or not EFFECTS[name].way]
 
 
 def driven_by(scene: Scene, *columns: str, **content: object) -> Driven:
@@ -54,25 +50,22 @@ def hold_to_cars_drawn_anew(driven: Driven, values: Sequence[Array]) -> None:
     kept = np.isfinite([*slopes["position"].values()]).all(axis=(0, 2, 3))
     assert kept.any()
     along = kept * np.random.default_rng(2).uniform(-1.0, 1.0, len(coordinates))
-    ours = {
-        quantity: {name: np.tensordot(along[kept], slope[kept], 1) for name, slope in of.items()}
-        for quantity, of in slopes.items()
-    }
     offsets = (dict(zip(coordinates, size * STEP * at * along, strict=True)) for at in PLACES)
     designs = [driven.redrawn(offset).at(values, 1e-12, bounded=False).numbers for offset in offsets]
-    numbers = {
-        quantity: {name: found.numbers[quantity][name] for name in of} for quantity, of in ours.items()
-    }
-    others = {
-        quantity: {name: np.stack([one[quantity][name] for one in designs]) for name in of}
-        for quantity, of in ours.items()
-    }
+    numbers, ours, others = ({quantity: dict[str, Array]() for quantity in slopes} for _ in range(3))
+    for quantity, of in slopes.items():
+        for name, slope in of.items():
+            numbers[quantity][name] = found.numbers[quantity][name]
+            ours[quantity][name] = np.tensordot(along[kept], slope[kept], 1)
+            others[quantity][name] = np.stack([one[quantity][name] for one in designs])
     hold_to_designs(numbers, ours, others, size)
 
 
 def rows_from(driven: Driven) -> list[Array]:
-    """Values of the columns about the drawing."""
-    units, size = driven.scene.mechanism.topology.input_units, size_of(driven.scene)
+    """Values of the columns about the drawing, or instants of the motion."""
+    units, size, time = driven.scene.mechanism.topology.input_units, size_of(driven.scene), driven.scene.time
+    if "time" in driven.columns:
+        return [time.start + (time.stop - time.start) * np.array([0.6, 0.1])]
     values = []
     for i, name in enumerate(driven.columns):
         far = FAR[units[name]] * (size if units[name] == "mm" else 1.0)
@@ -87,39 +80,27 @@ def headings(name: str) -> list[list[str]]:
     return [every, *([one] for one in dict.fromkeys((every[0], every[-1])) if len(every) > 1)]
 
 
-@pytest.mark.parametrize("name", one_of_each(inputs=True))
-def test_slopes_of_poses_over_inputs_are_those_of_cars_drawn_anew(name: str) -> None:
-    scene = asking(name, of_a_pose())
-    for columns in headings(name):
-        driven = driven_by(scene, *columns)
-        hold_to_cars_drawn_anew(driven, rows_from(driven))
-
-
-TRAVELS = [
-    *((name, p) for name in one_of_each() if load(name).mechanism.topology.wheel_axis for p in TRAVELLING),
-    ("axle-steer", "left.wheel_centre"),
-    ("axle-roll", "right.wheel_centre"),
+WHEELS = [name for name in one_of_each() if load(name).mechanism.topology.wheel_axis]
+# A scene, the effects that it asks for, the columns of the file, and what its map says.
+CASES: list[tuple[str, list[str], list[str], dict[str, object]]] = [
+    *((name, PLACED, columns, {}) for name in one_of_each(inputs=True) for columns in headings(name)),
+    # The paper's strut is drawn off the line that closing puts it on: a travel counts from another level.
+    *(
+        (name, STILL, [f"travel.{point} [mm]"], {})
+        for name in WHEELS
+        for point in ("wheel_centre", "contact")
+    ),
+    ("axle-steer", STILL, ["travel.left.wheel_centre [mm]"], {}),
+    ("axle-roll", STILL, ["travel.right.wheel_centre [mm]"], {}),
+    ("steer", STILL, ["input.rack [mm]"], {"held": {"travel.wheel_centre": 3.0}}),
+    # Motions of every mechanism are in tests/pointcoord/sweeping/test_sensitivity.py.
+    *((name, [*RATES], ["time [s]"], {}) for name in one_of_each(inputs=True)[::3]),
 ]
 
 
-@pytest.mark.parametrize(("name", "point"), TRAVELS)
-def test_slopes_over_a_travel_are_those_of_cars_whose_travel_counts_from_their_own_drawing(
-    name: str, point: str
+@pytest.mark.parametrize(("name", "effects", "columns", "content"), CASES)
+def test_slopes_of_a_file_s_numbers_are_those_of_cars_drawn_anew(
+    name: str, effects: list[str], columns: list[str], content: dict[str, object]
 ) -> None:
-    """The paper's strut is drawn off the line that closing puts it on, so that the level changes too."""
-    driven = driven_by(asking(name, of_a_pose(along_ways=False)), f"travel.{point} [mm]")
+    driven = driven_by(asking(name, effects), *columns, **content)
     hold_to_cars_drawn_anew(driven, rows_from(driven))
-
-
-def test_a_travel_that_is_held_counts_from_each_car_s_own_drawing_too() -> None:
-    scene = asking("steer", of_a_pose(along_ways=False))
-    driven = driven_by(scene, "input.rack [mm]", held={"travel.wheel_centre": 3.0})
-    hold_to_cars_drawn_anew(driven, rows_from(driven))
-
-
-# Motions of every mechanism are in tests/pointcoord/sweeping/test_sensitivity.py.
-@pytest.mark.parametrize("name", one_of_each(inputs=True)[::3])
-def test_slopes_of_rates_are_those_of_motions_of_cars_drawn_anew(name: str) -> None:
-    driven = driven_by(asking(name, RATES), "time [s]")
-    time = driven.scene.time
-    hold_to_cars_drawn_anew(driven, [time.start + (time.stop - time.start) * np.array([0.6, 0.1])])

@@ -1,6 +1,6 @@
 """What is drawn is what is solved: random cars of every suspension that has a closed form, in many digits.
 
-tests/mechanisms compares the other models with the reference, and `test_agreement.py` random cars.
+tests/mechanisms compares the other models with the reference, and tests/oracle random cars.
 """
 
 import math

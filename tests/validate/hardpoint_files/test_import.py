@@ -1,30 +1,139 @@
 """Hardpoints of other programs become the car that they are, or a line that says why not."""
 
-from collections.abc import Mapping
+import shlex
+import shutil
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
-from foreign_files import CAR, OPTIMUMK, STRUT, WISHBONE, chrono, drawn, imported, lotus_report, table
+from case_lines import cases
+from foreign_files import CAR, FOUR_BAR, WELDED, WISHBONE, chrono, drawn, imported, lotus_report, table
+from program import complaints
 
-from pointcoord import PointcoordError, Scene, standing
+from pointcoord import Scene, standing
 from pointcoord.mechanism import mechanism_file
 from validate.cli import main
 from validate.closed_drawing import warnings_of
-from validate.errors import UsageError
 from validate.hardpoint_files.contents import Axes
 from validate.hardpoint_files.format import MJCF, READERS, TABLE, formats
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.tables.errors import FileError
 
+GIVEN = Path(__file__).parents[2] / "oracle" / "given" / "import"
 POINTS = WISHBONE.mechanism.points
 MIRRORED = {name: (x, -y, z) for name, (x, y, z) in CAR.items()}
-EXCHANGED = OPTIMUMK | {
-    "lower_arm_front": OPTIMUMK["lower_arm_rear"],
-    "lower_arm_rear": OPTIMUMK["lower_arm_front"],
+ASIDE = {name: (x, y - 700.0, z) for name, (x, y, z) in CAR.items()} | {"wheel_centre": (0.0, -5.0, 210.0)}
+# Our own words in another's spelling are not our own names, which have our axes.
+TITLED = [f"{name.replace('_', ' ').title()},{x},{y},{z}" for name, (x, y, z) in CAR.items()]
+FILES = {
+    "titled.csv": "\n".join(["Point,X,Y,Z", *TITLED]),
+    "aside.csv": table(ASIDE),
+    "mirrored.json": chrono("double_wishbone", MIRRORED, 1),
+    "four-bar.xml": FOUR_BAR,
+    "welded.xml": WELDED,
 }
-LEFT_CHRONO = chrono("double_wishbone", POINTS, 1)
-SIDE_RIGHT = {"side": "right", "axes": "forward,right,up"}
+# Another car for each wheel, so that a wheel that is taken for another shows; x rearward, y right, z up.
+WHEELS = {
+    wheel: {name: (x + back, out * y + off, z) for name, (x, y, z) in CAR.items()}
+    for wheel, back, out, off in (
+        ("front right", 0.0, 1.0, 0.0),
+        ("front left", 0.0, -1.0, -1.0),
+        ("rear right", 1500.0, 1.0, 2.0),
+        ("rear left", 1500.0, -1.0, -3.0),
+    )
+}
+BODIES = "<body><geom size='1'/></body>" * 100
+
+
+def changed(text: str, changes: Iterable[str]) -> str:
+    """A file's text after changes."""
+    for one in changes:
+        change = one.encode().decode("unicode_escape").replace("100 BODIES", BODIES)
+        old, arrow, new = change.partition(" ->")
+        assert not arrow or old in text, change
+        text = text.replace(old, new.removeprefix(" ")) if arrow else change
+    return text
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, with files of other programs."""
+    shutil.copytree(GIVEN, tmp_path, dirs_exist_ok=True)
+    for more in (GIVEN / "chrono-vehicle", Path(__file__).with_name("tables")):
+        shutil.copytree(more, tmp_path, dirs_exist_ok=True)
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_file_that_makes_no_car_or_another_is_refused_in_one_line_with_what_would_help(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for line, parts in cases(__file__, "refused.txt"):
+        words, *changes = line.split(" ; ")
+        name, *options = shlex.split(words.replace("\\n", "\n"))
+        path, names = Path(name), folder / "names.toml"
+        before = path.read_text(encoding="utf-8")
+        path.write_text(changed(before, changes), encoding="utf-8")
+        if "--names" in options:
+            at = options.index("--names") + 1
+            names.write_text(options[at])
+            options[at] = str(names)
+        assert main(["import", name, *options, "-o", "scene.toml"]) == 2, line
+        (said,) = complaints(capsys.readouterr().err)
+        for part in parts:
+            wanted = part.removeprefix("not: ")
+            assert (wanted in said) == (wanted == part), (part, said)
+        assert any(where in said for where in (path.name, "names.toml", "--", "axes are")), said
+        assert not (folder / "scene.toml").exists()
+        path.write_text(before, encoding="utf-8")
+
+
+def test_a_table_is_the_car_however_it_is_written(folder: Path) -> None:
+    for words, (wheel, others, fact) in cases(__file__, "taken.txt"):
+        name, *options = words.split()
+        choices: dict[str, Any] = dict(zip((o.strip("-") for o in options[::2]), options[1::2], strict=True))
+        angles = {angle: float(choices[angle]) for angle in ("camber", "toe") if angle in choices}
+        found = import_hardpoints(name, **choices | angles)
+        # Where the angles are given the spin axis is made of them.
+        its = drawn(found) | ({"wheel_axis_inner": WHEELS[wheel]["wheel_axis_inner"]} if angles else {})
+        assert (its, found.scene.mechanism.side) == (WHEELS[wheel], wheel.split()[1]), words
+        if others != "*":
+            assert " & ".join(point.name for point in found.drawing.others) == others, words
+        assert any(fact in said for said in found.drawing.facts), words
+
+
+def test_a_rocker_of_optimumk_makes_a_car_with_a_pushrod_and_the_same_damper(folder: Path) -> None:
+    car = {n: p for n, p in Scene.load("pushrod").mechanism.points.items() if n != "rack_centre"}
+    found = import_hardpoints("optimumk-rocker.csv")
+    assert found.scene.mechanism.type == "double_wishbone_pushrod"
+    assert found.scene.mechanism.side == "left"
+    assert drawn(found) == {name: (x, -y, z) for name, (x, y, z) in car.items()}
+    assert not found.drawing.others
+    assert any("pushrod_outer is taken as a point of the lower arm" in fact for fact in found.drawing.facts)
+
+
+def test_a_file_of_names_that_is_not_there_is_written_to_be_filled_in(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = folder / "names.toml"
+    words = ["import", "unknown-titles.csv", "--names", "names.toml", "--axes", "rearward,right,up"]
+    words += ["-o", "car.toml"]
+    assert main(words) == 2
+    assert "names.toml did not exist, so a form is written" in capsys.readouterr().err
+    filled = names.read_text().replace("# [table]", "[table]").replace('# name = "Point"', "name = 1")
+    for axis, title in (("x", "Hoch"), ("y", "Quer"), ("z", "Laengs")):
+        filled = filled.replace(f'# {axis} = "{axis.upper()}"', f'{axis} = "{title}"')
+    names.write_text(filled)
+    assert main(words) == 2  # one name is not known yet
+    assert "lacks lower_ball_joint" in capsys.readouterr().err
+    line = '# lower_ball_joint = "its name", or'
+    names.write_text(names.read_text().replace(line, 'lower_ball_joint = "Traggelenk" #'))
+    assert main(words) == 0
+    assert Scene.load("car.toml").mechanism.points.items() >= CAR.items()
 
 
 def test_the_scene_that_is_written_is_the_one_that_is_returned_and_validates(
@@ -45,10 +154,19 @@ def test_the_scene_that_is_written_is_the_one_that_is_returned_and_validates(
     assert main(["validate", str(target), "-q"]) == 0
     assert main(["import", str(source)]) == 0
     assert capsys.readouterr().out == text
+    # A mm across a kingpin of 221 mm is 0.26 deg; the printed digits leave 0.005 + 0.019 deg open.
+    x, y, z = CAR["upper_ball_joint"]
+    source.write_text(lotus_report({**POINTS, "upper_ball_joint": (x, y - 1.0, z)}))
+    assert main(["import", str(source), "-o", str(target)]) == 1
+    out, err = capsys.readouterr()
+    assert "kingpin: the file prints 7 deg, its points give 7.2" in out
+    assert "disagrees" in out
+    assert "KINGPIN ANGLE is printed as 7 deg" in err
+    assert Scene.load(target).mechanism.points["upper_ball_joint"] == (x, y - 1.0, z)
 
 
 def test_a_car_that_reaches_less_goes_a_quarter_of_the_way(tmp_path: Path) -> None:
-    small = {name: (0.14 * x, 0.14 * y, 0.14 * z) for name, (x, y, z) in WISHBONE.mechanism.points.items()}
+    small = {name: (0.14 * x, 0.14 * y, 0.14 * z) for name, (x, y, z) in POINTS.items()}
     found = imported(tmp_path, lotus_report(small), unit="mm")
     law = found.scene.inputs["wheel_travel"].polynomial
     nearer = min(abs(end.value) for end in standing(found.scene).reach["wheel_travel"])
@@ -58,32 +176,24 @@ def test_a_car_that_reaches_less_goes_a_quarter_of_the_way(tmp_path: Path) -> No
     assert 0.24 * nearer < -law[0] <= 0.25 * nearer
 
 
-NO_SPINDLE = "\n".join(line for line in lotus_report().splitlines() if "spindle" not in line)
-LEFT_STRUT = chrono("macpherson", STRUT.mechanism.points, -1)
-
-
-ASIDE = {name: (x, y - 700.0, z) for name, (x, y, z) in CAR.items()} | {"wheel_centre": (0.0, -5.0, 210.0)}
-ACROSS = {**CAR, "tie_rod_inner": (-10.0, -178.0, 154.0)}
-
-
 @pytest.mark.parametrize(
-    ("text", "choices", "side", "warning"),
+    ("file", "choices", "warning"),
     [
         # Exchanged columns of right-handed axes are left-handed.
-        (table(order=(1, 0, 2)), {"axes": "left,forward,up"}, "right", "left-handed"),
-        (table(per_unit="1000"), {"unit": "in"}, "right", "13.7 mm long"),
-        (table(names=EXCHANGED), {"axes": "forward,left,up"}, "right", "lower_arm_front"),
-        (LEFT_STRUT, {"side": "left", "mirror": True}, "right", ""),
-        (table(ASIDE), {"side": "right"}, "right", ""),
-        (table(ACROSS), {}, "right", "tie_rod_inner lies 178 mm beyond the middle of the car"),
+        ("table-left-forward-up.csv", {"axes": "left,forward,up"}, "left-handed"),
+        ("table-without-unit.csv", {"unit": "in"}, "13.7 mm long"),
+        ("table-front-and-rear-exchanged.csv", {"axes": "forward,left,up"}, "lower_arm_front"),
+        ("chrono-strut.json", {"side": "left", "mirror": True}, ""),
+        ("aside.csv", {"side": "right"}, ""),
+        ("table-tie-rod-across.csv", {}, "tie_rod_inner lies 178 mm beyond the middle of the car"),
     ],
 )
 def test_what_the_points_speak_against_is_taken_where_the_user_says_it_and_warned_of(
-    text: str, choices: Mapping[str, Any], side: str, warning: str, tmp_path: Path
+    file: str, choices: Mapping[str, Any], warning: str, folder: Path
 ) -> None:
-    found = imported(tmp_path, text, **choices)
+    found = import_hardpoints(file, **choices)
     told = " ".join([*warnings_of(found.scene, found.stands.closing), *found.drawing.facts])
-    assert found.scene.mechanism.side == side
+    assert found.scene.mechanism.side == "right"
     assert warning in told, told
 
 
@@ -101,103 +211,41 @@ def test_a_report_of_both_axles_gives_the_one_that_is_asked_for(tmp_path: Path) 
     assert [(check.printed, check.verdict) for check in found.angles] == [(0.0, "agrees"), (0.95, "agrees")]
 
 
-def test_points_that_are_not_those_of_the_printed_angles_end_with_1(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    source, target = tmp_path / "report.txt", tmp_path / "scene.toml"
-    x, y, z = CAR["upper_ball_joint"]
-    # A mm across a kingpin of 221 mm is 0.26 deg; the printed digits leave 0.005 + 0.019 deg open.
-    source.write_text(lotus_report({**POINTS, "upper_ball_joint": (x, y - 1.0, z)}))
-    assert main(["import", str(source), "-o", str(target)]) == 1
-    out, err = capsys.readouterr()
-    assert "kingpin: the file prints 7 deg, its points give 7.2" in out
-    assert "disagrees" in out
-    assert "KINGPIN ANGLE is printed as 7 deg" in err
-    assert target.exists()
-
-
-def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_known(tmp_path: Path) -> None:
-    text = table().replace("CHAS_TiePnt", "Rack End").replace("Wheel Center", "Hub")
-    with pytest.raises(FileError) as caught:
-        imported(tmp_path, text)
-    parts = ("lacks wheel_centre", "tie_rod_inner", "'CHAS_TiePnt'", "'Rack End' on line", "'Hub' on line")
-    assert [part for part in parts if part not in str(caught.value)] == []
-    names = tmp_path / "names.toml"
+def test_points_that_are_not_known_are_taken_as_a_file_of_names_says(tmp_path: Path) -> None:
+    text, names = table().replace("CHAS_TiePnt", "Rack End").replace("Wheel Center", "Hub"), "names.toml"
     # What is given goes before what the file has by a name that is known.
     given = "wheel_centre = [0, -718.0, 210]\nlower_arm_rear = [-90, -257, 78]\n"
-    names.write_text(f'[names]\ntie_rod_inner = "rack end"\n{given}')
-    found = imported(tmp_path, text, names=str(names))
+    (tmp_path / names).write_text(f'[names]\ntie_rod_inner = "rack end"\n{given}')
+    found = imported(tmp_path, text, names=str(tmp_path / names))
     assert drawn(found) == CAR
     assert [point.name for point in found.drawing.others] == ["CHAS_LowAft", "Hub", "NSMA_PPAttPnt"]
 
 
-ROWS = [f"{name.replace('_', ' ').title()},{x},{y},{z}" for name, (x, y, z) in CAR.items()]
-
-
-@pytest.mark.parametrize(
-    ("text", "choices", "words"),
-    [
-        (table(order=(1, 0, 2)), {}, "lower_arm_front lies along [+]y from lower_arm_rear"),
-        (table(names=EXCHANGED), {}, "lower_arm_front lies along -x from lower_arm_rear"),
-        # Our own words in another's spelling are not our own names, which have our axes.
-        ("\n".join(["Point,X,Y,Z", *ROWS]), {}, "does not give the directions of x, y and z.* lies along"),
-        (table(per_unit="1000"), {}, r"spans 0\.54 mm .*--unit m makes 540 mm"),
-        (table(titles="Point,X (mm),Y (mm),Z (mm)\n"), {"unit": "m"}, "states that its lengths are in mm"),
-        (LEFT_STRUT, {"side": "right"}, "--side left --mirror makes the right wheel"),
-        # A file that has the wheel is not told to mirror the other one.
-        (table(ending=" FR"), SIDE_RIGHT, "by --side, but [^;]*; allowed:(?!.*--mirror)"),
-        (table(), {"side": "left"}, "a left wheel by --side, but wheel_centre lies"),
-        (table(ending=" FL"), {}, "a left wheel by the file"),
-        (chrono("double_wishbone", MIRRORED, 1), {}, "a left wheel by the file"),
-        (table(ASIDE), {}, "--side right if y is not counted from the middle"),
-        (lotus_report(), {"part": "rear"}, "has no points of axle rear"),
-        (NO_SPINDLE, {}, "lacks wheel_axis_inner.* for the spin axis.*--camber and --toe"),
-        (NO_SPINDLE, {"toe": 1.0}, "is given --camber None and --toe 1.0"),
-        (table(), {"camber": 1.0, "toe": 0.0}, "its spin axis by wheel_axis_inner; .*neither --camber"),
-        (lotus_report().replace("257.00     69.00", "257.00", 1), {}, "line 9: has 2 numbers"),
-        (lotus_report().replace("    69.00", "    6q.00", 1), {}, "line 9: z of 'Lower w.*' is '6q.00'"),
-        (lotus_report().replace("Double Wishbone", "Trailing arm"), {}, "called 'Trailing arm, damper"),
-        (table().replace("LowAft,-90.0", "LowAft,nan"), {}, "lacks lower_arm_rear .*'CHAS_LowAft' on line 3"),
-        (table().replace("CHAS_LowAft,", ","), {}, "line 3: has coordinates without a name"),
-        (table() + "CHAS_LowAft,1,2,3\n", {}, "line 13: has lower_arm_rear twice, 'CHAS_LowAft' on line 3"),
-        (table(titles="Point,X,Y\n"), {}, "line 1: has no columns of z"),
-        (table(titles="Point,X (m),Y (mm),Z (m)\n"), {}, "line 1: has units .'m', 'mm'."),
-        ("A,1,2,3,4,5,6", {}, "has 6 numbers for 'A'"),
-        ("Point,X,Y,Z\nA,1,5,2,5,3,5", {}, "line 2: has 7 cells under 4 titles; allowed: a title for each"),
-        (table(titles="Punkt,Hoch,Quer,Laengs\n"), {}, "line 1: has unknown titles: 'Punkt, Hoch, Quer, "),
-        ("Point Hoch Quer Laengs\nA 1 2 3", {}, "line 1: has unknown titles: 'Point Hoch Quer Laengs'"),
-        ("Point,X,Y,Z,X,Y,Z\nA,1,2,3,4,5,6", {}, "line 1: has 2 columns of x"),
-        ("-3.5,529,122.84\n-45,190,129.9", {}, "line 1: has coordinates without a name"),
-        ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", {}, "line 3: has numbers with points and with commas"),
-        ("", {}, "has no points"),
-        ("PK\x03\x04\x00\x00", {}, "is not text"),
-        (LEFT_CHRONO.replace("]", ",", 1), {}, "is not JSON"),
-        (LEFT_CHRONO.replace("{", "{ // A\n/* b\n\n*/", 1).replace("0.718", "x"), {}, "line 12: is not JSON"),
-        (LEFT_CHRONO.replace('"Tierod"', '"Rod"'), {}, "lacks tie_rod_outer .*not recognised: .*'Rod: Loc"),
-        (LEFT_CHRONO.replace("DoubleWishbone", "MyDoubleWishbone"), {}, "called 'MyDoubleWishbone'"),
-        (table(), {"names": "[names]\ntie_rod = 'x'"}, "did you mean 'tie_rod_"),
-        (table(), {"names": "[names]\ntie_rod_inner = 'No'"}, "no point in .* named 'No'"),
-        (table(), {"names": "[names]\n\ntie_rod_inner = ?"}, "line 3"),
-        (table(), {"names": '[table]\nname = "Point"\nx = "X"\ny = "Y"'}, r"\[table\] is"),
-    ],
-)
-def test_a_file_that_makes_no_car_or_another_is_refused_with_what_would_help(
-    text: str, choices: Mapping[str, Any], words: str, tmp_path: Path
+def test_a_vehicle_of_chrono_is_the_car_that_its_files_make_together(
+    folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """That the program says it in one line is in tests/test_fuzz.py."""
-    if "names" in choices:
-        names = tmp_path / "names.toml"
-        names.write_text(choices["names"])
-        choices = {"names": str(names)}
-    with pytest.raises((FileError, PointcoordError), match=words):
-        imported(tmp_path, text, **choices)
+    """Axles are front and rear by where they are, and have numbers if there are more than two."""
+    file, spring = folder / "own/vehicle/car.json", folder / "own/suspension/front.json"
+    spring.write_text(spring.read_text().replace("DoubleWishbone", "DoubleWishboneReduced"))
+    assert import_hardpoints(file, part="front").scene.mechanism.type == "double_wishbone"
+    assert main(["import", str(file), "--part", "rear", "-o", "car.toml"]) == 0
+    told = capsys.readouterr().out
+    assert str(folder / "own" / "suspension" / "rear.json") in told
+    assert "a straight rack across the car" in told
+    assert main(["validate", "car.toml", "-q"]) == 0
+    text = file.read_text()
+    file.write_text(text.replace("1.5,", "-1.5,"))  # listed first, and behind the other
+    assert import_hardpoints(file, part="front").scene.mechanism.type == "macpherson"
+    behind = '{"Suspension Input File": "own/suspension/rear.json", "Suspension Location": [-2.5, 0, 0.125]},'
+    file.write_text(text.replace('"Axles": [', f'"Axles": [{behind}'))
+    with pytest.raises(FileError, match="--part 1 or --part 2 or --part 3"):
+        import_hardpoints(file)
+    first, last = (drawn(import_hardpoints(file, part=part))["wheel_centre"] for part in "13")
+    np.testing.assert_allclose(np.subtract(first, last), [1250, 0, 0], atol=1e-12)
 
 
-def test_axes_are_three_directions_at_right_angles() -> None:
+def test_axes_are_named_in_any_letters() -> None:
     assert Axes.of("Forward, left up").words == "x forward, y left, z up"
-    for words in ("forward,left", "forward,left,down,up", "forward,rearward,up", "north,left,up", ""):
-        with pytest.raises(UsageError, match="axes are "):
-            Axes.of(words)
 
 
 @pytest.mark.parametrize("name", formats())

@@ -94,9 +94,3 @@ def test_numbers_of_every_kind_are_held_to_their_digits(case: str) -> None:
         if row.unit in ("mm", "rad", "rad/mm"):
             assert degrees_of(row.unit)[0] * row.tolerance == pytest.approx(5e-6, rel=0.1), row.name
     assert {*disagreeing(file_of(scene, over, same | wrong), content, scene)} == {*wrong}
-
-
-def test_rates_over_an_input_are_not_tested() -> None:
-    scene = CASES["forces over a rack, by bounds of their own poses"][0]
-    (row,) = compared("rack [mm],velocity.wheel_centre.z [mm/s]\n0,1.0\n5,1.0\n", {}, scene).outcome.rows
-    assert (row.verdict, row.why) == ("not tested", "rates need a column of time")

@@ -6,11 +6,13 @@ import numpy as np
 import pyarrow
 import pyarrow.parquet
 import pytest
+from case_lines import cases
+from program import complaints
 
 from pointcoord import Scene
+from validate.cli import main
 from validate.measured.mapping import Measured, read_results
 from validate.measured.reading import columns_of_text, read_columns
-from validate.tables.errors import FileError
 
 VALUES = [[0.0, 0.1, 0.25], [1.5, -2.75, 3e-3]]
 TIDY = "time [s],camber [deg]\n0.0,1.5\n0.1,-2.75\n0.25,3e-3\n"
@@ -34,11 +36,9 @@ WRITTEN = {
 CAR = Scene.load("double-wishbone")
 
 
-def read(folder: Path, data: bytes, map: str = "") -> Measured:
-    file = folder / "mine.csv"
-    file.write_bytes(data)
-    (folder / "map.toml").write_text(map)
-    return read_results(str(file), str(folder / "map.toml") if map else None, CAR)
+def read(folder: Path, data: bytes) -> Measured:
+    (folder / "mine.csv").write_bytes(data)
+    return read_results(str(folder / "mine.csv"), None, CAR)
 
 
 @pytest.mark.parametrize("how", WRITTEN)
@@ -52,24 +52,23 @@ def test_a_table_is_read_however_it_is_written(how: str, tmp_path: Path) -> None
     assert any("ignored: who" in note for note in found.notes) == (how == "words")
 
 
-def test_names_are_read_in_small_letters_with_underscores(tmp_path: Path) -> None:
-    found = read(tmp_path, b"RACK [mm],Half-track change [mm]\n0,0.5\n")
-    names = [one.meaning.name for one in (*found.independent, *found.numbers)]
-    assert names == ["rack", "half_track_change"]
-
-
-def test_a_coordinate_of_a_point_is_its_position(tmp_path: Path) -> None:
-    found = read(tmp_path, b"rack [mm],wheel_centre.x [mm],Wheel_Centre.Z [m]\n0,0.5,0.2\n")
-    words = [one.meaning.words for one in found.numbers]
-    assert words == ["position.wheel_centre.x", "position.wheel_centre.z"]
-
-
-def test_a_column_of_words_that_a_map_wants_is_refused_with_what_it_holds(tmp_path: Path) -> None:
-    data = b"rack [mm],toe,camber [deg]\n0,rig,0\n5,rig,1\n"
-    map = 'columns.rack = {}\ncolumns.camber = {}\ncolumns.toe = { unit = "deg" }\n'
-    with pytest.raises(FileError, match=r"'toe': contains 'rig' and the like; allowed: columns of numbers"):
-        read(tmp_path, data, map)
-    assert len(read(tmp_path, data, map.replace('unit = "deg"', 'is = "ignore"')).numbers) == 1
+@pytest.mark.parametrize(
+    ("heads", "words"),
+    [
+        # In small letters with underscores; a coordinate of a point is its position.
+        (b"RACK [mm],Half-track change [mm],y [mm]", ["dimension.half_track_change"]),
+        (
+            b"rack [mm],wheel_centre.x [mm],Wheel_Centre.Z [m]",
+            ["position.wheel_centre.x", "position.wheel_centre.z"],
+        ),
+    ],
+)
+def test_names_of_columns_are_read_as_people_write_them(
+    heads: bytes, words: list[str], tmp_path: Path
+) -> None:
+    found = read(tmp_path, heads + b"\n0,0.5,0.2\n")
+    assert [one.meaning.name for one in found.independent] == ["rack"]
+    assert [one.meaning.words for one in found.numbers] == words
 
 
 def test_a_file_of_doubles_in_full_is_exact_where_zeros_are_left_off() -> None:
@@ -89,26 +88,14 @@ def test_parquet_gives_the_numbers_themselves(tmp_path: Path) -> None:
     assert abs(float(single[1]) - 0.1) <= 0.5 * found.steps[1, 1] < 1e-8
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("", ("is empty",)),
-        ("time,camber\n", ("no line of numbers",)),
-        ("time,camber\n0,1\n1,1.O\n", ("line 3, column 'camber'", "'1.O' is not a finite number")),
-        ("time,camber\n0,1\n1,2,3\n", ("line 3", "3 cells", "2, one for each of time, camber")),
-        ("time,time\n0,1\n", ("'time' occurs 2 times",)),
-        ("a,b,c\n0,1\n", ("2 columns of numbers under 3 names",)),
-        ("time,camber\ns,furlong\n0,1\n", ("line of units", "'furlong'")),
-        ("time;camber\n0.5;1\n1.0;1,5\n", ("line 3", "has a decimal comma", "one sign before the decimals")),
-    ],
-)
-def test_what_is_no_table_is_refused_with_its_place(text: str, words: tuple[str, ...]) -> None:
-    with pytest.raises(FileError) as caught:
-        columns_of_text(text, "mine.csv")
-    assert [word for word in ("mine.csv", *words) if word not in str(caught.value)] == [], caught.value
-
-
-def test_a_broken_file_of_parquet_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "bad.parquet").write_bytes(b"PAR1 and no more")
-    with pytest.raises(FileError, match="not a Parquet file that can be read"):
-        read_columns(str(tmp_path / "bad.parquet"))
+def test_a_wrong_file_or_map_is_refused_in_one_line_with_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for given, parts in cases(__file__, "refused.txt"):
+        for name, text in zip(("mine.csv", "map.toml"), given.split(" |"), strict=True):
+            Path(name).write_text(text.strip(" ").replace("\\n", "\n"), encoding="utf-8")
+        map = ["--map", "map.toml"] * bool(Path("map.toml").stat().st_size)
+        assert main(["validate", "steer", "--data", "mine.csv", *map]) == 2, given
+        (told,) = complaints(capsys.readouterr().err)
+        assert [part for part in parts if part not in told] == [], told
