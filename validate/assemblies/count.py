@@ -125,26 +125,22 @@ class _Forms(krawczyk.Curve):
     matrices: Sequence[acb_mat]
     chart: int
 
-    def whole(self, x: Sequence[acb], one: int = 1) -> list[acb]:
+    def whole(self, x: Sequence[acb]) -> list[acb]:
         """All homogeneous coordinates."""
-        return [*x[: self.chart], acb(one), *x[self.chart :]]
+        return [*x[: self.chart], acb(1), *x[self.chart :]]
 
     def rows(self, x: Sequence[acb], t: Scalar) -> list[acb]:
         """x^T Q x."""
         z = krawczyk.column(self.whole(x))
         return [(z.transpose() * (matrix * z))[0, 0] for matrix in self.matrices]
 
-    def entries(self, x: Sequence[acb], t: Scalar, one: int = 1) -> list[tuple[int, int, acb]]:
+    def entries(self, x: Sequence[acb], t: Scalar) -> list[tuple[int, int, acb]]:
         """2 Q x."""
-        z = krawczyk.column(self.whole(x, one))
+        z = krawczyk.column(self.whole(x))
         slopes = [(matrix * z).entries() for matrix in self.matrices]
         for slope in slopes:
             del slope[self.chart]
         return [(i, j, 2 * entry) for i, slope in enumerate(slopes) for j, entry in enumerate(slope)]
-
-    def bend(self, change: Sequence[acb]) -> krawczyk.Matrix:
-        """The change of the Jacobian with x, linear in `change`."""
-        return krawczyk.matrix_of(len(change), self.entries(change, 0, 0))
 
     def holds_one(self, centre: Sequence[acb], radius: str) -> bool:
         """Whether discs of this radius are proven to contain exactly one solution."""

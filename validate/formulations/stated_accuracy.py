@@ -90,7 +90,7 @@ from validate.reference.in_doubles import (
     values_of,
     with_slopes,
 )
-from validate.reference.jet import Dual, Jet, part_of, slope_of, value_of
+from validate.reference.jet import Jet, part_of, slope_of, value_of
 from validate.reference.kinematics import body_turns, with_rates
 from validate.reference.mechanism import CHASSIS
 from validate.reference.vectors import Scalar, Vector, each
@@ -236,7 +236,7 @@ class _Held:
         along = {}
         for prefix, way in ways:
             if way is not None:
-                driven = driven_along(self.design, known, prefix, way, float)
+                driven = driven_along(self.design, known, prefix, way)
                 moving = driven is not known
                 along[prefix, way] = _Motion.of(driven, values, inverse, missed) if moving else motion
         claims = self._claims(off, motion, growth, along)
@@ -285,7 +285,7 @@ class _Held:
         points: dict[str, Vector] = {}
         for first, (name, (x, y, z)) in enumerate(local.items()):
             i = 3 * first
-            points[name] = Dual(x, off[i]), Dual(y, off[i + 1]), Dual(z, off[i + 2])
+            points[name] = Jet(x, off[i]), Jet(y, off[i + 1]), Jet(z, off[i + 2])
         read = self.design.mechanism.unknown_of(points, known.numbers, float)
         shape = (len(off), len(matrix))
         slopes = np.array([np.broadcast_to(slope_of(x), shape) for x in read])
@@ -373,18 +373,17 @@ class _Held:
             (p, None): self._car(p, off, places, motion.known, growth) for p in self.drawn
         }
         for (prefix, way), driven in along.items():
-            pose = [Dual(jet.value, jet.part(1)) for jet in driven.off]
+            pose = [Jet(jet.value, jet.part(1)) for jet in driven.off]
             moved = self._per_length(driven, len(off))[1]
             if way == TIME and self.solves:
                 pose = [_with_missed_rates(y, moved) for y in pose]
             cars[prefix, way] = self._car(prefix, off, pose, driven.known, growth, moved)
         found = {}
         for number in self.of_car:
-            effect = number.effect
-            value = effect.evaluate(*(cars[prefix, effect.along] for prefix in number.corners))
+            value = number.value(lambda *way: cars[way], self.unit)
             claim = np.abs(slope_of(value)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(value))
             # Where a number does not exist (0/0), a model may still give a quotient of rounding errors.
-            found[number.name] = np.where(np.isfinite(claim), self.unit**effect.power * claim, NOTHING)
+            found[number.name] = np.where(np.isfinite(claim), claim, NOTHING)
         return found
 
     def _car(
@@ -412,7 +411,7 @@ class _Held:
                 return own(place, off, growth=growth[0])
             values = own(each(value_of, place), off, growth=growth[0])
             slopes = own(each(slope_of, place), rate, growth=growth[1])
-            x, y, z = (Dual(value, slope) for value, slope in zip(values, slopes, strict=True))
+            x, y, z = (Jet(value, slope) for value, slope in zip(values, slopes, strict=True))
             return x, y, z
 
         rate = off * (0.0 if per_length is None else per_length)
@@ -426,7 +425,7 @@ class _Held:
             length = 2.0 * _lengths(values_of(each(value_of, line), len(off))) / self.heights[body]
             lines.append(apart(line, i, off * length, rate * length))
         frame = (lines[0], lines[1]) if lines else None
-        chassis = known.chassis.still() if per_length is None else known.chassis.with_slopes()
+        chassis = known.chassis.still() if per_length is None else known.chassis
         return self.drawn[prefix].at(chassis, held, frame)
 
 
@@ -442,7 +441,7 @@ def _change(motion: _Motion, inverse: Array) -> Array:
     columns: dict[int, list[tuple[int, Array]]] = {}
     known = values_only(motion.known)
     for i, j, entry in known.equations.jacobian([jet.value for jet in motion.off], known.numbers):
-        if isinstance(entry, Dual):
+        if isinstance(entry, Jet):
             columns.setdefault(j, []).append((i, np.asarray(entry.slope)))
     relative = np.zeros(inverse.shape[:2])
     # Few rows change in a column.
@@ -452,14 +451,14 @@ def _change(motion: _Motion, inverse: Array) -> Array:
     return np.asarray(relative.max(axis=-1))
 
 
-def _with_missed_rates(unknown: Dual, per_length: Array) -> Dual:
+def _with_missed_rates(unknown: Jet, per_length: Array) -> Jet:
     """With as many further slopes, of the rate alone: effects of residuals of the equations for rates."""
     value, rate = unknown.value, unknown.slope
     missed = [
         np.concatenate(both)
         for both in ((value.slope, 0.0 * value.slope), (rate.slope, per_length * value.slope))
     ]
-    return Dual(*(Dual(one.value, slopes) for one, slopes in zip((value, rate), missed, strict=True)))
+    return Jet(*(Jet(one.value, slopes) for one, slopes in zip((value, rate), missed, strict=True)))
 
 
 def _with_own(place: Vector, off: Array, first: int, count: int, growth: Array) -> Vector:
@@ -472,7 +471,7 @@ def _with_own(place: Vector, off: Array, first: int, count: int, growth: Array) 
         )
         more = np.zeros((count, len(growth)))
         more[first + axis] = off
-        coordinates.append(Dual(value, np.concatenate([slopes, more])))
+        coordinates.append(Jet(value, np.concatenate([slopes, more])))
     x, y, z = coordinates
     return x, y, z
 

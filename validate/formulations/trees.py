@@ -15,7 +15,7 @@ from validate.errors import NoAnswer
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, Solution, refusing
-from validate.peers.motion import Poses
+from validate.peers.motion import Motion
 from validate.peers.motion import numbers as numbers_of
 from validate.peers.program import Program
 from validate.spanning_tree.cut import cut
@@ -28,7 +28,7 @@ TOLERANCE = 1e-10
 
 def closed_in(
     program: Callable[[SpanningTree], Program], scene: Scene, tolerance: float
-) -> tuple[Program, Poses]:
+) -> tuple[Program, Motion]:
     """A program's model of a scene's car, and its closed drawing.
 
     Args:
@@ -40,7 +40,7 @@ def closed_in(
     """
     made = program(cut(scene.mechanism.plain(tuple(scene.inputs))))
     closed = made.closed(tolerance)
-    require_the_drawn_car(scene, made.tree.moved(closed.places))
+    require_the_drawn_car(scene, made.tree.moved(closed.linear[0, 0]))
     return made, closed
 
 
@@ -63,17 +63,15 @@ class InTree:
         """
         problem = Problem.of(scene)
 
-        def solution(poses: Poses) -> Solution:
+        def solution(motion: Motion) -> Solution:
             with np.errstate(over="ignore"):  # a number that overflows has no error bound either
-                rates = program.rates(poses, series)
-                found = numbers_of(tree, laws, poses, rates, asked_of_the_car(scene))
-            return problem.solution(self.name, found, tree.accuracy(poses.last_step))
+                found = numbers_of(tree, laws, motion, asked_of_the_car(scene))
+            return problem.solution(self.name, found, tree.accuracy(motion.last_step))
 
         with refusing(self.name, NoAnswer, SceneError, AccuracyError, partial=solution):
             program, closed = closed_in(self.program, scene, TOLERANCE)
             tree, laws = program.tree, {name: law[:, :3] for name, law in problem.laws.items()}
-            series = tree.series(laws)
             # An input that is far too large has no pose; the program notices by overflow.
             with np.errstate(over="ignore", invalid="ignore"):
-                poses = program.poses(series[..., 0], TOLERANCE, closed)
-            return solution(poses)
+                motion = program.motion(tree.series(laws), TOLERANCE, closed)
+            return solution(motion)

@@ -235,7 +235,7 @@ def fault_of_kept(refusal: FormulationError, scene: Scene, end: float, driven: s
         except NoReferenceError as error:
             return f"the kept instant {index} has no reference: {error}"
         for name, places in kept.position.items():
-            true = reference.position_as_float(name)
+            true = np.array(reference.position[name], dtype=float)
             off = np.abs(places[index] - true)
             if not (off <= kept.accuracy.claims["position"][name][index] + EPS * np.abs(true)).all():
                 return f"{name} of the kept instant {index} has an error of {off.max():.3g} mm"

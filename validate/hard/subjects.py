@@ -73,7 +73,7 @@ def drawn_at(car: Car, inputs: Mapping[str, float]) -> Car:
     """The car redrawn at the pose of some inputs, rad and mm, so that the new drawing is closed."""
     scene = Scene.from_mapping(content_of(car, inputs))
     pose = reference_instant(scene, {name: (value, 0.0, 0.0) for name, value in inputs.items()})
-    return replace(car, points={name: pose.position_as_float(name) for name in car.points})
+    return car.drawn_as({name: np.array(pose.position[name], dtype=float) for name in car.points})
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from validate.arrays import Array, Indices
+from validate.arrays import Array
 from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree, axes_along, car_directions
@@ -42,7 +42,6 @@ class InExudyn(Program):
         for loop in tree.loops:
             markers = [self._marker(side) for side in (loop.first, loop.second)]
             system.AddObject(items.ObjectJointSpherical(markerNumbers=markers))
-        self.sites = range(len(tree.sites))
         self.sensors = {what: [self._sensor(place, what) for place in tree.sites] for what in READ}
         system.Assemble()
         self.solver, self.settings = exudyn.MainSolverStatic(), exudyn.SimulationSettings()
@@ -66,8 +65,8 @@ class InExudyn(Program):
     def move(self, step: Array) -> None:
         self.put(self.coordinates + step)
 
-    def positions(self, sites: Indices) -> Array:
-        return self._read("Position", sites)
+    def positions(self, which: slice) -> Array:
+        return self._read("Position", which)
 
     def gap_jacobian(self) -> Array:
         self.solver.SetSystemJacobian(self.nothing)
@@ -79,9 +78,9 @@ class InExudyn(Program):
         self.system.systemData.SetODE2Coordinates_t(rates)
         self.system.systemData.SetODE2Coordinates_tt(accelerations)
 
-    def rates_of(self, sites: Indices, order: int) -> Array:
+    def rates_of(self, which: slice, order: int) -> Array:
         kinds = READ[1:3] if order == 1 else READ[3:]
-        return np.stack([self._read(what, sites) for what in kinds], axis=1)
+        return np.stack([self._read(what, which) for what in kinds], axis=1)
 
     def _links(self, tree: SpanningTree) -> int:
         """Exudyn's number of the tree; each link has one coordinate and mass 1 (no result depends on it)."""
@@ -119,9 +118,9 @@ class InExudyn(Program):
         origin, axes = self.frames[place.body]
         return {"linkNumber": self.last[place.body], "localPosition": axes.T @ (place.at - origin)}
 
-    def _read(self, what: str, sites: Indices) -> Array:
+    def _read(self, what: str, which: slice) -> Array:
         """Values of the sensors of some sites, (sites, 3)."""
-        sensors = [self.sensors[what][site] for site in sites.tolist()]
+        sensors = self.sensors[what][which]
         values = [self.system.GetSensorValues(s) if isinstance(s, int) else s for s in sensors]
         return np.reshape(values, (-1, 3))
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from validate.arrays import Array, Indices
+from validate.arrays import Array
 from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Place, SpanningTree
@@ -52,9 +52,9 @@ class InMujoco(Program):
     def move(self, step: Array) -> None:
         mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
 
-    def positions(self, sites: Indices) -> Array:
+    def positions(self, which: slice) -> Array:
         mujoco.mj_kinematics(self.model, self.data)
-        return np.asarray(self.data.site_xpos[sites])
+        return np.asarray(self.data.site_xpos[self.sites[which]])
 
     def gap_jacobian(self) -> Array:
         model, data = self.model, self.data
@@ -68,12 +68,11 @@ class InMujoco(Program):
         mujoco.mj_comVel(self.model, self.data)
         mujoco.mj_rnePostConstraint(self.model, self.data)
 
-    def rates_of(self, sites: Indices, order: int) -> Array:
-        of, found = (
-            (mujoco.mj_objectVelocity, mujoco.mj_objectAcceleration)[order - 1],
-            np.empty((len(sites), 6)),
-        )
-        for site, row in zip(sites.tolist(), found, strict=True):
+    def rates_of(self, which: slice, order: int) -> Array:
+        of = (mujoco.mj_objectVelocity, mujoco.mj_objectAcceleration)[order - 1]
+        sites = self.sites[which]
+        found = np.empty((len(sites), 6))
+        for site, row in zip(sites, found, strict=True):
             of(self.model, self.data, mujoco.mjtObj.mjOBJ_SITE, site, row, 0)
         # MuJoCo gives the angular part first.
         return found.reshape(-1, 2, 3)[:, ::-1]

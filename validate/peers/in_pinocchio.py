@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from validate.arrays import Array, Indices
+from validate.arrays import Array
 from validate.extras import needing
 from validate.peers.program import Program
 from validate.spanning_tree.tree import CHASSIS, Joint, Place, SpanningTree
@@ -53,24 +53,24 @@ class InPinocchio(Program):
     def move(self, step: Array) -> None:
         self.q = pinocchio.normalize(self.model, pinocchio.integrate(self.model, self.q, step))
 
-    def positions(self, sites: Indices) -> Array:
+    def positions(self, which: slice) -> Array:
         pinocchio.framesForwardKinematics(self.model, self.data, self.q)
-        return np.reshape([self.data.oMf[site].translation for site in sites.tolist()], (-1, 3))
+        return np.reshape([self.data.oMf[site].translation for site in self.sites[which]], (-1, 3))
 
     def gap_jacobian(self) -> Array:
         model, data = self.model, self.data
         pinocchio.computeJointJacobians(model, data, self.q)
         pinocchio.updateFramePlacements(model, data)
-        each = [pinocchio.getFrameJacobian(model, data, site, CAR)[:3] for site in self.ends.tolist()]
+        each = [pinocchio.getFrameJacobian(model, data, site, CAR)[:3] for site in self.sites[self.ends]]
         first, second = np.reshape(each, (2, -1, model.nv))
         return np.asarray(first - second)
 
     def set_rates(self, rates: Array, accelerations: Array) -> None:
         pinocchio.forwardKinematics(self.model, self.data, self.q, rates, accelerations)
 
-    def rates_of(self, sites: Indices, order: int) -> Array:
+    def rates_of(self, which: slice, order: int) -> Array:
         of = (pinocchio.getFrameVelocity, pinocchio.getFrameClassicalAcceleration)[order - 1]
-        each = [of(self.model, self.data, site, CAR).vector for site in sites.tolist()]
+        each = [of(self.model, self.data, site, CAR).vector for site in self.sites[which]]
         return np.reshape(each, (-1, 2, 3))
 
 

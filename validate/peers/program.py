@@ -29,9 +29,9 @@ from scipy.linalg import qr
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
-from validate.arrays import Array, Flags, Indices, Integers
+from validate.arrays import Array, Flags, Integers
 from validate.errors import NoAnswer
-from validate.peers.motion import Poses, Rates
+from validate.peers.motion import Motion
 from validate.spanning_tree.tree import UNIT_ROUNDOFF, SpanningTree
 
 # Newton's method doubles its correct digits: six steps lead from half a digit to all; twice that is the
@@ -59,33 +59,31 @@ TURNED = 1e-14
 # Rows that are dependent apart from the rounding of points, some 1e-15 of the car, have a remainder of that
 # size. A mechanism that a rounding moves by 1e-9 of the car is singular for every use.
 DEPENDENT = 1e-9
+State = tuple[Array, Array, Array, float]
+"""A pose: as in `Motion`, the joints' coordinates, the linear and the angular part, and the last step."""
 FREE = "as many inputs as degrees of freedom, and a drawing that is not singular"
 
 
 class Program(ABC):
     """A mechanism in a program. It keeps the last pose, so it is not safe for several threads.
 
-    A program numbers the sites of the tree (see `SpanningTree.sites`) in any way.
-
     Attributes:
-        sites: the program's number of each site.
-        points, ends, bodies: those of the moving points, of the first and then the second sides of the loops,
-            and of the knuckles' origins.
+        points, ends, bodies: which sites (see `SpanningTree.sites`) are moving points, first and then second
+            sides of the loops, and origins of the knuckles.
         as_drawn: coordinates of the joints in the drawing.
         driven_at: indices of the driven joints among the coordinates.
         driven, unknown: indices of the driven and of the free joints among the joints' rates.
         rows: the rows that are solved.
         blocks: rows and columns of the diagonal blocks of J_u.
         drawn: signs of the determinants of these blocks as drawn.
-        tolerance: limit of the last correction in the present call of `closed` or `poses`.
+        tolerance: limit of the last correction in the present call of `closed` or `motion`.
         jacobian: J of the last Newton step.
         way: direction of the path at the last pose.
         begun: condition number at the start of the path.
         nearest: the largest condition number on the path, if it is larger than `begun`.
     """
 
-    sites: Sequence[int]
-    rows: slice | Integers = slice(None)
+    rows: Integers
     blocks: Sequence[tuple[Integers, Integers]] = ()
     drawn: Array
     tolerance: float
@@ -102,10 +100,9 @@ class Program(ABC):
             rods_spin: whether the joint of a rod has three rates, the last one about the rod.
         """
         self.tree, self.as_drawn = tree, self.coordinates
-        points, ends = len(tree.moving), 2 * len(tree.loops)
-        self.points, self.ends, self.bodies = np.split(
-            np.array(self.sites, dtype=np.intp), [points, points + ends]
-        )
+        first = len(tree.moving)
+        last = first + 2 * len(tree.loops)
+        self.points, self.ends, self.bodies = slice(first), slice(first, last), slice(last, None)
         driven = np.array([self.joint(driven.body) for driven in tree.driven], dtype=np.intp)
         self.driven_at, self.driven = driven.reshape(-1, 2).T
         # The spin of a rod has no effect: its rate is fixed at 0.
@@ -130,7 +127,7 @@ class Program(ABC):
         """Move all joints by a small step, as their rates would in a unit of time."""
 
     @abstractmethod
-    def positions(self, sites: Indices) -> Array:
+    def positions(self, which: slice) -> Array:
         """Place all bodies. The positions of some sites, (sites, 3)."""
 
     @abstractmethod
@@ -142,7 +139,7 @@ class Program(ABC):
         """Set rates and accelerations of the joints at the pose of the last call of `gap_jacobian`."""
 
     @abstractmethod
-    def rates_of(self, sites: Indices, order: int) -> Array:
+    def rates_of(self, which: slice, order: int) -> Array:
         """Linear and angular velocity of some sites, or their accelerations for order 2, (sites, 2, 3)."""
 
     def misses(self) -> tuple[Array, Array]:
@@ -154,12 +151,8 @@ class Program(ABC):
         self.set_rates(rates, accelerations)
         return _apart(self.rates_of(self.ends, 2)[:, 0])
 
-    def places(self) -> Array:
-        """The positions of the moving points, (points, 3)."""
-        return self.positions(self.points)
-
-    def closed(self, tolerance: float) -> Poses:
-        """The drawing, closed at its own inputs: one pose.
+    def closed(self, tolerance: float) -> Motion:
+        """The drawing, closed at its own inputs: one pose, at rest.
 
         Args:
             tolerance: Newton's method ends with a correction of all joints below it, rad and car sizes.
@@ -177,7 +170,7 @@ class Program(ABC):
             raise NoAnswer("the mechanism", words, FREE)
         if len(independent_rows(jacobian[:, [*self.unknown, *self.driven]])) > count:
             raise NoAnswer("an input", "does not move the mechanism in addition to the others", FREE)
-        self.rows = slice(None) if len(rows) == len(jacobian) else rows
+        self.rows = rows
         if count:  # an arm on one hinge, which is driven, has no loop
             # All three rows of a loop: that one of them is zero as drawn may be chance.
             moved = (np.abs(unknown) > TURNED).reshape(-1, 3, count).any(axis=1)
@@ -189,75 +182,72 @@ class Program(ABC):
         condition, _ = self._folded()
         if not condition < FOLDED:
             raise self._refusal("lies on a fold", None, drawn, drawn)
-        return self._named(drawn[None], self.coordinates[None], self.places()[None], [step])
+        return _in_series(drawn[None], [self._state(step)])
 
-    def poses(self, inputs: Array, tolerance: float, start: Poses) -> Poses:
+    def motion(self, series: Array, tolerance: float, start: Motion, moves: bool = True) -> Motion:
         """Solve at inputs, each pose from the one before.
 
         Args:
-            inputs: of the drives, (N, drives), rad and the tree's unit.
+            series: the input of each drive with two time derivatives, (N, drives, 3), rad and the unit.
             tolerance: see `closed`.
             start: the motion from whose last pose the first pose is solved.
+            moves: whether velocities and accelerations are computed.
         Raises:
-            NoAnswer: a pose is not reached without meeting another assembly; `partial` has those before.
+            NoAnswer: a pose is not reached without meeting another assembly, or its rates are not determined;
+                `partial` has those before.
         """
-        self.tolerance, count = tolerance, len(inputs)
-        coordinates = np.empty((count, start.coordinates.shape[1]))
-        places, steps = np.empty((count, len(self.tree.moving), 3)), np.empty(count)
-        here = start.inputs[-1]
+        self.tolerance, inputs, here = tolerance, series[..., 0], start.inputs[-1]
         self.put(start.coordinates[-1])
         self.jacobian, self.way = self.misses()[1], np.zeros(len(self.unknown) + len(self.driven))
+        driven = self.tree.coordinates(series)
+        found: list[State] = []
 
-        def refusal(problem: str, i: int, reached: Array) -> NoAnswer:
-            error = self._refusal(problem, i, inputs[i], reached)
-            error.partial = self._named(inputs, coordinates, places, steps).first(i) if i else None
+        def refusal(problem: str, reached: Array) -> NoAnswer:
+            error = self._refusal(problem, len(found), inputs[len(found)], reached)
+            error.partial = _in_series(inputs, found) if found else None
             return error
 
-        for i in range(count):
-            done, step = self._go(here, inputs[i])
+        for wanted, rates in zip(inputs, driven, strict=True):
+            done, step = self._go(here, wanted)
             if done < 1.0:
-                raise refusal("cannot be reached", i, here + done * (inputs[i] - here))
-            here, steps[i], places[i], coordinates[i] = inputs[i], step, self.places(), self.coordinates
-            if not isinstance(self.rows, slice):
+                raise refusal("cannot be reached", here + done * (wanted - here))
+            here = wanted
+            if len(self.rows) < 3 * len(self.tree.loops):
                 missed = float(np.abs(self.misses()[0]).max())
                 if not missed <= HELD + step**2:
                     words = f"violates closures that are dependent in the drawing by {missed:.3g}"
-                    raise refusal(words, i, inputs[i])
-        return self._named(inputs, coordinates, places, steps)
+                    raise refusal(words, wanted)
+            try:
+                found.append(self._state(step, rates if moves else None))
+            except np.linalg.LinAlgError:
+                raise refusal("is singular", wanted) from None
+        return _in_series(inputs, found)
 
-    def rates(self, poses: Poses, series: Array) -> Rates:
-        """Velocities and accelerations of poses.
+    def _state(self, step: float, driven: Array | None = None) -> State:
+        """The present pose, and its rates.
 
         Args:
-            series: the input of each drive with two time derivatives, (N or more, drives, 3).
+            step: the last correction of Newton's method.
+            driven: the driven coordinates with two time derivatives, (drives, 3); None for no rates.
         Raises:
-            NoAnswer: the rates are not determined at a pose; `partial` has those before.
+            LinAlgError: the rates are not determined.
         """
-        count, names, bodies = len(poses.inputs), list(self.tree.moving), self.tree.knuckles
-        linear, angular = (np.empty((2, count, len(of), 3)) for of in (names, bodies))
-        driven = self.tree.coordinates(series[:count])
-        for i in range(count):
-            self.put(poses.coordinates[i])
+        orders = 1 if driven is None else 3
+        linear = np.empty((orders, len(self.tree.moving), 3))
+        angular = np.empty((orders - 1, len(self.tree.knuckles), 3))
+        linear[0] = self.positions(self.points)
+        if driven is not None:
             jacobian = self.misses()[1][self.rows]
             velocity, acceleration = (np.zeros(jacobian.shape[1]) for _ in range(2))
-            velocity[self.driven], acceleration[self.driven] = driven[i, :, 1], driven[i, :, 2]
-            try:
-                inverse = np.linalg.inv(jacobian[:, self.unknown])
-            except np.linalg.LinAlgError:
-                error = self._refusal("is singular", i, poses.inputs[i], poses.inputs[i])
-                error.partial = poses.first(i) if i else None
-                raise error from None
-            velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ driven[i, :, 1])
+            velocity[self.driven], acceleration[self.driven] = driven[:, 1], driven[:, 2]
+            inverse = np.linalg.inv(jacobian[:, self.unknown])
+            velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ driven[:, 1])
             acceleration[self.unknown] = -inverse @ self.apart(velocity, acceleration)[self.rows]
             self.set_rates(velocity, acceleration)
-            for order in range(2):
-                linear[order, i] = self.rates_of(self.points, order + 1)[:, 0]
-                angular[order, i] = self.rates_of(self.bodies, order + 1)[:, 1]
-        found: Rates = {}
-        for order, quantity in enumerate(("velocity", "acceleration")):
-            found[quantity] = {name: linear[order, :, k] for k, name in enumerate(names)}
-            found[f"angular_{quantity}"] = {body: angular[order, :, k] for k, body in enumerate(bodies)}
-        return found
+        for order in range(1, orders):
+            linear[order] = self.rates_of(self.points, order)[:, 0]
+            angular[order - 1] = self.rates_of(self.bodies, order)[:, 1]
+        return self.coordinates, linear, angular, step
 
     def signs(self, jacobian: Array) -> Array:
         """Signs of the determinants of the diagonal blocks of J_u, (blocks,)."""
@@ -388,11 +378,10 @@ class Program(ABC):
             links=links,
         )
 
-    def _named(
-        self, inputs: Array, coordinates: Array, places: Array, steps: Sequence[float] | Array
-    ) -> Poses:
-        named = {name: places[:, k] for k, name in enumerate(self.tree.moving)}
-        return Poses(inputs, coordinates, named, np.asarray(steps))
+
+def _in_series(inputs: Array, states: Sequence[State]) -> Motion:
+    """The motion of the first poses at these inputs."""
+    return Motion(inputs[: len(states)], *map(np.array, zip(*states, strict=True)))
 
 
 def _apart(ends: Array) -> Array:

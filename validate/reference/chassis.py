@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -59,15 +59,8 @@ class ChassisMotion:
 
     def still(self) -> ChassisMotion:
         """Without derivatives."""
-        return self._of_each(value_of)
-
-    def with_slopes(self) -> ChassisMotion:
-        """With first derivatives only."""
-        return self._of_each(lambda jet: Jet(jet.value, jet.slope))
-
-    def _of_each(self, change: Callable[[Jet], Scalar]) -> ChassisMotion:
-        turns = (replace(turn, sine=change(turn.sine), cosine=change(turn.cosine)) for turn in self.turns)
-        return ChassisMotion(tuple(turns), None if self.rise is None else each(change, self.rise))
+        turns = (replace(t, sine=value_of(t.sine), cosine=value_of(t.cosine)) for t in self.turns)
+        return ChassisMotion(tuple(turns), None if self.rise is None else each(value_of, self.rise))
 
     def taken_back(self, point: Vector) -> Vector:
         """The point of the drawn car that moves to this place."""

@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
 from validate.reference.car_data import car_data, corners
 from validate.reference.chassis import ChassisMotion
 from validate.reference.drives import compiled
@@ -17,9 +15,7 @@ from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
 from validate.reference.mechanism import Mechanism
-from validate.reference.vectors import Exact, Scalar, Vector, each, minus, times
-
-SAME_ROW = 1e-9  # relative to the largest pivot: a row with a smaller pivot depends on others, in doubles
+from validate.reference.vectors import Scalar, Vector, each, minus, times
 
 Driven = Mapping[str, Jet]
 """Value, rate, acceleration and perhaps higher derivatives of every input, in fractions; rad or mm."""
@@ -36,34 +32,28 @@ class Known:
         inputs: the inputs as jets by name, rad and mm; w and the motion of the chassis depend on them.
     """
 
-    mechanism: Mechanism
     equations: Equations
     numbers: Sequence[Scalar]
     chassis: ChassisMotion
     inputs: Mapping[str, Jet]
 
     @classmethod
-    def of(
-        cls,
-        mechanism: Mechanism,
-        equations: Equations,
-        inputs: Mapping[str, Jet],
-        exact: Exact,
-    ) -> Known:
-        """From the inputs as jets of any kind of number; `exact` converts a fraction to this kind."""
-        chassis = ChassisMotion.of(mechanism.plain, mechanism.table, mechanism.unit, inputs, exact)
-        return cls(mechanism, equations, mechanism.numbers(inputs, exact), chassis, inputs)
+    def of(cls, equations: Equations, inputs: Mapping[str, Jet]) -> Known:
+        """From the inputs as jets."""
+        one, exact = equations.mechanism, equations.number
+        chassis = ChassisMotion.of(one.plain, one.table, one.unit, inputs, exact)
+        return cls(equations, one.numbers(inputs, exact), chassis, inputs)
 
     @property
     def derivatives(self) -> int:
         """Number of known time derivatives of the inputs."""
         return max((len(jet.parts) for jet in self.inputs.values()), default=3) - 1
 
-    def driven_at(self, name: str, rate: Scalar, exact: Exact) -> Known:
+    def driven_at(self, name: str, rate: Scalar) -> Known:
         """This instant with one input at a rate, rad/s or mm/s, and the others at rest."""
         rates = dict.fromkeys(self.inputs, rate * 0) | {name: rate}
         inputs = {one: Jet(jet.value, jet.value * 0 + rates[one]) for one, jet in self.inputs.items()}
-        return Known.of(self.mechanism, self.equations, inputs, exact)
+        return Known.of(self.equations, inputs)
 
     def points_of(self, unknown: Sequence[Scalar]) -> dict[str, Vector]:
         """Position of every point, after the motion of the chassis."""
@@ -90,7 +80,6 @@ class Design:
         corners, car: see `car_data`.
         loads: force, N, and moment, N mm, of the ground on the knuckle at the contact point, by prefix of the
             corner, for corners with a load.
-        chosen: the rows that are solved, as many as unknowns; the other rows depend on these as drawn.
     """
 
     plain: Mapping[str, Any]
@@ -101,7 +90,6 @@ class Design:
     corners: Mapping[str, int]
     car: Mapping[str, Fraction]
     loads: Mapping[str, tuple[Vector, Vector]]
-    chosen: tuple[int, ...]
 
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any]) -> Design:
@@ -118,15 +106,8 @@ class Design:
         table = {name: times(minus(p, origin), 1 / unit) for name, p in table.items()}
         exact = {**plain, "up": up, "right": right}
         mechanism = compiled(exact, table, unit)
-        chosen = _chosen(mechanism)
-        return cls(
-            exact, mechanism, table, origin, unit, corners(plain), car_data(plain), _loads(plain), chosen
-        )
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the points."""
-        return tuple(self.table)
+        equations_in(mechanism)  # refuses what is not determined
+        return cls(exact, mechanism, table, origin, unit, corners(plain), car_data(plain), _loads(plain))
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -136,10 +117,6 @@ class Design:
     def role(self, name: str) -> Any:
         """The value of a role of the mechanism, or None."""
         return self.plain["roles"].get(name)
-
-    def equations(self, number: Exact = as_ball) -> Equations:
-        """The equations in one kind of number; by default in balls at the present precision."""
-        return equations_in(self.mechanism, self.chosen, number)
 
     def driven(self, inputs: Mapping[str, Sequence[object]]) -> Driven:
         """Inputs by name as fractions; an input that is not given rests at zero."""
@@ -151,8 +128,7 @@ class Design:
 
     def known(self, driven: Driven) -> Known:
         """The known data of the equations, as jets of balls at the present precision, local."""
-        inputs = {name: balls(jet) for name, jet in driven.items()}
-        return Known.of(self.mechanism, self.equations(), inputs, as_ball)
+        return Known.of(equations_in(self.mechanism), {name: balls(jet) for name, jet in driven.items()})
 
 
 def values_only(known: Known) -> Known:
@@ -186,29 +162,3 @@ def _loads(plain: Mapping[str, Any]) -> dict[str, tuple[Vector, Vector]]:
         force, moment = load["force"], load.get("moment") or (0, 0, 0)
         found[f"{part}." if part else ""] = exact_vector(force, "force"), exact_vector(moment, "moment")
     return found
-
-
-def _chosen(mechanism: Mechanism) -> tuple[int, ...]:
-    """As many rows as unknowns; of redundant rows those that are most clearly independent as drawn.
-
-    QR with pivoting takes, one by one, the row with the largest part independent of those taken.
-    """
-    rows, size = len(mechanism.rows), mechanism.size
-    if rows < size:
-        allowed = f"{size} rows: drive {size - rows} more of what can move"
-        raise NoReferenceError("the equations", f"are {rows} rows for {size} unknowns", allowed)
-    if rows == size:
-        return tuple(range(size))
-    from scipy.linalg import qr  # few mechanisms need it, and it takes long to import
-
-    drawn, numbers = ([float(x) for x in of] for of in (mechanism.drawn_unknown, mechanism.drawn_numbers))
-    every = equations_in(mechanism, range(rows), float)
-    matrix = np.zeros((rows, size))
-    for i, j, entry in every.jacobian(drawn, numbers):
-        matrix[i, j] = entry
-    triangle, taken = qr(matrix.T / np.linalg.norm(matrix, axis=1), mode="r", pivoting=True)
-    rank = int((np.abs(np.diag(triangle)) > SAME_ROW).sum())
-    if rank < size:
-        allowed = f"inputs and joints that leave no degree of freedom; {size - rank} are left as drawn"
-        raise NoReferenceError("the equations", f"are {rank} independent rows for {size} unknowns", allowed)
-    return tuple(sorted(int(row) for row in taken[:size]))

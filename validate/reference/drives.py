@@ -45,14 +45,16 @@ def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
         raise NoReferenceError(f"the distance from {end} to {pivot}", "is 0", "more than 0")
     mechanism.row(name, dot(minus(mechanism.place(end), mechanism.place(pivot)), along) - mechanism.number())
 
-    def angle(numbers: Sequence[arb]) -> arb:
+    def input_of(numbers: Sequence[arb]) -> arb:
         # An arc cosine would lose digits if the arm is along the direction. The direction is a unit vector up
         # to rounding, so the difference may be just below zero.
         beside = (as_ball(d2) - numbers[0] * numbers[0]).nonnegative_part()
         return arb.atan2(beside.sqrt(), numbers[0])
 
     return Drive(
-        lambda value, _, exact: [value.sin_cos()[1] * root(exact(d2))], lambda: [as_ball(height)], angle
+        lambda value, _, exact: [value.sin_cos()[1] * root(exact(d2))],
+        input_of,
+        lambda: input_of([as_ball(height)]),
     )
 
 
@@ -76,12 +78,7 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
         sin, cos = value.sin_cos()
         return [sin, cos * (1 / root(exact(nn)))]
 
-    return Drive(
-        numbers,
-        lambda: [arb(0), 1 / as_ball(nn).sqrt()],
-        lambda w: arb.atan2(w[0], w[1] * as_ball(nn).sqrt()),
-        turns=True,
-    )
+    return Drive(numbers, lambda w: arb.atan2(w[0], w[1] * as_ball(nn).sqrt()), turns=True)
 
 
 def _of_unknowns(
@@ -108,24 +105,22 @@ def _slid(
     mechanism: Mechanism, name: str, slides: Sequence[str], per_input: Callable[[Exact], Scalar]
 ) -> Drive:
     """Slides that travel `per_input` mm per mm or rad of the input."""
-    drawn, lengths, unit = [], [], mechanism.unit
-    for slide in slides:
-        shares, along, squared = mechanism.lines[slide]
+    lines, unit = [mechanism.lines[slide] for slide in slides], mechanism.unit
+    lengths = [squared for *_, squared in lines]
+    for shares, *_ in lines:
         mechanism.row(name, shares[0] - mechanism.number())
-        spec = mechanism.plain["slides"][slide]
-        off = minus(mechanism.table[spec["points"][0]], mechanism.table[spec["through"]])
-        drawn.append(dot(off, along) / dot(along, along))
-        lengths.append(squared)
+    first, along = mechanism.plain["slides"][slides[0]], lines[0][1]
+    off = minus(mechanism.table[first["points"][0]], mechanism.table[first["through"]])
+    drawn = dot(off, along) / dot(along, along)
 
     def numbers(value: Jet, _: object, exact: Exact) -> list[Jet]:
         local = value * (per_input(exact) * exact(1 / unit))
         return [local * (1 / root(exact(squared))) for squared in lengths]
 
-    return Drive(
-        numbers,
-        lambda: [as_ball(one) for one in drawn],
-        lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(as_ball),
-    )
+    def input_of(numbers: Sequence[arb]) -> arb:
+        return arb(numbers[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(as_ball))
+
+    return Drive(numbers, input_of, lambda: input_of([as_ball(drawn)]))
 
 
 def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -135,7 +130,6 @@ def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     mechanism.row(name, dot(mechanism.place(spec["height"]), along) - mechanism.number())
     return Drive(
         lambda value, _, exact: [value * exact(1 / unit) + exact(drawn)],
-        lambda: [as_ball(drawn)],
         lambda w: (w[0] - as_ball(drawn)) * as_ball(unit),
     )
 
@@ -175,11 +169,7 @@ def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
         risen = value * exact(1 / unit) + drawn(exact)
         return [*ground, zero + dot(chassis.moved((zero, zero, zero)), upward), risen]
 
-    return Drive(
-        numbers,
-        lambda: [*each(as_ball, up), arb(0), drawn(as_ball)],
-        lambda w: (w[4] - drawn(as_ball)) * as_ball(unit),
-    )
+    return Drive(numbers, lambda w: (w[4] - drawn(as_ball)) * as_ball(unit))
 
 
 def _distance(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -189,8 +179,8 @@ def _distance(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive
     mechanism.row(name, dot(apart, apart) - mechanism.number())
     return Drive(
         lambda value, _, exact: [value * value * exact(1 / unit**2)],
-        lambda: [as_ball(d2)],
         lambda w: w[0].sqrt() * as_ball(unit),
+        lambda: as_ball(d2).sqrt() * as_ball(unit),
     )
 
 

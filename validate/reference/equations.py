@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 from flint import arb, ctx
 
+from validate.reference.exact import as_ball
 from validate.reference.krawczyk import Matrix, matrix_of
 from validate.reference.mechanism import Mechanism, at, of_kind
 from validate.reference.polynomial import Polynomial, ordered
@@ -19,14 +20,15 @@ class Equations:
     """C(y, w) with coefficients in one kind of number; y and w may be jets or power series of this kind.
 
     Attributes:
-        size: number of unknowns, and of equations.
-        rows: C, in the unknowns and the numbers w.
+        number: converts a fraction to this kind of number.
+        rows: C, in the unknowns and the numbers w; as many as unknowns.
         entries: nonzero entries (row, column, entry) of the Jacobian by the unknowns.
         places: position of each point, relative to the chassis.
         frames: two vectors fixed in each moving body.
     """
 
-    size: int
+    mechanism: Mechanism
+    number: Exact
     rows: tuple[Polynomial, ...]
     entries: tuple[tuple[int, int, Polynomial], ...]
     places: Mapping[str, Vector]
@@ -44,20 +46,7 @@ class Equations:
 
     def matrix(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> Matrix:
         """dC/dy as a square matrix of balls."""
-        return matrix_of(self.size, self.jacobian(unknown, numbers))
-
-    def bend(self, change: Sequence[arb]) -> Matrix:
-        """The change of dC/dy for a change of y; dC/dy is linear in y."""
-        return matrix_of(self.size, ((i, j, entry.at(change)) for i, j, entry in self._bending))
-
-    @cached_property
-    def _bending(self) -> list[tuple[int, int, Polynomial]]:
-        """The terms of the entries that depend on y."""
-        bending = (
-            (i, j, Polynomial({m: x for m, x in entry.terms.items() if m and m[0] >= 0}))
-            for i, j, entry in self.entries
-        )
-        return [entry for entry in bending if entry[2].terms]
+        return matrix_of(len(self.rows), self.jacobian(unknown, numbers))
 
     def points_of(self, unknown: Sequence[Scalar], names: Iterable[str] | None = None) -> dict[str, Vector]:
         """Positions of all or some points, relative to the chassis."""
@@ -69,26 +58,24 @@ class Equations:
         return at(one, unknown), at(two, unknown)
 
 
-def equations_in(mechanism: Mechanism, rows: Sequence[int], number: Exact) -> Equations:
+def equations_in(mechanism: Mechanism, number: Exact = as_ball) -> Equations:
     """The equations in one kind of number, cached for the present precision.
 
     Args:
-        rows: the rows that are solved, as many as unknowns.
         number: converts a fraction to that kind of number.
     """
-    return _equations(mechanism, tuple(rows), number, ctx.prec)
+    return _equations(mechanism, number, ctx.prec)
 
 
 @lru_cache(maxsize=256)
-def _equations(mechanism: Mechanism, rows: tuple[int, ...], number: Exact, precision: int) -> Equations:
-    chosen = [mechanism.rows[row][1] for row in rows]
+def _equations(mechanism: Mechanism, number: Exact, precision: int) -> Equations:
+    chosen = [mechanism.rows[row][1] for row in mechanism.chosen]
     return Equations(
-        size=mechanism.size,
+        mechanism=mechanism,
+        number=number,
         rows=tuple(row.of_kind(number) for row in chosen),
         entries=tuple(
-            (i, j, row.derivative(j).of_kind(number))
-            for i, row in enumerate(chosen)
-            for j in sorted({s for m in row.terms for s in m if s >= 0})
+            (i, j, row.derivative(j).of_kind(number)) for i, row in enumerate(chosen) for j in row.unknowns
         ),
         places={name: of_kind(place, number) for name, place in mechanism.places.items()},
         frames={n: (of_kind(u, number), of_kind(v, number)) for n, (u, v) in mechanism.frames.items()},

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from flint import arb, ctx
 
 from validate.reference.errors import NotDecidedError
-from validate.reference.krawczyk import Curve, Matrix, column, middle_inverse
+from validate.reference.krawczyk import Curve, column, middle_inverse
 from validate.reference.path import Pose, StraightPath, Tube, proven_tube, series_of, start_pose
 from validate.reference.vectors import Scalar
 
@@ -42,10 +42,6 @@ class Bordered(Curve):
         ahead, behind = (self.path.rows(x[:-1], x[-1] + step) for step in (1, -1))
         by_time = [(i, last, (a - b) * arb(0.5)) for i, (a, b) in enumerate(zip(ahead, behind, strict=True))]
         return [*self.path.entries(x[:-1], x[-1]), *by_time, (last, self.index, x[-1] * 0 + 1)]
-
-    def bend(self, change: Sequence[arb]) -> Matrix:
-        """The change of the Jacobian, which is linear in x."""
-        return self.matrix(change, arb(0)) - self.matrix([arb(0)] * len(change), arb(0))
 
     def rates(self, box: Sequence[arb]) -> tuple[arb, arb]:
         """dt/ds and d2t/ds2 in a box.

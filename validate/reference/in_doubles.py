@@ -13,7 +13,8 @@ import numpy as np
 
 from validate.arrays import Array
 from validate.reference.design import Design, Known
-from validate.reference.jet import Dual, Jet, value_of
+from validate.reference.equations import equations_in
+from validate.reference.jet import Jet, value_of
 from validate.reference.kinematics import Solved
 from validate.reference.vectors import Scalar, Vector
 
@@ -27,14 +28,14 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
     """
     still = np.zeros((count, max((law.shape[-1] for law in laws.values()), default=3)))
     driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}
-    return Known.of(design.mechanism, design.equations(float), driven, float)
+    return Known.of(equations_in(design.mechanism, float), driven)
 
 
 def local_places(design: Design, places: Mapping[str, Array], known: Known) -> dict[str, Vector]:
     """Points, (N, 3), mm, in the design's coordinates relative to the chassis."""
     origin, unit = np.array([float(x) for x in design.origin]), float(design.unit)
     local = {}
-    for name in design.names:
+    for name in design.table:
         x, y, z = ((places[name] - origin) / unit).T
         local[name] = known.chassis.taken_back((x, y, z))
     return local
@@ -42,7 +43,7 @@ def local_places(design: Design, places: Mapping[str, Array], known: Known) -> d
 
 def jacobian_of(values: Sequence[Scalar], known: Known) -> Array:
     """The Jacobian at poses, (N, size, size); `known` is without derivatives."""
-    return _matrix(known.equations.jacobian(values, known.numbers), known.equations.size)
+    return _matrix(known.equations.jacobian(values, known.numbers), len(values))
 
 
 def _matrix(entries: Sequence[tuple[int, int, Scalar]], size: int) -> Array:
@@ -98,9 +99,7 @@ def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: K
 
 def with_slopes(jets: Sequence[Jet], slopes: Array) -> list[Jet]:
     """Jets of duals; the slopes go by order and unknown."""
-    return [
-        Jet(*(Dual(part, slopes[d, i]) for d, part in enumerate(jet.parts))) for i, jet in enumerate(jets)
-    ]
+    return [Jet(*(Jet(part, slopes[d, i]) for d, part in enumerate(jet.parts))) for i, jet in enumerate(jets)]
 
 
 def values_of(vector: Vector, count: int) -> Array:

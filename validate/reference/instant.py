@@ -40,8 +40,7 @@ class Instant:
         angular_velocity: of every moving body, rad/s.
         angular_acceleration: of every moving body, rad/s^2.
         effects: the requested effects by name, with the part's prefix if there are parts, see
-            `effects.registry`; in rad, mm, rad/mm and so on, %. An effect is missing if the car has not what
-            it
+            `effects.registry`; in rad, mm, rad/mm and so on, %. An effect is missing if the car lacks what it
             needs, or if it is undefined in this pose: 0/0, an angle at 180 deg, a wheel that does not travel,
             a centre at infinity, wheels that are steered in opposite directions.
         rod_force, joint_force, hinge_thrust: forces of rods, dampers and joints under given loads, N; see
@@ -66,11 +65,6 @@ class Instant:
     def derivatives(self) -> tuple[Mapping[str, Triple], ...]:
         """Time derivatives of the points by order; order 0 is their positions."""
         return self.position, self.velocity, self.acceleration, *self.higher
-
-    def position_as_float(self, name: str) -> tuple[float, float, float]:
-        """The point rounded to the nearest float64, mm; to either one if both are equally near."""
-        x, y, z = self.position[name]
-        return float(x), float(y), float(z)
 
 
 def prove_instant(
@@ -105,7 +99,7 @@ def prove_instant(
     found["effects"] = {
         name: ball
         for name, ball in evaluated.items()
-        if ball.rad() < unit ** numbers[name].effect.power * least
+        if ball.is_finite() and ball.rad() < unit ** numbers[name].effect.power * least
     }
     found |= forces_at(design, known, enclosure, digits)
     further = [derivative_called(order) for order in range(len(DERIVATIVES), known.derivatives + 1)]
@@ -128,7 +122,7 @@ def _require_others(design: Design, enclosure: Sequence[arb], numbers: Sequence[
         NoReferenceError: one of these rows is violated.
     """
     values = ordered(enclosure, numbers)
-    for i in set(range(len(design.mechanism.rows))) - set(design.chosen):
+    for i in set(range(len(design.mechanism.rows))) - set(design.mechanism.chosen):
         name, row = design.mechanism.rows[i]
         missed = row.of_kind(as_ball).at(values)
         if not missed.contains(0):
@@ -148,7 +142,7 @@ def _motion(
     """Positions, rates and angular rates in mm, s, rad."""
     unit, origin = as_ball(design.unit), each(as_ball, design.origin)
     found: dict[str, Mapping[str, Any]] = {
-        derivative_called(order): {name: times(part_of(points[name], order), unit) for name in design.names}
+        derivative_called(order): {name: times(part_of(points[name], order), unit) for name in design.table}
         for order in range(derivatives + 1)
     }
     found["position"] = {name: plus(origin, place) for name, place in found["position"].items()}

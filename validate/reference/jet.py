@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import comb
+from math import comb, nan
 from operator import add, neg, sub
 from typing import ClassVar
 
 import numpy as np
 from flint import arb
 
+from validate.arrays import Flags
 from validate.reference.vectors import Scalar, Vector, each, root
 
 
@@ -97,9 +98,6 @@ class Jet:
     __rmul__ = __mul__
 
 
-Dual = Jet  # a jet with one derivative
-
-
 def value_of(number: Scalar) -> Scalar:
     """The value of a jet; another number is returned as it is."""
     return number.value if isinstance(number, Jet) else number
@@ -113,6 +111,13 @@ def slope_of(number: Scalar) -> Scalar:
 def part_of(vector: Vector, order: int) -> Vector:
     """A derivative of a vector of jets; order 0 is the vector itself."""
     return each(lambda jet: jet.part(order), vector)
+
+
+def only_where(number: Scalar, holds: Flags | bool) -> Scalar:
+    """The number where a condition holds, otherwise NaN."""
+    if isinstance(holds, bool):
+        return number if holds else number + nan
+    return number + np.where(holds, 0.0, nan)
 
 
 def angle(y: Scalar, x: Scalar) -> Scalar:

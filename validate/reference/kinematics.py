@@ -16,20 +16,17 @@ from validate.reference.vectors import Scalar, Vector, cross, dot, minus, plus, 
 Solved = Callable[[Sequence[Scalar]], Sequence[Scalar]]
 
 
-def with_rates(
-    values: Sequence[Scalar], known: Known, solved: Solved, derivatives: int | None = None
-) -> list[Jet]:
-    """The unknowns with time derivatives, as jets of any kind of number, local.
+def with_rates(values: Sequence[Scalar], known: Known, solved: Solved) -> list[Jet]:
+    """The unknowns with as many time derivatives as the inputs, as jets of any kind of number, local.
 
     C(y(t), t) = 0 differentiated once and twice gives C' y' = -C_t and C' y'' = -rest, the paper's eqs. (19)
     and (22), and so on. The right-hand sides are C evaluated with jets whose unknown derivative is zero.
 
     Args:
         solved: gives -C'^-1 times a column.
-        derivatives: number of derivatives; by default as many as the inputs have.
     """
     zero, moving = values[0] * 0, [Jet(value) for value in values]
-    for order in range(1, 1 + (known.derivatives if derivatives is None else derivatives)):
+    for order in range(1, 1 + known.derivatives):
         rows = known.residual([Jet(*jet.parts, zero) for jet in moving])
         # A row that does not depend on time is a plain number.
         rest = [row.part(order) if isinstance(row, Jet) else zero for row in rows]

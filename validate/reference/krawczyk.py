@@ -45,13 +45,13 @@ class Curve(ABC):
     def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
         """Nonzero entries of F' as (row, column, entry)."""
 
-    @abstractmethod
-    def bend(self, change: Sequence[Scalar]) -> Matrix:
-        """The change of F' for a change of x; F' is linear in x."""
-
     def matrix(self, x: Sequence[Scalar], t: Scalar) -> Matrix:
         """F' as a matrix of balls."""
         return matrix_of(len(x), self.entries(x, t))
+
+    def bend(self, change: Sequence[Scalar]) -> Matrix:
+        """F'' d, the change of F' for a change d of x; F' is linear in x."""
+        return self.matrix(change, arb(0)) - self.matrix([x * 0 for x in change], arb(0))
 
 
 @dataclass(frozen=True)

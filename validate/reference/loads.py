@@ -37,11 +37,11 @@ from validate.reference.drives import compiled
 from validate.reference.effects.at_pose import drawn_car, drivers, provided
 from validate.reference.equations import equations_in
 from validate.reference.exact import as_ball
-from validate.reference.jet import Dual, slope_of
+from validate.reference.jet import Jet, slope_of
 from validate.reference.kinematics import body_rates
 from validate.reference.krawczyk import column
 from validate.reference.mechanism import CHASSIS, Mechanism, at, of_kind
-from validate.reference.vectors import cross, dot, each, length, minus, plus, times
+from validate.reference.vectors import Vector, cross, dot, each, length, minus, plus, times
 
 FORCES = ROD, JOINT, THRUST = ("rod_force", "joint_force", "hinge_thrust")
 Forces = dict[str, dict[str, Any]]
@@ -73,7 +73,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
     if not (design.loads and _can_be_had(design)):
         return forces
     mechanism, chassis = _held(design), known.chassis.still()
-    equations = equations_in(mechanism, range(mechanism.size), as_ball)
+    equations = equations_in(mechanism)
     places = known.equations.points_of(enclosure)
     numbers = [jet.value for jet in known.numbers]
     unknown = mechanism.unknown_of(places, numbers, as_ball)
@@ -84,7 +84,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         spoke = minus(car.contact, car.wheel.end)
         centre, body = design.role(prefix + WHEEL)[1], design.role(prefix + KNUCKLE)
         for j in range(mechanism.size):
-            pose = [Dual(y, arb(int(i == j))) for i, y in enumerate(unknown)]
+            pose = [Jet(y, arb(int(i == j))) for i, y in enumerate(unknown)]
             turn = chassis.turned(body_rates(*equations.frame_of(pose, body), 1)[0])
             moved = chassis.turned(each(slope_of, equations.points_of(pose, [centre])[centre]))
             work[j] += dot(f, plus(moved, cross(turn, spoke))) + dot(m, turn)
@@ -99,27 +99,25 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
     for name, (row, ends) in rods.items():
         forces[ROD][name] = 2 * length(minus(places[ends[0]], places[ends[1]])) * solved[row]
     pulls = forces[JOINT]
+
+    def pull(point: str, acts_on_first: bool) -> Vector:
+        """The force that closes the gap of a point, on its first or its second place."""
+        (_, first, along), total = mechanism.gaps[point], (arb(0), arb(0), arb(0))
+        for row, vector in enumerate(along, first):
+            total = plus(total, times(at(of_kind(vector, as_ball), unknown), solved[row]))
+        return times(total, -1 if acts_on_first else 1)
+
     for point, of_line in _sliding(design).items():
-        row = mechanism.sliding[point]
-        pull = solved[row], solved[row + 1], solved[row + 2]
-        pulls[point] = chassis.turned(times(pull, 1 if of_line else -1))
-    for points, pulled in _joints(design).items():
-        met = next(point for point in points if point in mechanism.joints)
-        body, row = mechanism.joints[met]
-        sense = -1 if pulled == body else 1
-        pull = times((solved[row], solved[row + 1], solved[row + 2]), sense)
+        pulls[point] = chassis.turned(pull(point, not of_line))
+    for points, body in _joints(design).items():
+        own = {point: pull(point, mechanism.gaps[point][0] == body) for point in points}
         if len(points) == 2:
-            (other,) = (point for point in points if point != met)
-            row, *sides = mechanism.closing[other]
-            one, two = (at(of_kind(side, as_ball), unknown) for side in sides)
-            pulls[other] = chassis.turned(
-                times(plus(times(one, solved[row]), times(two, solved[row + 1])), sense)
-            )
+            # Across the line at both points; along it only the sum is known.
             line = minus(places[points[1]], places[points[0]])
-            along = dot(pull, line)
-            forces[THRUST][points[0]] = along / length(line)
-            pull = minus(pull, times(line, along / dot(line, line)))
-        pulls[met] = chassis.turned(pull)
+            along = {point: dot(force, line) / dot(line, line) for point, force in own.items()}
+            forces[THRUST][points[0]] = sum(along.values()) * length(line)
+            own = {point: minus(force, times(line, along[point])) for point, force in own.items()}
+        pulls |= {point: chassis.turned(force) for point, force in own.items()}
     within = scale * as_ball(Fraction(1, 10**digits))
     every = [*forces[ROD].values(), *forces[THRUST].values(), *(x for pull in pulls.values() for x in pull)]
     if not all(x.is_finite() and x.rad() <= within for x in every):
@@ -129,7 +127,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
 
 def _can_be_had(design: Design) -> bool:
     """Whether no row is redundant, and each corner with a load or a damper has the data for forces."""
-    if len(design.chosen) < len(design.mechanism.rows):
+    if len(design.mechanism.chosen) < len(design.mechanism.rows):
         return False
     for prefix in design.corners:
         has = provided(design, prefix)

@@ -36,13 +36,14 @@ from functools import cached_property
 from itertools import combinations, combinations_with_replacement
 from typing import Any
 
+import numpy as np
 from flint import arb
 
 from validate.reference.car_data import directions
 from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
-from validate.reference.polynomial import Polynomial, polynomial
+from validate.reference.polynomial import Polynomial, ordered, polynomial
 from validate.reference.vectors import (
     Exact,
     Scalar,
@@ -58,6 +59,7 @@ from validate.reference.vectors import (
 )
 
 CHASSIS = "chassis"
+SAME_ROW = 1e-9  # relative to the largest pivot: a row with a smaller pivot depends on others, in doubles
 X, Y, Z = AXES = ((Fraction(1), 0, 0), (0, Fraction(1), 0), (0, 0, Fraction(1)))
 Table = Mapping[str, Vector]
 Columns = tuple[Vector, Vector, Vector]
@@ -71,15 +73,15 @@ class Drive:
     Attributes:
         numbers: gives the numbers w from the input and from all inputs, rad or mm, as jets of any kind of
             number, and a function that converts a fraction to this kind.
-        drawn: gives the numbers w as drawn.
         input_of: gives the input, rad or mm, from its numbers w; an angle from the drawing has the least
             magnitude.
+        drawn: gives the input as drawn, rad or mm.
         turns: whether the input is an angle without limit.
     """
 
     numbers: Callable[[Jet, Mapping[str, Jet], Exact], Sequence[Jet]]
-    drawn: Callable[[], Sequence[arb]]
     input_of: Callable[[Sequence[arb]], arb]
+    drawn: Callable[[], arb] = lambda: arb(0)
     turns: bool = False
 
 
@@ -117,11 +119,8 @@ class Mechanism:
         drives: the inputs, without those that move the chassis.
         driving: for each of these, the last row with its numbers w.
         rods: row of each rod's length.
-        joints: for each shared point with three rows, the body whose place is the minuend in the rows, and
-            the first row.
-        sliding: first of the three rows of each point on a slide.
-        closing: for the second point of each hinge with two rows, the first row, and the two vectors whose
-            products with place - place are in the rows.
+        gaps: for each shared point and each point on a slide whose two places have rows: the body of the
+            first place, the first row, and the vectors whose products with first - second are the rows.
         lines: for each slide, the places of its points on the line, its direction as drawn, and the square of
             its length.
         free: positions of the points of no body.
@@ -146,9 +145,7 @@ class Mechanism:
         self.drives: dict[str, Drive] = {}
         self.driving: dict[str, int] = {}
         self.rods: dict[str, int] = {}
-        self.joints: dict[str, tuple[str, int]] = {}
-        self.closing: dict[str, tuple[int, Vector, Vector]] = {}
-        self.sliding: dict[str, int] = {}
+        self.gaps: dict[str, tuple[str, int, Sequence[Vector]]] = {}
         self.lines: dict[str, tuple[list[Polynomial], Vector, Fraction]] = {}
         self.free: dict[str, Vector] = {}
         self.bodies = {CHASSIS: Body(AXES, (Fraction(0),) * 3)}
@@ -170,14 +167,51 @@ class Mechanism:
         """Position of every point, relative to the chassis."""
         return {name: self.place(name) for name in self.table}
 
+    @cached_property
+    def chosen(self) -> tuple[int, ...]:
+        """The rows that are solved, as many as unknowns; the other rows depend on these as drawn.
+
+        QR with pivoting takes, one by one, the row with the largest part independent of those taken.
+
+        Raises:
+            NoReferenceError: the inputs do not determine all degrees of freedom.
+        """
+        rows, size = len(self.rows), self.size
+        if rows < size:
+            allowed = f"{size} rows: drive {size - rows} more of what can move"
+            raise NoReferenceError("the equations", f"are {rows} rows for {size} unknowns", allowed)
+        if rows == size:
+            return tuple(range(size))
+        from scipy.linalg import qr  # few mechanisms need it, and it takes long to import
+
+        drawn = [float(x) for x in ordered(self.drawn_unknown, self.drawn_numbers)]
+        matrix = np.zeros((rows, size))
+        for i, (_, row) in enumerate(self.rows):
+            for j in row.unknowns:
+                matrix[i, j] = row.derivative(j).of_kind(float).at(drawn)
+        triangle, taken = qr(matrix.T / np.linalg.norm(matrix, axis=1), mode="r", pivoting=True)
+        rank = int((np.abs(np.diag(triangle)) > SAME_ROW).sum())
+        if rank < size:
+            allowed = f"inputs and joints that leave no degree of freedom; {size - rank} are left as drawn"
+            raise NoReferenceError(
+                "the equations", f"are {rank} independent rows for {size} unknowns", allowed
+            )
+        return tuple(sorted(int(row) for row in taken[:size]))
+
     def numbers(self, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
         """The numbers w from all inputs as jets of any kind of number; `exact` converts a fraction."""
         return [w for name, one in self.drives.items() for w in one.numbers(inputs[name], inputs, exact)]
 
     @property
+    def drawn_inputs(self) -> dict[str, Jet]:
+        """All inputs as drawn, rad and mm, at the present precision; those of the chassis are zero."""
+        drives = self.drives
+        return {n: Jet(drives[n].drawn() if n in drives else arb(0)) for n in self.plain["inputs"]}
+
+    @property
     def drawn_numbers(self) -> list[arb]:
         """The numbers w at the drawn inputs, at the present precision."""
-        return [w for drive in self.drives.values() for w in drive.drawn()]
+        return [w.value for w in self.numbers(self.drawn_inputs, as_ball)]
 
     def unknown_of(self, points: Table, numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:
         """The unknowns from assembled points, relative to the chassis, and the numbers w, in one kind of
@@ -210,11 +244,13 @@ class Mechanism:
         """Add the row `row` = 0."""
         self.rows.append((name, polynomial(row)))
 
-    def _vanish(self, name: str, apart: Vector) -> int:
-        """Add the three rows `apart` = 0; return the first one's number."""
-        for part in apart:
-            self.row(name, part)
-        return len(self.rows) - 3
+    def _close(
+        self, point: str, name: str, apart: Vector, along: Sequence[Vector] = AXES, body: str = ""
+    ) -> None:
+        """Add the rows of a gap: it is zero along these vectors."""
+        self.gaps[point] = body, len(self.rows), along
+        for vector in along:
+            self.row(name, dot(apart, vector))
 
     def place(self, point: str) -> Vector:
         """Position of a point, relative to the chassis."""
@@ -261,31 +297,29 @@ class Mechanism:
                     continue
                 tied.add(point)
                 apart = minus(*(one.place(self.table[point]) for one in (body, self.bodies[other])))
-                if i == 0:
-                    self.joints[point] = name, self._vanish(f"{point} of {name} and {other}", apart)
+                if i:
+                    hinge = f"hinge of {name} and {other}"
+                    self._close(point, hinge, apart, self._across(hinge, other, both), name)
                 else:
-                    self._close_hinge(name, other, both, apart)
+                    self._close(point, f"{point} of {name} and {other}", apart, AXES, name)
         for point in points:
             self.holder.setdefault(point, name)
 
-    def _close_hinge(self, name: str, other: str, both: Sequence[str], apart: Vector) -> None:
-        axis = minus(self.table[both[1]], self.table[both[0]])
+    def _across(self, hinge: str, body: str, points: Sequence[str]) -> tuple[Vector, Vector]:
+        """Two vectors fixed in a body, across a hinge through two of its points."""
+        axis = minus(self.table[points[1]], self.table[points[0]])
         if dot(axis, axis) == 0:
-            raise NoReferenceError(
-                f"the hinge of {name} and {other}", "has both points in one place", "a line"
-            )
-        first, second = (self.bodies[other].turned(side) for side in across(axis))
-        self.closing[both[1]] = len(self.rows), first, second
-        for side in (first, second):
-            self.row(f"hinge of {name} and {other}", dot(side, apart))
+            raise NoReferenceError(f"the {hinge}", "has both points in one place", "a line")
+        first, second = (self.bodies[body].turned(side) for side in across(axis))
+        return first, second
 
     def _hinged(self, name: str, a: str, b: str) -> Columns:
         """The columns of R of a body on a hinge of the chassis."""
         n, start = near_one(minus(self.table[b], self.table[a])), self.table[a]
-        if n is None:
+        nn = dot(n, n)
+        if nn == 0:
             raise NoReferenceError(f"the hinge of {name}", f"has {a} and {b} in one place", "a line")
-        nn, axis = dot(n, n), n
-        beside = {point: cross(axis, minus(self.table[point], start)) for point in self.plain["bodies"][name]}
+        beside = {point: cross(n, minus(self.table[point], start)) for point in self.plain["bodies"][name]}
         seen = max(beside, key=lambda point: float(dot(beside[point], beside[point])))
         g = beside[seen]
         if dot(g, g) == 0:
@@ -301,8 +335,8 @@ class Mechanism:
         self.row(f"turn of {name}", c * c + s * s * nn - 1)
 
         def turned(v: Vector) -> Vector:
-            along = times(axis, dot(axis, v) / nn)
-            return plus(along, plus(times(minus(v, along), c), times(cross(axis, v), s)))
+            along = times(n, dot(n, v) / nn)
+            return plus(along, plus(times(minus(v, along), c), times(cross(n, v), s)))
 
         return turned(X), turned(Y), turned(Z)
 
@@ -345,9 +379,9 @@ class Mechanism:
         squared = Fraction(1)
         if along is None:
             along = near_one(minus(self.table[slide["along"]], self.table[through]))
-            if along is None:
-                raise NoReferenceError(f"slides.{name}: along", f"is {slide['along']} in {through}", "a line")
             squared = dot(along, along)
+            if squared == 0:
+                raise NoReferenceError(f"slides.{name}: along", f"is {slide['along']} in {through}", "a line")
         line, start = self.bodies[body].turned(along), self.bodies[body].place(self.table[through])
         shorter, shares = times(line, 1 / dot(along, along)), list[Polynomial]()
         for point in slide["points"]:
@@ -364,7 +398,7 @@ class Mechanism:
             if self.hangs and body == CHASSIS and point not in self.holder and point not in self.free:
                 self.free[point] = there  # its position needs no further unknowns
             else:
-                self.sliding[point] = self._vanish(f"{point} on {name}", minus(self.place(point), there))
+                self._close(point, f"{point} on {name}", minus(self.place(point), there))
         self.lines[name] = (shares, along, squared)
         if not slide["turns"]:
             self._hold(name, slide, along)

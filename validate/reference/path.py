@@ -23,7 +23,7 @@ from flint import arb, arb_mat, arb_poly, ctx
 
 from validate.reference.equations import Equations
 from validate.reference.errors import NotDecidedError
-from validate.reference.krawczyk import Contraction, Curve, Matrix, column, largest, less, newton, within
+from validate.reference.krawczyk import Contraction, Curve, column, largest, less, newton, within
 from validate.reference.vectors import Scalar
 
 ORDER = 9  # order of the series: the error of a step goes with its length to the power ORDER + 1
@@ -58,10 +58,6 @@ class StraightPath(Curve):
     def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
         """C'(y, w(t))."""
         return self.equations.jacobian(x, self.numbers(t))
-
-    def bend(self, change: Sequence[arb]) -> Matrix:
-        """C'' times a change of y."""
-        return self.equations.bend(change)
 
 
 @dataclass(frozen=True)

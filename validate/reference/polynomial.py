@@ -49,6 +49,11 @@ class Polynomial:
     __radd__ = __add__
     __rmul__ = __mul__
 
+    @property
+    def unknowns(self) -> list[int]:
+        """The unknowns that occur."""
+        return sorted({symbol for monomial in self.terms for symbol in monomial if symbol >= 0})
+
     def derivative(self, symbol: int) -> Polynomial:
         """The derivative by one symbol."""
         terms: dict[Monomial, Scalar] = {}

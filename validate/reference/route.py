@@ -17,11 +17,8 @@ from math import ceil
 from flint import arb, ctx
 
 from validate.reference.design import Design, Driven, balls
-from validate.reference.errors import (
-    InfeasibleError,
-    NoReferenceError,
-    NotDecidedError,
-)
+from validate.reference.equations import equations_in
+from validate.reference.errors import InfeasibleError, NoReferenceError, NotDecidedError
 from validate.reference.exact import MOST_DIGITS, as_ball, bits, centre_of, with_more_digits
 from validate.reference.fold import fold_ahead, pose_before
 from validate.reference.jet import Jet
@@ -58,7 +55,7 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
     """
 
     def attempt() -> Assembly:
-        equations, mechanism, clear = design.equations(), design.mechanism, 0.0
+        equations, mechanism, clear = equations_in(design.mechanism), design.mechanism, 0.0
         drawn, numbers = mechanism.drawn_unknown, mechanism.drawn_numbers
         path = StraightPath(equations, numbers, numbers, equations.residual(drawn, numbers))
         try:
@@ -89,8 +86,9 @@ def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
         return moved(design, here, driven)
     except InfeasibleError as straight:
         drawn, wanted = _numbers(design, {}), _numbers(design, driven)
-        same = {n for n in drawn if all(a.overlaps(b) for a, b in zip(drawn[n], wanted[n], strict=True))}
-        changed = [name for name in drawn if name not in same]
+        changed = [
+            n for n in drawn if not all(a.overlaps(b) for a, b in zip(drawn[n], wanted[n], strict=True))
+        ]
         for order in islice(permutations(changed), MOST_ORDERS if len(changed) > 1 else 0):
             try:
                 there = here
@@ -115,7 +113,7 @@ def moved(design: Design, here: Assembly, driven: Driven) -> Assembly:
     def attempt() -> Assembly:
         pose = here.pose
         for begin, end in pairwise(_stops(design, here.driven, driven)):
-            path = StraightPath(design.equations(), begin, end)
+            path = StraightPath(equations_in(design.mechanism), begin, end)
             start = start_pose(path, pose.unknown, arb(0))
             if not pose.holds(start.box):
                 raise NotDecidedError("the start of the path", "another solution", "the pose followed")
@@ -179,18 +177,16 @@ def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
 
 def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
     """The numbers w of each input; inputs that are not driven have their drawn values."""
-    given = {name: balls(driven.get(name, Jet(Fraction(0)))) for name in design.inputs}
+    given = design.mechanism.drawn_inputs | {name: balls(jet) for name, jet in driven.items()}
     return {
         name: [jet.value for jet in one.numbers(given[name], given, as_ball)]
-        if name in driven
-        else [*one.drawn()]
         for name, one in design.mechanism.drives.items()
     }
 
 
 def _inputs(design: Design, numbers: Sequence[arb]) -> dict[str, Fraction]:
-    left = iter(numbers)
+    left, drives = iter(numbers), design.mechanism.drives
     return {
-        name: centre_of(drive.input_of([*islice(left, len(drive.drawn()))]))
-        for name, drive in design.mechanism.drives.items()
+        name: centre_of(drives[name].input_of([*islice(left, len(own))]))
+        for name, own in _numbers(design, {}).items()
     }

@@ -67,10 +67,9 @@ def across(axis: Vector) -> tuple[Vector, Vector]:
     # Rounded, so that a slightly different drawing gives slightly different vectors.
     least = min(range(3), key=lambda i: round(abs(float(axis[i])), 12))
     u = cross(axis, (Fraction(least == 0), Fraction(least == 1), Fraction(least == 2)))
-    return near_one(u) or u, near_one(cross(axis, u)) or u
+    return near_one(u), near_one(cross(axis, u))
 
 
-def near_one(vector: Vector) -> Vector | None:
-    """A vector of fractions times the power of two that makes its length near one; None if it is zero."""
-    longest = max(abs(float(x)) for x in vector)
-    return times(vector, Fraction(2) ** -frexp(longest)[1]) if longest else None
+def near_one(vector: Vector) -> Vector:
+    """A vector of fractions times the power of two that makes its length near one, if it is not zero."""
+    return times(vector, Fraction(2) ** -frexp(max(abs(float(x)) for x in vector))[1])

@@ -31,7 +31,7 @@ from `origin` in `unit`, in which the car's size is between one and two.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, count, repeat
@@ -126,8 +126,7 @@ class _Cutter:
         self.origin, self.unit = _measure(located)
         self.drawn = {name: (place - self.origin) / self.unit for name, place in located.items()}
         self.radius = (plain["wheel_radius"] or 0.0) / self.unit
-        self.per_turn = float(plain.get("rack_per_turn") or math.nan)
-        self.directions = car_directions(plain)
+        self.directions = {n: axis / np.linalg.norm(axis) for n, axis in car_directions(plain).items()}
         self.slides: Mapping[str, Mapping[str, Any]] = plain["slides"]
         self.rods: Mapping[str, Sequence[str]] = plain["rods"]
         self.inputs: Mapping[str, Mapping[str, Any]] = plain["inputs"]
@@ -166,7 +165,7 @@ class _Cutter:
                     continue
                 slide = self.slides[on[0]]
                 if p in slide["points"]:
-                    reach, axis = self.drawn[q] - self.drawn[p], self._line(slide)[1]
+                    reach, axis = self.drawn[q] - self.drawn[p], self._line(slide)
                     foot, length = self._foot(slide, p), float(np.linalg.norm(reach))
                     found[rod] = on[0], p, q, foot
                     self.at[q] = foot + math.copysign(length, float(reach @ axis)) * axis
@@ -186,8 +185,8 @@ class _Cutter:
             if name in self.holders
         }
         self._close(edges)
-        for number, (name, given) in enumerate(self._drives()):
-            self._drive(f"drive {number} {name}", name, given)
+        for name, given in self.inputs.items():
+            self._drive(f"drive {name}", name, given)
         return SpanningTree(
             plain=self.plain,
             joints=tuple(self.joints),
@@ -200,26 +199,18 @@ class _Cutter:
             unit=self.unit,
         )
 
-    def _line(self, slide: Mapping[str, Any]) -> tuple[Array, Array]:
-        """Direction of a slide as given, and as a unit vector."""
+    def _line(self, slide: Mapping[str, Any]) -> Array:
+        """Unit vector along a slide's line."""
         through, along = slide["through"], slide["along"]
         if along in self.directions:
-            given = self.directions[along]
-            return given, given / np.linalg.norm(given)
-        axis = unit_vector(self.drawn[along] - self.drawn[through], through, along)
-        return axis, axis
-
-    def _off(self, slide: Mapping[str, Any], point: str) -> bool:
-        """Whether a point is drawn off the line of a slide."""
-        miss, axis = self.drawn[point] - self.drawn[slide["through"]], self._line(slide)[1]
-        return float(np.linalg.norm(miss - float(miss @ axis) * axis)) > ON_LINE
+            return self.directions[along]
+        return unit_vector(self.drawn[along] - self.drawn[through], through, along)
 
     def _foot(self, slide: Mapping[str, Any], point: str) -> Array:
-        """The place of a slide's line that is nearest to a point as drawn."""
-        through, axis = self.drawn[slide["through"]], self._line(slide)[1]
-        if not self._off(slide, point):
-            return self.drawn[point]
-        return np.asarray(through + float((self.drawn[point] - through) @ axis) * axis)
+        """The place of a slide's line nearest to a point as drawn; the point itself if it is there."""
+        place, through, axis = self.drawn[point], self.drawn[slide["through"]], self._line(slide)
+        foot = np.asarray(through + float((place - through) @ axis) * axis)
+        return place if float(np.linalg.norm(place - foot)) <= ON_LINE else foot
 
     def _sliding(self, slide: Mapping[str, Any]) -> dict[str, list[str]]:
         """Points of a slide by their body; of a point's bodies, the one with the most points of the slide."""
@@ -246,13 +237,14 @@ class _Cutter:
             elif shared:
                 found.append(_Edge((one, other), ("ball",), shared, NO_AXIS))
         for name, slide in self.slides.items():
-            axis = self._line(slide)[1]
+            axis = self._line(slide)
             for body, points in self._sliding(slide).items():
                 is_point = body in self.free.values()
-                kinds: tuple[Kind, ...] = (
-                    ("slide", "hinge") if slide["turns"] and not is_point else ("slide",)
-                )
-                if is_point or (len(points) > 1 and not any(self._off(slide, p) for p in points)):
+                kinds: tuple[Kind, ...] = ("slide", "hinge")
+                if is_point or not slide["turns"]:
+                    kinds = ("slide",)
+                on_line = (self._foot(slide, p) is self.drawn[p] for p in points)
+                if is_point or (len(points) > 1 and all(on_line)):
                     found.append(_Edge((slide["body"], body), kinds, tuple(points), axis, name))
         return found
 
@@ -331,7 +323,7 @@ class _Cutter:
                     self.loops.append(Loop(p, first, second))
         on_rods = {(slide, p) for slide, p, _, _ in self.sliding_rods.values()}
         for name, slide in self.slides.items():
-            axis = self._line(slide)[1]
+            axis = self._line(slide)
             through = Place(slide["body"], self.at[slide["through"]])
             for body, points in self._sliding(slide).items():
                 if (name, frozenset((slide["body"], body))) in self.made:
@@ -398,24 +390,16 @@ class _Cutter:
             self.driven.append(Driven(of, "distance", length, end.body, 1.0, -length))
         self.loops.append(Loop(of, end, second))
 
-    def _drives(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """The inputs that drive the mechanism; an input of several slides comes once for each slide."""
-        for name, given in self.inputs.items():
-            slides = given.get("travel", given.get("steers"))
-            if slides is not None:
-                per_input = self.per_turn / math.tau if "steers" in given else 1.0
-                for slide in [slides] if isinstance(slides, str) else slides:
-                    yield name, {"travel": slide, "per_input": per_input}
-            elif not given.keys().isdisjoint(("angle", "height", "contact", "distance")):
-                yield name, given
-
     def _drive(self, label: str, name: str, given: Mapping[str, Any]) -> None:
+        """Drive the mechanism by an input; those that move the chassis do not."""
         if given.get("from") == "drawing":
             self._turn(name, given)
         elif "angle" in given:
             self._angle(label, name, given)
-        elif "travel" in given:
-            self._travel(label, name, given["travel"], given["per_input"])
+        elif slides := given.get("travel", given.get("steers")):
+            per_input = float(self.plain["rack_per_turn"]) / math.tau if "steers" in given else 1.0
+            for slide in slides:
+                self._travel(f"{label} {slide}", name, slide, per_input)
         elif "height" in given:
             p, axis = given["height"], self.directions[given.get("along", "up")]
             still = Place(CHASSIS, self.drawn[p])
@@ -424,7 +408,7 @@ class _Cutter:
             base = self._ground if given.get("over") == "ground" else CHASSIS
             rim, up = self._contact(label, name, base, *given["contact"]), self.directions["up"]
             self._height(label, name, "length", (rim, Place(base, rim.at)), up, base, 1.0, 0.0)
-        else:
+        elif "distance" in given:
             p, q = given["distance"]
             length = self._distance(q, p, f"{name} has no direction")
             self._rod(label, name, self.points[p], self.points[q], length, True)
@@ -449,20 +433,18 @@ class _Cutter:
 
     def _travel(self, label: str, name: str, slide_name: str, per_input: float) -> None:
         slide = self.slides[slide_name]
-        body, p, axis = slide["body"], slide["points"][0], self._line(slide)[0]
-        through, size = self.drawn[slide["through"]], float(axis @ axis)
-        drawn = float((self.drawn[p] - through) @ axis) / size
-        holder = next(iter(self._sliding(slide)))
+        body, p, axis = slide["body"], slide["points"][0], self._line(slide)
+        through, holder = self.drawn[slide["through"]], next(iter(self._sliding(slide)))
+        drawn = float((self.drawn[p] - through) @ axis)
         made = self.made.get((slide_name, frozenset((holder, body))))
         if made is None:
             ends = Place(holder, self.at[p]), Place(body, through)
-            self._height(label, name, "length", ends, axis, body, size, drawn, per_input)
+            self._height(label, name, "length", ends, axis, body, 1.0, drawn, per_input)
             return
         joint = made[0]  # the slide, before a hinge
         # Its coordinate is measured from the reference pose.
-        scale = (1.0 if joint.parent == body else -1.0) / float(np.linalg.norm(axis))
-        start = float((self.at[p] - through) @ axis)
-        self.driven.append(Driven(name, "length", drawn, joint.body, scale * size, -scale * start, per_input))
+        sign, start = 1.0 if joint.parent == body else -1.0, float((self.at[p] - through) @ axis)
+        self.driven.append(Driven(name, "length", drawn, joint.body, sign, -sign * start, per_input))
 
     def _height(
         self,
@@ -470,24 +452,22 @@ class _Cutter:
         name: str,
         kind: Literal["angle", "length"],
         ends: tuple[Place, Place],
-        along: Array,
+        axis: Array,
         of: str,
         size: float,
         drawn: float,
         per_input: float = 1.0,
     ) -> None:
-        """Drive along . (first - second) = size x f(input), along a direction of the body `of`."""
+        """Drive axis . (first - second) = size x f(input), the axis a direction of the body `of`."""
         first, second = ends
-        long = float(np.linalg.norm(along))
-        axis, start = along / long, float((first.at - second.at) @ along)
-        base = Place(of, first.at)
+        start, base = float((first.at - second.at) @ axis), Place(of, first.at)
         if second.body != of:
             # This body moves with the second point and turns with the body `of`.
             carried = self._slides(f"{label} from", Place(of, second.at), (axis, *across(axis)))
             self.loops.append(Loop(name, carried, second))
             base = Place(carried.body, first.at)
         end = self._slide(label, base, axis)
-        self.driven.append(Driven(name, kind, drawn, end.body, size / long, -start / long, per_input))
+        self.driven.append(Driven(name, kind, drawn, end.body, size, -start, per_input))
         self.loops.append(Loop(name, self._slides(f"{label} beside", end, across(axis)), first))
 
     @cached_property

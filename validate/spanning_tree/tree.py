@@ -189,9 +189,10 @@ class SpanningTree:
             found.append(law if driven.is_angle else law * (driven.per_input / self.unit))
         return np.stack(found, axis=1)
 
-    def moved(self, places: Mapping[str, Array]) -> dict[str, float]:
-        """Distance of points from their drawn places, mm."""
-        return {n: self.unit * float(np.linalg.norm(at - self.drawn[n])) for n, at in places.items()}
+    def moved(self, places: Array) -> dict[str, float]:
+        """Distance of the moving points, (points, 3), from their drawn places, mm, by name."""
+        pairs = zip(self.moving, places, strict=True)
+        return {name: self.unit * float(np.linalg.norm(at - self.drawn[name])) for name, at in pairs}
 
     def accuracy(self, last_step: Array) -> Array:
         """Accuracy of a program's points after such a last correction of Newton's method, mm.

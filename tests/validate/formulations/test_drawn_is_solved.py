@@ -54,7 +54,7 @@ def test_pointcoord_and_the_reference_give_the_closed_form_which_at_its_own_inpu
     widest = max(float(claim.max()) for claim in claims.values())  # of carried points too
     for name, place in right.items():
         assert np.abs(solution.numbers["position"][name][0] - place).max() <= widest + last, name
-        assert np.abs(np.array(reference.position_as_float(name)) - place).max() <= last, name
+        assert np.abs(np.array(reference.position[name], dtype=float) - place).max() <= last, name
     if moved == (0.0, 0.0):
         # The arm angle is rounded, by half a unit of its cosine and of itself, which raises the ball joint by
         # up to 2 pi u of the arm; each coordinate is rounded by half a unit where it is put on a line or

@@ -138,10 +138,8 @@ def test_it_covers_what_an_early_end_of_newtons_method_leaves() -> None:
     scene = Scene.load("double-wishbone")
     problem, (program, home) = Problem.of(scene), closed_in(InPinocchio, scene, 1e-10)
     tree, series = program.tree, program.tree.series(problem.laws)
-    best, coarse = (program.poses(series[..., 0], tolerance, home) for tolerance in (1e-10, 1e-2))
-    exact, found = (
-        numbers(tree, problem.laws, poses, program.rates(poses, series)) for poses in (best, coarse)
-    )
+    best, coarse = (program.motion(series, tolerance, home) for tolerance in (1e-10, 1e-2))
+    exact, found = (numbers(tree, problem.laws, motion) for motion in (best, coarse))
     solution = problem.solution("relative", found, tree.accuracy(coarse.last_step))
     asked = asked_of(exact, scene)
     for quantity, arrays in solution.numbers.items():

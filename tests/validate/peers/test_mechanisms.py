@@ -19,7 +19,7 @@ from validate.errors import NoAnswer
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.in_pinocchio import InPinocchio
-from validate.peers.motion import Poses
+from validate.peers.motion import Motion
 from validate.reference.effects.wheel import OF_POSITIONS
 from validate.spanning_tree.cut import cut
 
@@ -34,10 +34,10 @@ def held(values: Array) -> Array:
     return np.stack([values, 0.0 * values, 0.0 * values], axis=-1)
 
 
-def solved(mechanism: Any, laws: dict[str, Array], program_of: Any = InPinocchio) -> Poses:
+def solved(mechanism: Any, laws: dict[str, Array], program_of: Any = InPinocchio) -> Motion:
     tree = cut(mechanism)
     program = program_of(tree)
-    return program.poses(tree.series(laws)[..., 0], 1e-12, program.closed(1e-12))
+    return program.motion(tree.series(laws), 1e-12, program.closed(1e-12))
 
 
 def test_rows_that_depend_on_others_are_left_out_and_looked_at_in_every_pose() -> None:
@@ -56,7 +56,7 @@ def test_rows_that_depend_on_others_are_left_out_and_looked_at_in_every_pose() -
 def test_a_way_that_is_blocked_between_two_poses_is_refused_and_the_way_round_is_taken() -> None:
     """Below a rack travel of -0.0029 mm the paper's arm cannot pass 35.1 degrees, above it can."""
 
-    def reached(*places: tuple[float, float]) -> Poses:
+    def reached(*places: tuple[float, float]) -> Motion:
         angles, racks = np.array(places).T
         return solved(plain_car("bounce"), {"arm_angle": held(np.deg2rad(angles)), "rack": held(racks)})
 
@@ -151,11 +151,11 @@ def test_a_tree_gives_every_number_of_a_wheel_that_positions_make(name: str) -> 
 @pytest.mark.parametrize("program_of", [InMujoco, InExudyn, InPinocchio])
 def test_an_assembly_on_another_side_than_the_drawings_is_refused(program_of: Any) -> None:
     tree = cut(plain_car("off-axis-strut"))
-    driven = tree.drawn_inputs[None]
+    driven = np.multiply.outer(tree.drawn_inputs[None], [1.0, 0.0, 0.0])
     engine = program_of(tree)
     home = engine.closed(1e-12)
-    assert len(engine.poses(driven, 1e-12, home).coordinates) == 1
+    assert len(engine.motion(driven, 1e-12, home).coordinates) == 1
     # As if the drawing were on the other side.
     engine.drawn = -engine.drawn
     with pytest.raises(NoAnswer, match="cannot be reached"):
-        engine.poses(driven, 1e-12, home)
+        engine.motion(driven, 1e-12, home)

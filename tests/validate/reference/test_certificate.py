@@ -20,6 +20,7 @@ from validate.reference import (
     instants_of,
 )
 from validate.reference.design import values_only
+from validate.reference.equations import equations_in
 from validate.reference.exact import bits
 from validate.reference.fold import Fold, fold_ahead, pose_before
 from validate.reference.krawczyk import Contraction, less, middle_inverse, newton
@@ -40,7 +41,7 @@ def drawn(name: str) -> tuple[StraightPath, list[arb]]:
     """The equations as drawn, and a refined solution at the present precision."""
     design = drawing(name)
     numbers = design.mechanism.drawn_numbers
-    path = StraightPath(design.equations(), numbers, numbers)
+    path = StraightPath(equations_in(design.mechanism), numbers, numbers)
     return path, newton(path, closed(design).pose.unknown, arb(0))[0]
 
 
@@ -76,7 +77,7 @@ def way_of_the_rack(car: ReferenceCar, rack: Fraction) -> StraightPath:
     design = car.design
     begin = design.mechanism.drawn_numbers
     end = values_only(design.known(design.driven({**car.still, "rack": (rack, 0, 0)}))).numbers
-    return StraightPath(design.equations(), begin, [begin[0], end[1]])
+    return StraightPath(equations_in(design.mechanism), begin, [begin[0], end[1]])
 
 
 def near_the_last_rack(car: ReferenceCar) -> tuple[StraightPath, Fold]:

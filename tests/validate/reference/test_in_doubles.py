@@ -45,7 +45,7 @@ def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions
     inputs, design = inputs_of(car), car.design
     instants = [car.solve(one) for one in inputs]
     laws = {name: np.array([[float(x) for x in one[name]] for one in inputs]) for name in inputs[0]}
-    places = {name: np.array([one.position_as_float(name) for one in instants]) for name in design.names}
+    places = {name: np.array([one.position[name] for one in instants], dtype=float) for name in design.table}
     known = known_in_doubles(design, laws, 3)
     still = values_only(known)
     values = unknowns(car, places, still)

@@ -33,21 +33,20 @@ def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
     program, closed = closed_in(program_of(name), scene, tolerance)
     tree = program.tree
     first = tree.series(laws_at(scene, np.array([scene.time.start])))
-    start = program.poses(first[..., 0], tolerance, closed)
+    start = program.motion(first, tolerance, closed, moves=False)
     moves = plan_effects(scene.effects).derivative > 0
 
     def solve(instants: Array) -> Numbers:
         laws = laws_at(scene, instants)
         series = tree.series(laws)
         try:
-            poses = program.poses(series[..., 0], tolerance, start)
+            motion = program.motion(series, tolerance, start, moves)
         except NoAnswer as error:
             if error.instant is None:
                 raise
             what = f"at t = {instants[error.instant]:.6g} s, {error.what}"
             raise NoAnswer(what, error.problem, error.allowed, instant=error.instant) from None
-        rates = program.rates(poses, series) if moves else None
-        return asked_of(numbers(tree, laws, poses, rates, asked_of_the_car(scene)), scene)
+        return asked_of(numbers(tree, laws, motion, asked_of_the_car(scene)), scene)
 
     return solve
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -18,7 +18,7 @@ from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import value_of
 from validate.reference.kinematics import Solved, with_rates
-from validate.reference.vectors import Exact
+from validate.reference.vectors import Exact, Scalar
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,16 @@ class Number:
     name: str
     effect: Effect
     corners: tuple[str, ...]
+
+    def value(self, car: Callable[[str, str | None], Car], unit: Scalar) -> Scalar:
+        """The number in rad, mm, N and %.
+
+        Args:
+            car: gives the car of a part, moving along a variable of `Effect.along`.
+            unit: the cars' unit of length, mm.
+        """
+        found = self.effect.evaluate(*(car(prefix, self.effect.along) for prefix in self.corners))
+        return found * unit**self.effect.power
 
 
 def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
@@ -93,20 +103,16 @@ def provided(design: Design, prefix: str = "") -> frozenset[str]:
     return frozenset({*lines, *drivers(design, prefix), *design.car, *knuckle})
 
 
-def driven_along(design: Design, known: Known, prefix: str, along: str, exact: Exact) -> Known:
-    """The motion by which a number of a part is differentiated (see `Effect.along`); by time, the given one.
-
-    Args:
-        known: as jets of any kind of number; `exact` converts a fraction to this kind.
-    """
+def driven_along(design: Design, known: Known, prefix: str, along: str) -> Known:
+    """The motion, as jets, by which a number of a part is differentiated, see `Effect.along`."""
     if along == TIME:
         return known
     # A slide is driven in the design's unit of length, which is also the car's.
-    driver = drivers(design, prefix)[along]
+    driver, exact = drivers(design, prefix)[along], known.equations.number
     rate = exact(design.unit if along == RACK else Fraction(1))
     if "steers" in design.plain["inputs"][driver]:
         rate /= travel_per_radian(design.plain, exact)
-    return known.driven_at(driver, rate, exact)
+    return known.driven_at(driver, rate)
 
 
 def effects_at(
@@ -120,7 +126,7 @@ def effects_at(
         known: as jets; only derivatives by time use their rates.
         solver: solves for the rates over the enclosure.
     """
-    unit, equations = as_ball(design.unit), known.equations
+    equations = known.equations
 
     @cache
     def car(prefix: str, along: str | None) -> Car:
@@ -128,14 +134,9 @@ def effects_at(
         if along is None:
             places = equations.points_of(enclosure, drawn.points)
             return drawn.at(known.chassis.still(), places)
-        driven = driven_along(design, known, prefix, along, as_ball)
-        pose = with_rates(enclosure, driven, solver, 1)
+        driven = driven_along(design, known, prefix, along)
+        pose = with_rates(enclosure, driven, solver)
         frame = equations.frame_of(pose, body) if body in equations.frames else None
-        return drawn.at(driven.chassis.with_slopes(), equations.points_of(pose, drawn.points), frame)
+        return drawn.at(driven.chassis, equations.points_of(pose, drawn.points), frame)
 
-    found = {}
-    for number in numbers:
-        effect = number.effect
-        value = effect.evaluate(*(car(prefix, effect.along) for prefix in number.corners))
-        found[number.name] = arb(value_of(value)) * unit**effect.power
-    return found
+    return {number.name: arb(value_of(number.value(car, as_ball(design.unit)))) for number in numbers}

@@ -6,15 +6,10 @@ angle, positive to the left, L the wheelbase, t the track as drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import nan
-
-import numpy as np
-
 import validate.reference.car_data as data
 from validate.reference.effects.car import Car, Effect
 from validate.reference.effects.wheel import MOVING, ON_GROUND, steer_angle, velocity_of_contact
-from validate.reference.jet import Jet, angle, slope_of, value_of
+from validate.reference.jet import angle, only_where, value_of
 from validate.reference.vectors import Scalar, Vector, dot, each, minus, root
 
 
@@ -45,16 +40,8 @@ def _roll_centre(left: Car, right: Car) -> tuple[Scalar, Scalar]:
 def _by_side(left: Car, right: Car, to_left: Scalar, to_right: Scalar) -> Scalar:
     """One number if both wheels are steered to the left, another if to the right, otherwise NaN."""
     one, two = (value_of(steer_angle(car)) for car in (left, right))
-    if isinstance(one, np.ndarray):
-
-        def chosen(part: Callable[[Scalar], Scalar]) -> Scalar:
-            right_or_none = np.where((one < 0) & (two < 0), part(to_right), nan)
-            return np.where((one > 0) & (two > 0), part(to_left), right_or_none)
-
-        return Jet(chosen(value_of), chosen(slope_of)) if isinstance(to_left, Jet) else chosen(value_of)
-    if one > 0 and two > 0:
-        return to_left
-    return to_right if one < 0 and two < 0 else to_left * nan
+    lefts, rights = (one > 0) & (two > 0), (one < 0) & (two < 0)
+    return only_where(to_left * lefts + to_right * rights, lefts | rights)
 
 
 def _cotangent(car: Car) -> Scalar:

@@ -123,7 +123,7 @@ class Car:
         """The drawn corner at a pose.
 
         Args:
-            chassis: its motion, with slopes if the places have slopes.
+            chassis: its motion, with derivatives if the places have a derivative.
             places: positions of the lines' points, relative to the chassis.
             knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
         """

@@ -10,13 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from math import nan
-
-import numpy as np
 
 import validate.reference.car_data as data
 from validate.reference.effects.car import Car, Effect
-from validate.reference.jet import angle, slope_of, value_of
+from validate.reference.jet import angle, only_where, slope_of, value_of
 from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, plus, root, times
 
@@ -204,10 +201,7 @@ FARTHEST = 10**9
 def _beside(car: Car, h: Vector) -> Scalar:
     """x of the instant centre; NaN at infinity."""
     far = -dot(velocity_of_contact(car), car.up) / dot(_turning(car), cross(h, car.up))
-    away, limit = abs(value_of(far)), FARTHEST * car.drawn.data[data.RADIUS]
-    if isinstance(away, np.ndarray):
-        return far + np.where(away <= limit, 0.0, nan)
-    return far if away <= limit else far * nan
+    return only_where(far, abs(value_of(far)) <= FARTHEST * car.drawn.data[data.RADIUS])
 
 
 def _above(car: Car, h: Vector) -> Scalar:
