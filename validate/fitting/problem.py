@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -101,15 +101,11 @@ class Problem:
             allowed = "rows that the scene's car can reach"
             raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
         offs = [s.off for s in measured.independent]
-        swing = sum(change for _, change in swings(driven, measured, offs, first, TIGHT))
+        swing = swings(driven, measured, offs, first, TIGHT).sum(axis=0)
         off = [s.off + s.accuracy_or(accuracy) for s in measured.numbers]
         least = [[LEAST.get(s.meaning.unit.partition("/")[0], OTHERS)] for s in measured.numbers]
-        spread = np.maximum((off + np.asarray(swing)) / math.sqrt(3.0), least)[used]
+        spread = np.maximum((off + swing) / math.sqrt(3.0), least)[used]
         return cls(scene, measured, coordinates, bounds, prior, start, used, spread)
-
-    def among(self, free: Sequence[str]) -> Problem:
-        """The problem with fewer free coordinates; the solved car as drawn is reused."""
-        return replace(self, free=tuple(free))
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -123,10 +123,11 @@ def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspe
         most = len(seen) if size == 1 else CANDIDATES
         sets, here = _ranked(first, slopes, seen, size, problem.prior)[:most], list[Fit]()
         for chosen in sets:
-            names = [free[i] for i in chosen]
+            names = tuple(free[i] for i in chosen)
             told(f"{', '.join(names)} is fitted", len(fits) + len(here) + len(refused) + 1)
             try:
-                here.append(fit_hardpoints(problem.among(names)))
+                # The solved car as drawn is reused.
+                here.append(fit_hardpoints(replace(problem, free=names)))
             except PointcoordError as error:
                 refused.append(f"{', '.join(names)}: {error}")
         tried.append((len(sets), math.comb(len(seen), size)))

@@ -1,7 +1,4 @@
-"""The known formats, each a table in `formats/`: names of points, axes and unit of a program.
-
-A new format of a form that can already be read needs only a new table.
-"""
+"""The known formats, each a table in `formats/`: names of points, axes and unit of a program."""
 
 from __future__ import annotations
 
@@ -21,11 +18,11 @@ from validate.hardpoint_files.contents import Axes, Contents, plain
 from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
-READERS = {"lotus_report": lotus_report.read, "chrono_json": chrono_json.read}
-"""The function that reads each form of text, except tables; see `Format.read`."""
-TABLE = "table"
+READERS = {"lotus": lotus_report.read, "chrono": chrono_json.read}
+"""The function that reads each format, except tables; see `Format.read`."""
+TABLE = "csv"
 MJCF = "mjcf"
-"""The form of files that contain a whole mechanism, not hardpoints."""
+"""The format of files that contain a whole mechanism, not hardpoints."""
 
 # Number of characters at the beginning of a file in which its format is looked for.
 HEAD = 4000
@@ -36,7 +33,6 @@ class Format(BaseModel):
 
     Attributes:
         name: on the command line. words: its name in messages.
-        form: how the text is read.
         known_by: a pattern that the beginning of a file contains; the empty pattern fits every file.
         axes: axes by a pattern of point names that use them; the empty pattern fits every file.
         unit: unit of a file that does not give one.
@@ -53,7 +49,6 @@ class Format(BaseModel):
 
     name: str
     words: str
-    form: str
     known_by: str
     axes: dict[str, Annotated[Axes, BeforeValidator(Axes.of)]]
     unit: str
@@ -70,7 +65,7 @@ class Format(BaseModel):
         points = mechanism_file(kind).points
         shared = {ours: self.names[ours] for ours in points if ours in self.names}
         found = shared | self.suspensions.get(kind, {})
-        return {ours: (*found.get(ours, ()), ours) for ours in points} if self.form == TABLE else found
+        return {ours: (*found.get(ours, ()), ours) for ours in points} if self.name == TABLE else found
 
     def ours(self, name: str, known: Mapping[str, str]) -> tuple[str, tuple[str, str]] | None:
         """Our name of a point and its wheel, (side, axle); None if the name is not recognised.
@@ -95,11 +90,11 @@ class Format(BaseModel):
         Raises:
             FileError: the file does not have this format.
         """
-        if self.form == TABLE:
+        if self.name == TABLE:
             return table.read(text, source, self.titles, said, self.wheels)
         if said:
             raise FileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
-        return READERS[self.form](text, source)
+        return READERS[self.name](text, source)
 
 
 @lru_cache

@@ -55,7 +55,7 @@ def import_hardpoints(path: str | Path, **said: Any) -> Imported:
     """
     choices, source = Choices(**said), str(path)
     found, text = _opened(source, choices)
-    if found.form == MJCF:
+    if found.name == MJCF:
         return _imported(found, _whole_mechanism(source, choices))
     own = NO_NAMES if choices.names is None else read_names(choices.names)
     wheel = OneWheel(source, choices, found, found.read(text, source, own.table), own)
@@ -71,7 +71,7 @@ def names_of(path: str | Path, format: str | None = None, suspension: str | None
     """
     choices, source = Choices(format, suspension), str(path)
     found, text = _opened(source, choices)
-    if found.form == MJCF:
+    if found.name == MJCF:
         raise _takes_no(source, "names")
     try:
         contents = found.read(text, source, {})

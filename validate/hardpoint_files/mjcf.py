@@ -12,14 +12,15 @@ carries only one other body, and a body between two joints of the same body, are
 are the sites; a joint without a site gets a new point.
 
 Elements that do not change the kinematics (geoms, masses, forces, contacts, sensors, pictures, ranges of
-joints) are ignored. Equalities other than connect and weld, and mocap bodies, are refused.
+joints) are ignored, and soft equalities are taken as rigid. Equalities other than connect and weld, and mocap
+bodies, are refused.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import Any
@@ -71,12 +72,9 @@ class _HomePose:
 
     Attributes:
         to_scene: matrix that multiplies rows of the file's coordinates, (3, 3).
-        parents: the parent of each body; the world is its own parent.
-        sites, site_bodies: positions of the sites, (n, 3), m; the body of each site.
-        joints: the joints of each body to its parent, in order; without a joint a body is fixed to it.
-        kinds, anchors, axes: kinds of the joints, positions, (n, 3), m, and unit vectors of the axes, (n, 3).
+        sites, anchors: positions of the sites and of the joints, (n, 3), m.
+        axes: unit vectors of the axes of the joints, (n, 3).
         connects, welds: connects, which close loops; welds, which fix two bodies to each other.
-        actuated: names of actuators by names of the joints that they drive.
         texts: texts of `custom`, by name.
     """
 
@@ -101,11 +99,6 @@ class _HomePose:
             raise FileError(path, "", problem, f"at most {FARTHEST:g} m")
         for body in np.flatnonzero(model.body_mocapid >= 0).tolist():
             raise self._refuse("body", body, "is a mocap body", "bodies on joints")
-        self.parents: list[int] = model.body_parentid.tolist()
-        first, count = model.body_jntadr, model.body_jntnum
-        self.joints = [range(*ends) for ends in zip(first, first + count, strict=True)]
-        self.kinds = [KINDS[kind] for kind in model.jnt_type]
-        self.site_bodies: list[int] = model.site_bodyid.tolist()
         self.sites, self.anchors, self.axes = (
             places @ self.to_scene for places in (data.site_xpos, data.xanchor, data.xaxis)
         )
@@ -119,11 +112,6 @@ class _HomePose:
                 self.welds.append(self._equality(one))
             else:
                 raise self._refuse("equality", one, "is of a kind that is not supported", "connect or weld")
-        self.actuated: dict[str, str] = {
-            self.name("joint", joint): self.name("actuator", one)
-            for one, (joint, _) in enumerate(model.actuator_trnid)
-            if model.actuator_trntype[one] == self.mujoco.mjtTrn.mjTRN_JOINT
-        }
 
     def name(self, kind: str, number: int) -> str:
         """The name of an element, or its kind and number if it has none."""
@@ -139,6 +127,17 @@ class _HomePose:
         for one in np.flatnonzero(soft).tolist():
             yield f"solref of {short(self.name('equality', one))} is ignored: it is taken as rigid"
 
+    def joints(self, body: int) -> range:
+        """The joints of a body to its parent, in order; without a joint the body is fixed to it."""
+        first = int(self.model.body_jntadr[body])
+        return range(first, first + int(self.model.body_jntnum[body]))
+
+    def actuated(self) -> dict[str, str]:
+        """Names of actuators by names of the joints that they drive."""
+        model = self.model
+        own = np.flatnonzero(model.actuator_trntype == self.mujoco.mjtTrn.mjTRN_JOINT).tolist()
+        return {self.name("joint", model.actuator_trnid[i, 0]): self.name("actuator", i) for i in own}
+
     def _refuse(self, kind: str, number: int, problem: str, allowed: str) -> FileError:
         return FileError(self.path, f"{kind} {short(self.name(kind, number))}", problem, allowed)
 
@@ -147,7 +146,7 @@ class _HomePose:
         model, data, name = self.model, self.data, self.name("equality", one)
         ends = int(model.eq_obj1id[one]), int(model.eq_obj2id[one])
         if model.eq_objtype[one] == self.mujoco.mjtObj.mjOBJ_SITE:
-            first, second = (self.site_bodies[end] for end in ends)
+            first, second = (int(model.site_bodyid[end]) for end in ends)
             name = self.name("site", ends[0]) if name.startswith("equality_") else name
             return _Equality(name, (first, second), self.sites[[*ends]], ends)
         anchors = model.eq_data[one, :6].reshape(2, 3)
@@ -219,30 +218,20 @@ class _Builder:
         self.inputs: dict[str, dict[str, Any]] = {}
         self.first: dict[str, list[str]] = {}
         self.on_axes: set[str] = set()
-        self.bodies = self._merged()
-
-    def _merged(self) -> list[str]:
-        """Our name of each body in the model; bodies fixed to each other or welded share a name."""
-        pose, found = self.pose, list[str]([CHASSIS])
-        for body, joints in enumerate(pose.joints[1:], 1):
-            found.append(self._named(pose.name("body", body)) if joints else found[pose.parents[body]])
+        # Our name of each body in the model; bodies fixed to each other or welded share a name.
+        self.bodies = list[str]([CHASSIS])
+        for body, parent in enumerate(pose.model.body_parentid.tolist()[1:], 1):
+            is_free = len(pose.joints(body)) > 0
+            self.bodies.append(self._named(pose.name("body", body)) if is_free else self.bodies[parent])
         for weld in pose.welds:
-            kept, gone = sorted((found[body] for body in weld.bodies), key=lambda name: name != CHASSIS)
-            found = [kept if own == gone else own for own in found]
-        return found
-
-    def _named(self, wish: str) -> str:
-        """A new unique name of letters, digits and underscores."""
-        name, base, number = _word(wish), _word(wish), 2
-        while name in self.names:
-            name, number = f"{base}_{number}", number + 1
-        self.names.add(name)
-        return name
+            ends = (self.bodies[body] for body in weld.bodies)
+            kept, gone = sorted(ends, key=lambda name: name != CHASSIS)
+            self.bodies = [kept if own == gone else own for own in self.bodies]
 
     def drawing(self) -> Drawing:
         pose = self.pose
         closing = {site for connect in pose.connects for site in connect.sites}
-        for site, (body, at) in enumerate(zip(pose.site_bodies, pose.sites, strict=True)):
+        for site, (body, at) in enumerate(zip(pose.model.site_bodyid, pose.sites, strict=True)):
             if site not in closing:
                 name = pose.name("site", site)
                 self._made(name, at, {self.bodies[body]}, f"site {name}")
@@ -261,53 +250,50 @@ class _Builder:
         return self._tables()
 
     def _joints(self) -> Iterator[_Joint]:
-        """The joints of bodies that are not free; two joints of one body have a new body between them."""
-        pose = self.pose
-        for parent, chain in self._chains():
-            if self._is_free([joint for _, joint in chain]):
-                continue
-            base = self.bodies[parent]
-            for body, joint in chain:
-                name, at, axis = pose.name("joint", joint), pose.anchors[joint], pose.axes[joint]
-                is_last = joint == pose.joints[body][-1]
-                carried = self.bodies[body] if is_last else self._named(f"{pose.name('body', body)} {name}")
-                yield _Joint(name, pose.kinds[joint], carried, base, at, axis)
-                base = carried
+        """The joints of bodies that are not free.
 
-    def _chains(self) -> Iterator[tuple[int, list[tuple[int, int]]]]:
-        """For each body with sites or loops, the next such body above it, and the joints between the two,
-        each with its body.
-
-        A body without sites or loops, such as a spinning wheel, is left out.
+        Two joints of one body have a new body between them. A body without sites or loops that carries only
+        one body is between joints too; one that carries none, such as a spinning wheel, is left out.
         """
-        pose = self.pose
-        holding = {0, *pose.site_bodies}
-        holding |= {body for equality in (*pose.connects, *pose.welds) for body in equality.bodies}
-        needed = set(holding)
-        for body in reversed(range(1, len(pose.parents))):
-            needed |= {pose.parents[body]} if body in needed else set()
-        children = Counter(pose.parents[body] for body in needed if body)
-        # A body that carries only one other body is an intermediate body.
-        ends = {body for body in needed if body in holding or children[body] > 1}
-        for body, parent in enumerate(pose.parents):
+        pose, model = self.pose, self.pose.model
+        parents: list[int] = model.body_parentid.tolist()
+        equalities = (*pose.connects, *pose.welds)
+        ends = {0, *model.site_bodyid.tolist(), *(body for one in equalities for body in one.bodies)}
+        needed = set(ends)
+        for body in range(len(parents) - 1, 0, -1):
+            needed |= {parents[body]} if body in needed else set()
+        carried_by = Counter(parents[body] for body in needed - {0})
+        ends |= {body for body, count in carried_by.items() if count > 1}
+        for body, parent in enumerate(parents):
             if body not in needed:
                 self.facts.append(f"body {pose.name('body', body)} has no site or loop, and is left out")
-            elif body in ends:
-                chain = [(body, joint) for joint in pose.joints[body]]
-                while parent not in ends:
-                    chain = [*((parent, joint) for joint in pose.joints[parent]), *chain]
-                    parent = pose.parents[parent]
-                yield parent, chain
-
-    def _is_free(self, joints: Sequence[int]) -> bool:
-        """Whether joints leave a body all six degrees of freedom."""
-        kinds = {joint: self.pose.kinds[joint] for joint in joints}
-        if sorted(kinds.values()) != ["ball", "slide", "slide", "slide"]:
-            return [*kinds.values()] == ["free"]
-        axes = self.pose.axes[[joint for joint, kind in kinds.items() if kind == "slide"]]
-        return bool(abs(np.linalg.det(axes)) > NEAR)
+            if body not in ends:
+                continue
+            chain = [*pose.joints(body)]
+            while parent not in ends:
+                chain, parent = [*pose.joints(parent), *chain], parents[parent]
+            kinds = [KINDS[model.jnt_type[joint]] for joint in chain]
+            slides = [joint for joint, kind in zip(chain, kinds, strict=True) if kind == "slide"]
+            three = sorted(kinds) == ["ball", "slide", "slide", "slide"]
+            if kinds == ["free"] or (three and abs(np.linalg.det(pose.axes[slides])) > NEAR):
+                continue
+            base = self.bodies[parent]
+            for joint, kind in zip(chain, kinds, strict=True):
+                own, name = int(model.jnt_bodyid[joint]), pose.name("joint", joint)
+                is_last = joint == pose.joints(own)[-1]
+                carried = self.bodies[own] if is_last else self._named(f"{pose.name('body', own)} {name}")
+                yield _Joint(name, kind, carried, base, pose.anchors[joint], pose.axes[joint])
+                base = carried
 
     # Points.
+
+    def _named(self, wish: str) -> str:
+        """A new unique name of letters, digits and underscores."""
+        name, number = _word(wish), 2
+        while name in self.names:
+            name, number = f"{_word(wish)}_{number}", number + 1
+        self.names.add(name)
+        return name
 
     def _made(self, wish: str, at: Array, bodies: set[str], source: str) -> str:
         name = self._named(wish)
@@ -404,13 +390,13 @@ class _Builder:
                 bodies[body] = [*own, *self._beside(body, own)]
         roles = self._roles(bodies)
         wheel = {TRAVEL: {"height": roles["wheel_axis"][1]}} if "wheel_axis" in roles else {}
-        # Roles of several wheels are not read, but each wheel can be driven: a live axle is on no joint.
+        # Of several wheels no roles are read, but each wheel can be driven: a live axle is on no joint.
         for name, text in self.pose.texts.items():
             part, _, role = name.rpartition(".")
             centre = _word((text.split() or [""])[-1])
             if part and role == "wheel_axis" and centre in self.points:
                 wheel[f"{part}.{TRAVEL}"] = {"height": centre}
-        actuated = {joint: name for joint, name in self.pose.actuated.items() if joint in self.inputs}
+        actuated = {joint: name for joint, name in self.pose.actuated().items() if joint in self.inputs}
         driven = {name: self.inputs[joint] for joint, name in actuated.items()}
         others = {joint: one for joint, one in self.inputs.items() if joint not in {**actuated, **driven}}
         inputs = {_word(name): one for name, one in {**driven, **wheel, **others}.items()}

@@ -14,14 +14,12 @@ corner = 6                              # only if there is such a column
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from decimal import Decimal, DecimalException
 
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file, shipped
-from pointcoord.toml_text import read_file
+from pointcoord.toml_text import parsed, read_file
 from validate.hardpoint_files.contents import FilePoint, place_of, short
 from validate.plain_text import shown
 from validate.tables.errors import FileError
@@ -53,15 +51,11 @@ def read_names(path: str) -> NamesFile:
     """Read a file of names.
 
     Raises:
-        SceneError: the file cannot be read.
+        SceneError: the file cannot be read, or is not TOML.
         FileError: its content is wrong.
         UnknownName: a name of a point is unknown.
     """
-    text = read_file(path, "a file of names, TOML").decode("utf-8-sig", "replace")
-    try:
-        data = tomllib.loads(text, parse_float=Decimal)
-    except (ValueError, RecursionError, DecimalException) as error:
-        raise FileError(path, 0, f"is not TOML: {error}", FORM) from None
+    data = parsed(read_file(path, "a file of names, TOML"), path)
     table, given = data.get("table", {}), data.get("names", {})
     if data.keys() - {"table", "names"} or not isinstance(given, dict) or not isinstance(table, dict):
         raise FileError(path, 0, f"has {short(', '.join(data))}", FORM)

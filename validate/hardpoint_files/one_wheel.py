@@ -192,29 +192,25 @@ class OneWheel:
         found = {n: ScenePoint(n, at, self.chosen.ours[n].source) for n, at in turned.items()}
         found |= self.following(turned, 1 if side == "right" else -1)
         points = [found[name] for name in self.structure.points if name in found]
+        lines = some_of(self.contents.lines, NAMED)
         facts = [
             f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
             "here x rearward, y right, z up, in mm",
             *([] if axes.right_handed else ["these axes are left-handed: is one of them reversed?"]),
             *self.axle.notes,
             *([self.format.notes[self.kind]] if self.kind in self.format.notes else []),
-            *([f"lines without a point: {self.lines}"] if self.lines else []),
+            *([f"lines without a point: {lines}"] if lines else []),
         ]
         if self.choices.mirror:
             facts.append(f"the file has the {side} wheel; here it is mirrored to the other side of the car")
             side = SIDES[side == "left"]
-            points = [point.mirrored for point in points]
+            points = [replace(one, place=(one.place[0], -one.place[1] + 0, one.place[2])) for one in points]
         facts += [
             f"{name} is not in the file: {other} is used instead"
             for name, other in self.structure.stand_ins.items()
             if name not in found
         ]
         return Drawing(self.source, self.kind, side, tuple(points), tuple(facts), self.chosen.others)
-
-    @property
-    def lines(self) -> str:
-        """Lines with a name that are not points, in words."""
-        return some_of(self.contents.lines, NAMED)
 
     # The suspension type, and the identification of points.
 
@@ -376,7 +372,8 @@ class OneWheel:
         problem = f"lacks {', '.join(looked)} of a {self.kind}"
         if others := [point.told for point in self.chosen.others]:
             problem += f"; not recognised: {some_of(others, NAMED)}"
-        problem += f"; without three numbers: {self.lines}" if self.lines else ""
+        if lines := some_of(self.contents.lines, NAMED):
+            problem += f"; without three numbers: {lines}"
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
         if self.structure.role("wheel_axis")[0] in lost:
@@ -389,34 +386,30 @@ class OneWheel:
 
     @cached_property
     def axes(self) -> tuple[Axes, str]:
-        """The axes and their source; refused if the points contradict them.
+        """The axes and their source: the user, the names of points or the format.
 
-        No point shows the direction to the left, which determines the wheel's side.
+        Refused if the points contradict them, unless the user gives them. No point shows the direction to the
+        left, which determines the wheel's side.
         """
         if self.choices.axes is not None:
             return Axes.of(self.choices.axes), "--axes"
-        lie = " and ".join(words for words, *_ in self.ways())
-        if (said := self.said_axes()) is None:
-            allowed = f"--axes with {ALLOWED}{f', where {lie}' if lie else ''}"
-            raise self.refuse("does not give the directions of x, y and z", allowed)
-        axes, by = said
-        if any((axes.matrix @ along != DIRECTIONS[way]).any() for _, along, way in self.ways()):
-            problem = f"has axes {axes.words} by {by}, but {lie}"
-            raise self.refuse(
-                problem, f"--axes with the right directions, or --axes {axes.option} if they are right"
-            )
-        return axes, by
-
-    def said_axes(self) -> tuple[Axes, str] | None:
-        """The axes from names of points or from the format; a table with our names has our axes."""
         read = {ours: point.name for ours, point in self.chosen.ours.items() if ours not in self.own.points}
-        if self.format.form == TABLE and all(ours in theirs for ours, theirs in read.items()):
-            return OUR_AXES, "its points' names, which are ours"
+        found: list[tuple[Axes, str]] = []
+        if self.format.name == TABLE and all(ours in theirs for ours, theirs in read.items()):
+            found.append((OUR_AXES, "its points' names, which are ours"))
         for pattern, axes in self.format.axes.items():
             telling = [name for name in read.values() if re.fullmatch(pattern or ".*", plain(name))]
             if telling:
-                return axes, f"names such as {short(telling[0])}" if pattern else "its format"
-        return None
+                found.append((axes, f"names such as {short(telling[0])}" if pattern else "its format"))
+        lie = " and ".join(words for words, *_ in self.ways())
+        if not found:
+            allowed = f"--axes with {ALLOWED}{f', where {lie}' if lie else ''}"
+            raise self.refuse("does not give the directions of x, y and z", allowed)
+        axes, by = found[0]
+        if any((axes.matrix @ along != DIRECTIONS[way]).any() for _, along, way in self.ways()):
+            allowed = f"--axes with the right directions, or --axes {axes.option} if they are right"
+            raise self.refuse(f"has axes {axes.words} by {by}, but {lie}", allowed)
+        return axes, by
 
     def ways(self) -> Iterator[tuple[str, Array, str]]:
         """The directions in the file of pairs of points whose direction in the car is known from their roles.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import floor, isinf
 from pathlib import Path
 from typing import Any
@@ -40,12 +40,6 @@ class ScenePoint:
     name: str
     place: Place
     source: str
-
-    @property
-    def mirrored(self) -> ScenePoint:
-        """The point mirrored to the other side."""
-        x, y, z = self.place
-        return replace(self, place=(x, -y + 0, z))
 
     @property
     def coordinates(self) -> tuple[float, float, float]:

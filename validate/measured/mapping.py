@@ -25,8 +25,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, replace
 from textwrap import fill
 from typing import Annotated, Any, Literal
 
@@ -43,12 +42,15 @@ from validate.measured.meanings import (
     CONTACT,
     IGNORE,
     INPUT,
+    NUMBER,
     PLACES,
     TIME,
     TRAVEL,
     Meaning,
+    first_numbers,
     meanings_of,
     named,
+    poses_of,
 )
 from validate.measured.reading import Columns, read_columns
 from validate.plain_text import shown
@@ -157,10 +159,6 @@ class Series:
         gap, turn = ours - theirs, 2.0 * math.pi
         return gap - turn * np.rint(gap / turn) if self.meaning.unit == "rad" else gap
 
-    def taken(self, rows: Flags) -> Series:
-        """The series at some rows."""
-        return replace(self, values=self.values[rows], off=self.off[rows])
-
     def accuracy_or(self, accuracy: float) -> float:
         """The error of its numbers in addition to rounding, in our unit: from the map, or else `accuracy`."""
         return self.factor * (accuracy if self.accuracy is None else self.accuracy)
@@ -183,25 +181,16 @@ class Measured:
     source: str
     independent: tuple[Series, ...]
     numbers: tuple[Series, ...]
-    held: Mapping[str, float] = field(default_factory=dict)
-    rolling_radius: float = math.nan
-    rows: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
+    held: Mapping[str, float]
+    rolling_radius: float
+    rows: tuple[str, ...]
+    notes: tuple[str, ...]
 
     @property
     def instants(self) -> Array:
         """Values of the independent column, (N,); indices of rows if there are several."""
         one, *others = self.independent
         return np.arange(len(self.rows), dtype=float) if others else one.values
-
-    def taken(self, keep: Flags) -> Measured:
-        """The file with some of its rows."""
-        return replace(
-            self,
-            independent=tuple(s.taken(keep) for s in self.independent),
-            numbers=tuple(s.taken(keep) for s in self.numbers),
-            rows=tuple(row for row, kept in zip(self.rows, keep, strict=True) if kept),
-        )
 
 
 def read_results(file: str, map: str | None, scene: Scene) -> Measured:
@@ -231,40 +220,67 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     Raises:
         FileError: see `read_results`.
     """
-    map = _Map(where, MapSaid.of(content, where), columns, scene)
-    found = map.series()
-    over = map.independent(found)
-    numbers = tuple(s for s in found if s.meaning.kind == "number")
+    said, meanings = MapSaid.of(content, where), meanings_of(scene.mechanism.topology)
+    travels = [words for words, one in meanings.items() if one.kind == TRAVEL]
+    _require(where, "columns", said.columns, columns.names, f"column of {columns.source}")
+    _require(where, "held", said.held, (*scene.mechanism.topology.inputs, *travels), "input or travel")
+    meant_as = _meant_as(columns, said, scene, where)
+    out = [name for name, one in meant_as.items() if one is None]
+    ignored = f"; ignored: {listed(out)}" if out else ""
+    found = _series(columns, said, meant_as, where)
+    if not found:
+        known = first_numbers(meanings)
+        near = next((hint for name in columns.names if (hint := meant(name, known))), "")
+        problem = f"none of {listed(columns.names)} is recognised{near}"
+        allowed = f"names such as time, {', '.join(known[:NAMED])}, or a map of them (--map)"
+        raise FileError(columns.source, "names of the columns", problem, allowed)
+    times, heights, inputs, numbers = (
+        [s for s in found if s.meaning.kind == kind] for kind in (TIME, TRAVEL, INPUT, NUMBER)
+    )
+    over = times or [*heights, *inputs]
+    if len(heights) > 1 and not times:
+        problem = f"each of {listed(s.column for s in heights)} could give the pose of a row"
+        raise FileError(where, "columns", problem, f'is = "{IGNORE}" for all but one')
+    if not over:
+        problem = f"no column gives the pose of a row{ignored}"
+        allowed = f"a column of {poses_of(scene.mechanism.topology)} (in a map)"
+        raise FileError(columns.source, "names of the columns", problem, allowed)
     if not numbers:
-        allowed = f"columns such as {', '.join(map.numbers[:NAMED])}"
-        raise FileError(columns.source, "", f"has no numbers to compare{map.ignored}", allowed)
-    notes, over_names = list[str](), [s.column for s in over]
-    if out := [name for name, one in map.meant.items() if one is None]:
+        allowed = f"columns such as {', '.join(first_numbers(meanings)[:NAMED])}"
+        raise FileError(columns.source, "", f"has no numbers to compare{ignored}", allowed)
+    there: Flags = np.asarray(np.isfinite([s.values for s in over]).all(axis=0))
+    if not there.any():
+        raise FileError(columns.source, "", "no row gives its pose", "at least one row with its pose")
+    notes = list[str]()
+    if out:
         notes.append(f"ignored: {listed(out)} (name not recognised, without a unit, or as the map says)")
     if even := [s.column for s in over if s.set_exactly]:
-        names = listed(even, " and ")
-        notes.append(f"{names}: in even steps, taken as exact; if rounded, give its printed = STEP in a map")
-    if beside := [s.column for s in found if s.meaning.kind != "number" and s.column not in over_names]:
-        given = listed(over_names, " and ")
-        notes.append(f"{listed(beside)} not used: the pose of a row is given by {given}")
+        steps = "in even steps, taken as exact; if rounded, give its printed = STEP in a map"
+        notes.append(f"{listed(even, ' and ')}: {steps}")
+    if unused := [s.column for s in (*heights, *inputs) if times]:
+        notes.append(
+            f"{listed(unused)} not used: the pose of a row is given by {listed(s.column for s in over)}"
+        )
     for s in numbers:
         if lacking := int(np.isnan(s.values).sum()):
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
-    lost: Flags = np.asarray(np.isnan([s.values for s in over]).any(axis=0))
-    if lost.all():
-        raise FileError(columns.source, "", "no row gives its pose", "at least one row with its pose")
-    if lost.any():
-        first = columns.rows[int(np.argmax(lost))]
-        notes.append(f"{int(lost.sum())} rows do not give their pose and are left out, the first: {first}")
+    if not there.all():
+        first = columns.rows[int(np.argmin(there))]
+        lost = len(there) - int(there.sum())
+        notes.append(f"{lost} rows do not give their pose and are left out, the first: {first}")
+
+    def kept(s: Series) -> Series:
+        return replace(s, values=s.values[there], off=s.off[there] * (s.column not in even))
+
     return Measured(
         source=columns.source,
-        independent=tuple(replace(s, off=0.0 * s.off) if s.column in even else s for s in over),
-        numbers=numbers,
-        held=map.said.held,
-        rolling_radius=map.said.rolling_radius,
-        rows=columns.rows,
+        independent=tuple(map(kept, over)),
+        numbers=tuple(map(kept, numbers)),
+        held=said.held,
+        rolling_radius=said.rolling_radius,
+        rows=tuple(row for row, is_there in zip(columns.rows, there, strict=True) if is_there),
         notes=tuple(notes),
-    ).taken(~lost)
+    )
 
 
 def map_to_fill_in(file: str, scene: Scene) -> str:
@@ -275,17 +291,17 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
         MissingLibrary: Parquet needs pyarrow.
     """
     columns = read_columns(file)
-    map = _Map("", MapSaid(), columns, scene)
     lines = [
         f"# The columns of {columns.source}. Fill in what is missing, and remove the #.",
-        fill(f"is: {map.there_is}", 100, initial_indent="# ", subsequent_indent="#     "),
+        fill(f"is: {_there_is(scene)}", 100, initial_indent="# ", subsequent_indent="#     "),
         "# unit: mm, deg, rad, s and so on. Further keys: sign = -1, offset = 0.5, accuracy = 0.001,",
         "#     printed = 0.01 (the unit of the last digit; 0: exact as written)",
         f"# rolling_radius = 300.0    # mm, of travel.{CONTACT}",
         "",
         "[columns]",
     ]
-    for (name, one), unit in zip(map.meant.items(), columns.units, strict=True):
+    found = _meant_as(columns, MapSaid(), scene, "")
+    for (name, one), unit in zip(found.items(), columns.units, strict=True):
         entry = {"is": one[0].words if one else "", "unit": shown(unit)}
         lines.append(f"{'' if all(entry.values()) else '# '}{key_of(shown(name))} = {value_of(entry)}")
     return "\n".join(lines) + "\n"
@@ -296,149 +312,92 @@ def listed(names: Iterable[str], by: str = ", ") -> str:
     return by.join(shown(shown_key(name)) for name in names)
 
 
-@dataclass(frozen=True)
-class _Map:
-    """A map with the columns and the scene that it describes.
+def _require(where: str, place: str, names: Iterable[str], known: Sequence[str], what: str) -> None:
+    for name in names:
+        if name not in known:
+            problem = f"no {what} is called {shown(name)!r}{meant(name, known)}"
+            raise FileError(where, place, problem, ", ".join(known))
 
-    Attributes:
-        where: its name in messages.
+
+def _there_is(scene: Scene) -> str:
+    """The possible meanings of a column of a car, in words."""
+    topology = scene.mechanism.topology
+    centre = [f"{PLACES}.{topology.wheel_centre}.z"] if topology.wheel_centre else []
+    some = ", ".join((*centre, *first_numbers(meanings_of(topology))[:NAMED]))
+    return f"{poses_of(topology)}, QUANTITY.NAME[.AXIS] such as {some}, or {IGNORE}"
+
+
+def _meant_as(
+    columns: Columns, said: MapSaid, scene: Scene, where: str
+) -> dict[str, tuple[Meaning, int] | None]:
+    """The meaning and sign of each column; None for a column that is left out.
+
+    The sign is from the map, from a minus before the name, or from the convention.
+
+    Raises:
+        FileError: the map gives an unknown meaning.
     """
+    meanings, convention = meanings_of(scene.mechanism.topology), said.convention or scene.convention
 
-    where: str
-    said: MapSaid
-    columns: Columns
-    scene: Scene
-
-    def __post_init__(self) -> None:
-        self._require("columns", self.said.columns, self.columns.names, f"column of {self.columns.source}")
-        travels = (words for words, one in self.meanings.items() if one.kind == TRAVEL)
-        held = (*self.scene.mechanism.topology.inputs, *travels)
-        self._require("held", self.said.held, held, "input or travel")
-
-    def _require(self, place: str, names: Iterable[str], known: Sequence[str], what: str) -> None:
-        for name in names:
-            if name not in known:
-                problem = f"no {what} is called {shown(name)!r}{meant(name, known)}"
-                raise FileError(self.where, place, problem, ", ".join(known))
-
-    @cached_property
-    def meanings(self) -> dict[str, Meaning]:
-        """All possible meanings of a column, by their full names."""
-        return meanings_of(self.scene.mechanism.topology)
-
-    @property
-    def numbers(self) -> tuple[str, ...]:
-        """The full names of numbers that can be compared, numbers of the car first."""
-        numbers = [one for one in self.meanings.values() if one.kind == "number"]
-        return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
-
-    @property
-    def poses(self) -> str:
-        """The columns that can give the pose of a row, in words."""
-        topology = self.scene.mechanism.topology
-        inputs = [f"{INPUT}.{name}" for name in topology.inputs]
-        centre = f" such as {TRAVEL}.{topology.wheel_centre}" if topology.wheel_centre else ""
-        return ", ".join((TIME, *inputs, f"{TRAVEL}.POINT{centre}", f"{TRAVEL}.{CONTACT}"))
-
-    @property
-    def ignored(self) -> str:
-        """The columns without a meaning, for the end of a message."""
-        ignored = [name for name, one in self.meant.items() if one is None]
-        return f"; ignored: {listed(ignored)}" if ignored else ""
-
-    @property
-    def there_is(self) -> str:
-        """The possible meanings of a column, in words."""
-        centre = self.scene.mechanism.topology.wheel_centre
-        some = ", ".join((*([f"{PLACES}.{centre}.z"] if centre else ()), *self.numbers[:NAMED]))
-        return f"{self.poses}, QUANTITY.NAME[.AXIS] such as {some}, or {IGNORE}"
-
-    def _lookup(self, name: str) -> tuple[Meaning | None, int]:
+    def lookup(name: str) -> tuple[Meaning | None, int]:
         """The meaning and sign of a name; names other than our full names are read by the convention."""
-        found = named(name, self.meanings)
-        if found is None or found.kind != "number" or name in self.meanings:
-            return found, 1
-        meant, sign = meant_by(found.name, self.said.convention or self.scene.convention)
-        return (found if meant == found.name else named(meant, self.meanings)), sign
+        one = named(name, meanings)
+        if one is None or one.kind != NUMBER or name in meanings:
+            return one, 1
+        ours, sign = meant_by(one.name, convention)
+        return (one if ours == one.name else named(ours, meanings)), sign
 
-    @cached_property
-    def meant(self) -> dict[str, tuple[Meaning, int] | None]:
-        """The meaning and sign of each column; None for a column that is left out.
+    taken = [lookup(part.is_ or name)[0] for name, part in said.columns.items()]
+    found: dict[str, tuple[Meaning, int] | None] = {}
+    for name, unit in zip(columns.names, columns.units, strict=True):
+        part = said.columns.get(name, ColumnSaid())
+        one, sign = lookup(name.removeprefix("-") if part.is_ is None else part.is_)
+        if part.is_ is None:
+            sign = -1 if name.startswith("-") else sign
+        elif one is None and part.is_ != IGNORE:
+            known = (*meanings, IGNORE)
+            near = meant(part.is_, (*known, *(n.partition(".")[2] for n in known if "." in n)))
+            problem = f"nothing is called {shown(part.is_)!r}{near}"
+            raise FileError(where, f"columns.{name}.is", problem, _there_is(scene))
+        # Next to a map, a column that it does not name needs a unit and a meaning that no other column has.
+        left_out = said.columns and name not in said.columns and (not unit or one in taken)
+        found[name] = None if one is None or left_out else (one, part.sign or sign)
+    return found
 
-        The sign is from the map, from a minus before the name, or from the convention.
 
-        Raises:
-            FileError: the map gives an unknown meaning.
-        """
-        every = self.said.columns
-        taken = [self._lookup(part.is_ or name)[0] for name, part in every.items()]
-        found: dict[str, tuple[Meaning, int] | None] = {}
-        for name, file_unit in zip(self.columns.names, self.columns.units, strict=True):
-            part = every.get(name, ColumnSaid())
-            meaning, sign = self._lookup(name.removeprefix("-") if part.is_ is None else part.is_)
-            if part.is_ is None:
-                sign = -1 if name.startswith("-") else sign
-            elif meaning is None and part.is_ != IGNORE:
-                known = (*self.meanings, IGNORE)
-                near = meant(part.is_, (*known, *{n.partition(".")[2]: n for n in known if "." in n}))
-                problem = f"nothing is called {shown(part.is_)!r}{near}"
-                raise FileError(self.where, f"columns.{name}.is", problem, self.there_is)
-            if every and name not in every and (not file_unit or meaning in taken):
-                meaning = None
-            found[name] = None if meaning is None else (meaning, part.sign or sign)
-        return found
-
-    def series(self) -> list[Series]:
-        """All columns with a meaning, in our units."""
-        found: dict[str, Series] = {}
-        for at, (name, one) in enumerate(self.meant.items()):
-            if one is None:
-                continue
-            if (words := one[0].words) in found:
-                both = f"columns {shown(found[words].column)!r} and {shown(name)!r}"
-                raise FileError(self.where, "columns", f"{both} are both {words}", "one column for each")
-            found[words] = self._in_ours(at, name, *one)
-        if not found:
-            near = next((h for n in self.columns.names if (h := meant(n, self.numbers))), "")
-            problem = f"none of {listed(self.columns.names)} is recognised{near}"
-            allowed = f"names such as time, {', '.join(self.numbers[:NAMED])}, or a map of them (--map)"
-            raise FileError(self.columns.source, "names of the columns", problem, allowed)
-        return list(found.values())
-
-    def _in_ours(self, at: int, name: str, meaning: Meaning, sign: int) -> Series:
-        """A column in our unit."""
-        source, column = self.columns.source, f"column {shown(name)!r}"
-        if holds := self.columns.words.get(name):
+def _series(
+    columns: Columns, said: MapSaid, meant_as: Mapping[str, tuple[Meaning, int] | None], where: str
+) -> list[Series]:
+    """All columns with a meaning, in our units."""
+    found: dict[str, Series] = {}
+    for at, (name, one) in enumerate(meant_as.items()):
+        if one is None:
+            continue
+        meaning, sign = one
+        if (words := meaning.words) in found:
+            both = f"columns {shown(found[words].column)!r} and {shown(name)!r}"
+            raise FileError(where, "columns", f"{both} are both {words}", "one column for each")
+        column, part = f"column {shown(name)!r}", said.columns.get(name, ColumnSaid())
+        if holds := columns.words.get(name):
             allowed = f'columns of numbers, or is = "{IGNORE}" in a map'
-            raise FileError(source, column, f"contains {holds}", allowed)
-        part = self.said.columns.get(name, ColumnSaid())
-        unit = self.columns.units[at] if part.unit is None else part.unit
+            raise FileError(columns.source, column, f"contains {holds}", allowed)
+        unit = columns.units[at] if part.unit is None else part.unit
         factor = factor_of(unit, meaning.unit) if unit else None
         if factor is None:
             problem = "its unit is not given, neither after its name nor in a map"
-            problem = f"{shown(unit)!r} is not a unit of {meaning.words}" if unit else problem
-            wrong = (source, column) if part.unit is None else (self.where, f"columns.{name}.unit")
+            problem = f"{shown(unit)!r} is not a unit of {words}" if unit else problem
+            wrong = (columns.source, column) if part.unit is None else (where, f"columns.{name}.unit")
             raise FileError(*wrong, problem, allowed_units(meaning.unit))
-        theirs, steps = self.columns.values[at], self.columns.steps[at]
         with np.errstate(over="ignore"):
-            values = factor * (sign * theirs + part.offset)
+            values = factor * (sign * columns.values[at] + part.offset)
         farthest = FARTHEST ** max(1.0, meaning.per_second / 2.0)
         for row in np.flatnonzero(np.abs(values) > farthest)[:1].tolist():
-            problem = f"is {theirs[row]:.6g}, which is too large for {meaning.words} of a car"
+            problem = f"is {columns.values[at, row]:.6g}, which is too large for {words} of a car"
             allowed = f"at most {farthest:g} {meaning.unit}, or an empty cell or nan for no number"
-            raise FileError(source, f"{self.columns.rows[row]}, {column}", problem, allowed)
-        said = part.printed is not None
-        last = np.full(len(steps), part.printed) if said else steps
-        return Series(name, meaning, values, 0.5 * factor * last, factor, part.accuracy, said, unit)
-
-    def independent(self, found: Sequence[Series]) -> tuple[Series, ...]:
-        """The columns that give the pose of a row: time, or a travel and inputs."""
-        times, travels, inputs = ([s for s in found if s.meaning.kind == k] for k in (TIME, TRAVEL, INPUT))
-        if len(travels) > 1 and not times:
-            problem = f"each of {listed(s.column for s in travels)} could give the pose of a row"
-            raise FileError(self.where, "columns", problem, f'is = "{IGNORE}" for all but one')
-        if not (chosen := times or [*travels, *inputs]):
-            problem = f"no column gives the pose of a row{self.ignored}"
-            allowed = f"a column of {self.poses} (in a map)"
-            raise FileError(self.columns.source, "names of the columns", problem, allowed)
-        return tuple(chosen)
+            raise FileError(columns.source, f"{columns.rows[row]}, {column}", problem, allowed)
+        is_said = part.printed is not None
+        last = np.full(len(values), part.printed) if is_said else columns.steps[at]
+        found[words] = Series(
+            name, meaning, values, 0.5 * factor * last, factor, part.accuracy, is_said, unit
+        )
+    return [*found.values()]

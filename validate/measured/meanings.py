@@ -14,14 +14,13 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Literal
 
-from pointcoord.effects.car_number import Angle
 from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.linkage.topology import Topology
 from validate.formulations.asked_numbers import known_names, per_second
 
 AXES = "xyz"
 PLACES = next(q for q, of in QUANTITIES.items() if of.of == "point" and of.unit == "mm")
-TIME, INPUT, TRAVEL, IGNORE, CONTACT = "time", "input", "travel", "ignore", "contact"
+TIME, INPUT, TRAVEL, NUMBER, IGNORE, CONTACT = "time", "input", "travel", "number", "ignore", "contact"
 
 
 @dataclass(frozen=True)
@@ -61,11 +60,6 @@ class Meaning:
         return self.words if self.kind == TRAVEL else self.name
 
     @property
-    def of_a_pose(self) -> bool:
-        """Whether it depends only on positions: a coordinate, or an angle of a line."""
-        return self.quantity == PLACES or angle_of(self) is not None
-
-    @property
     def per_second(self) -> int:
         """The order of its time derivative."""
         return per_second(self.quantity) if self.quantity else 0
@@ -84,6 +78,19 @@ def meanings_of(topology: Topology) -> dict[str, Meaning]:
     return {one.words: one for one in every}
 
 
+def first_numbers(meanings: Mapping[str, Meaning]) -> list[str]:
+    """The full names of numbers that can be compared, numbers of the car first."""
+    numbers = (one for one in meanings.values() if one.kind == NUMBER)
+    return [one.words for one in sorted(numbers, key=lambda one: one.axis is not None)]
+
+
+def poses_of(topology: Topology) -> str:
+    """The columns that can give the pose of a row, in words."""
+    inputs = [f"{INPUT}.{name}" for name in topology.inputs]
+    centre = f" such as {TRAVEL}.{topology.wheel_centre}" if topology.wheel_centre else ""
+    return ", ".join((TIME, *inputs, f"{TRAVEL}.POINT{centre}", f"{TRAVEL}.{CONTACT}"))
+
+
 def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
     """The meaning with a full name, or with the last part of the name of an input or a number of the car.
 
@@ -95,13 +102,8 @@ def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
             return meanings[full]
     short = [one for one in meanings.values() if one.name == name and one.axis is None and one.kind != TRAVEL]
     # The force of a rod may have the name of a wheel angle; the angle is taken.
-    short = [one for one in short if angle_of(one) is not None] or short
+    number = number_called(name)
+    short = [one for one in short if number and one.quantity == number.quantity.name] or short
     if not short and name != (plain := re.sub(r"[\s-]+", "_", name.lower())):
         return named(plain, meanings)
     return short[0] if len(short) == 1 else None
-
-
-def angle_of(meaning: Meaning) -> Angle | None:
-    """The angle of a line that a number is; None for other numbers."""
-    angle = number_called(meaning.name)
-    return angle if isinstance(angle, Angle) and meaning.quantity == angle.quantity.name else None

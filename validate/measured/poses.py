@@ -7,7 +7,7 @@ reached from the drawing; beyond an extreme of the travel there is no pose.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -20,7 +20,6 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.numerics.infinitesimal import slope_of
-from pointcoord.numerics.rounding import EPS
 from pointcoord.poses import PoseSolver
 from pointcoord.scene.mechanism_part import MechanismPart
 from pointcoord.simulation import scene_mechanism
@@ -34,7 +33,7 @@ Numbers = dict[str, dict[str, Array]]
 
 # Largest range of an input to either side of the drawing: an angle, and a length relative to the car's size.
 # No suspension moves farther, and a mistyped row must not cause a long search.
-WIDEST = {"rad": 1.2, "mm": 0.5}
+FARTHEST = {"rad": 1.2, "mm": 0.5}
 
 
 @dataclass(frozen=True)
@@ -65,6 +64,7 @@ class Driven:
     Attributes:
         scene: the scene, asked for all points and for the effects that the file's columns need.
         columns: the input of each independent column, or the time.
+        travel: the input that is a travel; empty if there is none.
         own: if a travel drives the car: the same scene with its own inputs, with which its drawing closes.
         held: inputs that are fixed by the map, or by the scene at another value than drawn.
         notes: the inputs that the file does not give, in words.
@@ -72,6 +72,7 @@ class Driven:
 
     scene: Scene
     columns: tuple[str, ...]
+    travel: str = ""
     own: Scene | None = None
     held: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
@@ -93,19 +94,21 @@ class Driven:
         if len(travels) > 1:
             problem = f"{' and '.join(travels)} are several travels in the same rows"
             raise FileError(measured.source, "", problem, "one travel, given or held")
-        driven = _driven_by(scene, travels[0], given, measured) if travels else scene
-        car = cls(driven, columns, scene if travels else None, measured.held)
-        held, notes, topology = dict(measured.held), list[str](), driven.mechanism.topology
+        car = cls(scene, columns, held=measured.held)
+        for travel in travels:
+            car = replace(car, scene=_driven_by(scene, travel, given, measured), travel=travel, own=scene)
+        held, notes, topology = dict(measured.held), list[str](), car.scene.mechanism.topology
         for name in topology.required_inputs:
             if name in given:
                 continue
-            law, how = driven.functions[name].series(driven.instants, 0)[:, 0], "as drawn, "
-            value, by = car.drawn[name], ""
-            if (law == law[0]).all() and law[0] != value:
-                held[name] = value = float(law[0])
-                how, by = "at ", "as in the scene, because "
             unit = topology.input_units[name]
-            notes.append(f"{name} is held {how}{value:.6g} {unit}: {by}the file does not give it")
+            law = car.scene.functions[name].series(car.scene.instants, 0)[:, 0]
+            if (law == law[0]).all() and law[0] != car.drawn[name]:
+                held[name] = float(law[0])
+                how = f"at {law[0]:.6g} {unit}: as in the scene, because"
+            else:
+                how = f"as drawn, {car.drawn[name]:.6g} {unit}:"
+            notes.append(f"{name} is held {how} the file does not give it")
         return replace(car, held=held, notes=tuple(notes))
 
     @property
@@ -135,12 +138,6 @@ class Driven:
         """The solver of the poses with the scene's own inputs."""
         return self.solver if self.own is None else PoseSolver(self.own, scene_mechanism(self.own))
 
-    @property
-    def travel(self) -> str:
-        """The input that is a travel; empty if there is none."""
-        given = () if self.own is None else (*self.columns, *self.held)
-        return next((name for name in given if name.startswith(f"{TRAVEL}.")), "")
-
     @cached_property
     def drawn(self) -> Mapping[str, float]:
         """The inputs of the closed drawing: used for inputs that are not given; travels count from here."""
@@ -161,30 +158,27 @@ class Driven:
         return self.drawn[name] if name == self.travel else 0.0
 
     def inputs(self, values: Sequence[Array]) -> tuple[dict[str, Array], dict[int, str]]:
-        """Every input at values of the independent columns, each (N,), and why a row is refused."""
-        count, given = len(values[0]), {**self.held, **dict(zip(self.columns, values, strict=True))}
-        found = {name: np.full(count, value) for name, value in self.drawn.items()}
-        found |= {name: np.full(count, value) + self.level(name) for name, value in given.items()}
-        reasons: dict[int, str] = {}
-        for name, (low, high) in self.sensible.items():
-            value = found[name]
-            inside = (value >= low) & (value <= high)
-            why = f"is out of reach; searched from {low:.6g} to {high:.6g}"
-            reasons |= {int(i): f"{name} = {value[i]:.10g} {why}" for i in np.flatnonzero(~inside)}
-            found[name] = np.where(inside, value, self.drawn[name])
-        return found, reasons
+        """Every input at values of the independent columns, each (N,), and why a row is refused.
 
-    @cached_property
-    def sensible(self) -> dict[str, tuple[float, float]]:
-        """Plausible range of each input, within the values that are mathematically possible."""
-        mechanism, found = self.solver.mechanism, {}
-        for drive in mechanism.topology.drives:
-            name, wide = drive.input, _widest(mechanism, drive.input)
+        A row is refused, and has the drawn value, where an input is farther from the drawing than FARTHEST,
+        or outside the values that it can have at all.
+        """
+        given = {**self.held, **dict(zip(self.columns, values, strict=True))}
+        found = {name: np.full(len(values[0]), value) for name, value in self.drawn.items()}
+        found |= {name: np.full(len(values[0]), value) + self.level(name) for name, value in given.items()}
+        mechanism, reasons = self.solver.mechanism, dict[int, str]()
+        for name, drive in {drive.input: drive for drive in mechanism.topology.drives}.items():
+            drawn = self.drawn[name]
+            wide = FARTHEST[drive.unit] * (float(mechanism.unit) if drive.unit == "mm" else 1.0)
             beyond = drive.extremes(mechanism.drawing)
-            ends = [float(np.ravel(drive.input_value(end, mechanism.drawing))[0]) for end in beyond]
-            low, high = sorted(ends) if np.isfinite(ends).all() else (-np.inf, np.inf)
-            found[name] = max(low, self.drawn[name] - wide), min(high, self.drawn[name] + wide)
-        return found
+            ends = sorted(float(np.ravel(drive.input_value(end, mechanism.drawing))[0]) for end in beyond)
+            low, high = ends if np.isfinite(ends).all() else (-np.inf, np.inf)
+            low, high = max(low, drawn - wide), min(high, drawn + wide)
+            inside = (found[name] >= low) & (found[name] <= high)
+            why = f"is out of reach; searched from {low:.6g} to {high:.6g}"
+            reasons |= {i: f"{name} = {found[name][i]:.10g} {why}" for i in np.flatnonzero(~inside).tolist()}
+            found[name] = np.where(inside, found[name], drawn)
+        return found, reasons
 
     # Our numbers.
 
@@ -202,7 +196,18 @@ class Driven:
         """
         if self.over_time:
             return self._over_time(values[0], bounded)
-        return self.solved(*self.inputs(values), tolerance, bounded)
+        inputs, refused = self.inputs(values)
+        poses = self.solver.solve(inputs, tolerance)
+        failed = {row: f"is out of reach: {error}" for row, error in poses.failures.items()}
+        reached = poses.solved
+        reached[[*refused]] = False
+        computed = {quantity: channel for quantity, channel in poses.numbers.items() if channel.computed}
+        numbers = spread(computed, reached, reached)
+        found = Found(self, numbers, {}, reached, {**failed, **refused}, inputs)
+        if not (bounded and reached.any()):
+            return found
+        off = np.maximum(poses.bound, poses.carried_bound)
+        return replace(found, bounds=self.within(found, np.where(reached, off, 0.0)))
 
     def _over_time(self, times: Array, bounded: bool) -> Found:
         start, stop = self.scene.time.start, self.scene.time.stop
@@ -219,26 +224,6 @@ class Driven:
         bounds = spread({q: proven[q] for q in samples.numbers if q in proven}, reached, rows)
         return replace(found, numbers=spread(samples.numbers, reached, rows), bounds=bounds)
 
-    def solved(
-        self,
-        inputs: Mapping[str, Array],
-        reasons: Mapping[int, str],
-        tolerance: float | None = None,
-        bounded: bool = False,
-    ) -> Found:
-        """Our numbers at values of the inputs, pose by pose; a row with a reason gets no pose."""
-        poses = self.solver.solve(inputs, tolerance)
-        failed = {row: f"is out of reach: {error}" for row, error in poses.failures.items()}
-        reached = poses.solved
-        reached[[*reasons]] = False
-        computed = {quantity: channel for quantity, channel in poses.numbers.items() if channel.computed}
-        numbers = spread(computed, reached, reached)
-        found = Found(self, numbers, {}, reached, {**failed, **reasons}, inputs)
-        if not (bounded and reached.any()):
-            return found
-        off = np.maximum(poses.bound, poses.carried_bound)
-        return replace(found, bounds=self.within(found, np.where(reached, off, 0.0)))
-
     def slopes(self, found: Found, coordinates: Sequence[str]) -> Numbers:
         """Derivatives of our numbers by drawn coordinates, (coordinates, N, 3) or (coordinates, N), per mm.
 
@@ -248,31 +233,19 @@ class Driven:
         Raises:
             AssemblyError: see `slopes_of_poses`.
         """
-        rows, scene = found.reached, self.scene
-        inputs = {name: value[rows] for name, value in found.inputs.items()}
+        inputs = {name: value[found.reached] for name, value in found.inputs.items()}
         if self.over_time:
-            slopes = slopes_of_motion(scene, self.motion.solved, inputs[TIME], coordinates)
-        else:
-            given = (*self.columns, *self.held)
-            drawn = [name for name in self.drawn if name not in given]
-            slopes = slopes_of_poses(self.solver, inputs, coordinates, drawn, self._levels(coordinates))
-        # Index of each row among the rows with a pose.
-        at = np.maximum(np.cumsum(rows) - 1, 0)
-        return {
-            quantity: {
-                name: np.where(rows if array.ndim == 2 else rows[:, None], array[:, at], np.nan)
-                for name, array in part.items()
-            }
-            for quantity, part in slopes.numbers.items()
-        }
-
-    def _levels(self, coordinates: Sequence[str]) -> dict[str, Array]:
-        """Derivatives of a travel's level by drawn coordinates, (coordinates,), mm per mm."""
-        if not self.travel:
-            return {}
-        by_hardpoints = ByHardpoints(self.closing.readout, moves_of(self.closing.scene, coordinates))
-        closed = by_hardpoints.at(self.closing.closed.y[None], by_hardpoints.drawn_inputs, {})
-        return {self.travel: slope_of(self._risen(by_hardpoints.moved, closed.states[0]))[:, 0]}
+            slopes = slopes_of_motion(self.scene, self.motion.solved, inputs[TIME], coordinates)
+            return spread(slopes.numbers, found.reached, axis=1)
+        levels = {}
+        if self.travel:
+            # The level of a travel changes with the drawing, mm per mm.
+            moved = ByHardpoints(self.closing.readout, moves_of(self.closing.scene, coordinates))
+            closed = moved.at(self.closing.closed.y[None], moved.drawn_inputs, {})
+            levels[self.travel] = slope_of(self._risen(moved.moved, closed.states[0]))[:, 0]
+        drawn = [name for name in self.drawn if name not in (*self.columns, *self.held)]
+        slopes = slopes_of_poses(self.solver, inputs, coordinates, drawn, levels)
+        return spread(slopes.numbers, found.reached, axis=1)
 
     def within(self, found: Found, off: Array) -> Numbers:
         """Error bounds of numbers whose points are off by up to `off`, (N,), mm.
@@ -302,19 +275,17 @@ class Driven:
 def row_by_row(scene: Scene, inputs: Mapping[str, Array]) -> Scene:
     """A scene that passes through values of inputs, each (N,), one row per second."""
     content = scene.model_dump(exclude_none=True, exclude={"points"})
-    content["inputs"] = {name: _from_row_to_row(values) for name, values in inputs.items()}
     count = len(next(iter(inputs.values())))
+    times, laws = np.arange(float(count)), dict[str, Any]()
+    for name, values in inputs.items():
+        # A table needs four values.
+        if count < 4:
+            laws[name] = {"polynomial": np.polynomial.polynomial.polyfit(times, values, count - 1).tolist()}
+        else:
+            laws[name] = {"table": {"times": times.tolist(), "values": values.tolist()}}
+    content["inputs"] = laws
     content["time"] = {"start": 0.0, "stop": count - 1.0, "samples": count}
     return Scene.from_mapping(content, scene.title or "scene")
-
-
-def _from_row_to_row(values: Array) -> dict[str, Any]:
-    """A law with these values at whole seconds; linear if the values are, which is the fastest to solve."""
-    times, first = np.arange(float(len(values))), float(values[0])
-    step = float(values[-1] - values[0]) / max(len(values) - 1, 1)
-    if np.abs(values - (first + step * times)).max() <= 4.0 * EPS * np.abs(values).max():
-        return {"polynomial": [first, step]} if step else {"constant": first}
-    return {"table": {"times": times.tolist(), "values": values.tolist()}}
 
 
 def columns_of(
@@ -331,42 +302,43 @@ def columns_of(
 
 def swings(
     driven: Driven, measured: Measured, offs: Sequence[Array], ours: Array, tolerance: float | None = None
-) -> Iterator[tuple[Series, Array]]:
-    """Each rounded independent column, and the largest change of our numbers at either end of its rounding.
+) -> Array:
+    """Largest change of our numbers at either end of the rounding of each independent column.
 
     Args:
         offs: rounding error of each independent column, (N,).
         ours: our numbers, (columns, N).
+    Returns:
+        Changes, (independent columns, columns, N).
     """
-    values = [s.values for s in measured.independent]
+    values, changes = [s.values for s in measured.independent], np.zeros((len(offs), *ours.shape))
     for i, off in enumerate(offs):
-        if not off.any():
-            continue
-        change = np.zeros(ours.shape)
-        for end in (-off, off):
+        for end in (-off, off) if off.any() else ():
             there = driven.at([*values[:i], values[i] + end, *values[i + 1 :]], tolerance, bounded=False)
             moved = columns_of(measured.numbers, there.numbers, len(off))
-            gaps = (s.apart(*pair) for s, *pair in zip(measured.numbers, moved, ours, strict=True))
-            change = np.fmax(change, np.abs([*gaps]))
-        yield measured.independent[i], change
+            gaps = [s.apart(*pair) for s, *pair in zip(measured.numbers, moved, ours, strict=True)]
+            changes[i] = np.fmax(changes[i], np.abs(gaps))
+    return changes
 
 
-def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Flags, rows: Any = slice(None)) -> Numbers:
-    """Numbers of some rows as arrays of all rows, NaN elsewhere."""
-    found: Numbers = {}
-    for quantity, part in numbers.items():
-        found[quantity] = {}
-        for name, array in part.items():
-            some = np.asarray(array)[rows]
-            found[quantity][name] = np.full((len(reached), *some.shape[1:]), np.nan)
-            found[quantity][name][reached] = some
-    return found
+def spread(
+    numbers: Mapping[str, Mapping[str, Any]], reached: Flags, rows: Any = slice(None), axis: int = 0
+) -> Numbers:
+    """Numbers of some rows as arrays of all rows, NaN elsewhere.
 
+    Args:
+        reached: the rows that have numbers, (N,).
+        rows: which number each of them has; in order if not given.
+        axis: the axis of the rows.
+    """
 
-def _widest(mechanism: Mechanism, name: str) -> float:
-    """Largest range of an input to either side of the drawing, rad or mm."""
-    unit = mechanism.topology.input_units[name]
-    return WIDEST[unit] * (float(mechanism.unit) if unit == "mm" else 1.0)
+    def all_rows(array: Any) -> Array:
+        some = np.moveaxis(np.asarray(array), axis, 0)[rows]
+        found = np.full((len(reached), *some.shape[1:]), np.nan)
+        found[reached] = some
+        return np.moveaxis(found, 0, axis)
+
+    return {quantity: {name: all_rows(one) for name, one in of.items()} for quantity, of in numbers.items()}
 
 
 def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:

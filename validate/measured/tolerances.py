@@ -140,10 +140,9 @@ def held_of(
         ]
     ours, bounds = (columns_of(measured.numbers, of, count) for of in (here.numbers, here.bounds))
     stated = columns_of(measured.numbers, granted.bounds, count, absent=0.0)
-    swing, supposed = np.zeros(ours.shape), np.zeros(ours.shape)
-    for column, change in swings(driven, measured, reached_to, ours):
-        swing += change
-        supposed += column.rounded_unasked * change
+    changes = swings(driven, measured, reached_to, ours)
+    swing = changes.sum(axis=0)
+    supposed = changes[[s.rounded_unasked for s in measured.independent]].sum(axis=0)
     largest: dict[str, float] = {}
     for s in measured.numbers:
         size = float(np.nanmax(np.abs(s.values), initial=0.0))

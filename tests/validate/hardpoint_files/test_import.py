@@ -251,7 +251,7 @@ def test_axes_are_named_in_any_letters() -> None:
 @pytest.mark.parametrize("name", formats())
 def test_a_format_s_table_speaks_of_points_that_there_are(name: str) -> None:
     one = formats()[name]
-    assert one.form in (*READERS, TABLE, MJCF)
+    assert one.name in (*READERS, TABLE, MJCF)
     assert {*one.called.values(), *one.notes} <= one.suspensions.keys()
     points = {kind: {*mechanism_file(kind).points} for kind in one.suspensions}
     assert {*one.names} <= set().union(*points.values())

@@ -174,6 +174,16 @@ def test_each_file_has_its_verdict_and_what_cannot_be_compared_is_said() -> None
         assert all(any(part in fault for part in wanted) for fault in outcome.faults), line
 
 
+@pytest.mark.parametrize("racks", [(0.0,), (0.0, 4.0), (0.0, 4.0, 11.0)])
+def test_few_rows_in_full_digits_and_uneven_steps_can_be_compared(racks: tuple[float, ...]) -> None:
+    drawn = standing(WISHBONE).inputs["arm_angle"]
+    poses = solve_poses(WISHBONE, {"arm_angle": np.full(len(racks), drawn), "rack": np.array(racks)})
+    x, y, _ = (poses.position["wheel_centre"] - poses.position["wheel_axis_inner"]).T
+    toes = -np.degrees(np.arctan2(x, y))
+    rows = (f"{rack:.0f},{toe:.16f}" for rack, toe in zip(racks, toes, strict=True))
+    assert compared("\n".join(["rack [mm],toe [deg]", *rows]), {}, WISHBONE).outcome.agreed
+
+
 @pytest.mark.parametrize("command", ["validate", "fit"])
 def test_a_map_that_is_not_there_is_written_to_be_filled_in(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
