@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from importlib import import_module
 from typing import NoReturn
 
 from pointcoord.wording import meant, shown
 from validate.commands.pages import filled, summary
+from validate.commands.usage import require_files
 from validate.errors import NotFinished, UsageError
 from validate.exit_status import HELP, ExitStatus, of_interruption
 from validate.extras import needing
@@ -99,6 +99,7 @@ def _run(words: list[str], console: Console) -> ExitStatus:
         return ExitStatus.AGREE
     options.command = ("pointcoord", *words)
     with needing(words[0]):
+        require_files(options, console)
         return ExitStatus(options.run(options, console))
 
 
@@ -148,13 +149,8 @@ def _parsed(words: Sequence[str]) -> argparse.Namespace:
             problem = f"no command is called {shown(name)}{_scene_instead(name) or meant(name, COMMANDS)}"
         raise UsageError(f"{problem}; there are: {', '.join(COMMANDS)}; see pointcoord --help")
     one = parser(name)
-    try:
-        return one.parse_args(words[1:])
-    except UsageError:
-        # For options between names argparse needs its second method, which does not support subcommands.
-        with suppress(UsageError, TypeError):
-            return one.parse_intermixed_args(words[1:])
-        raise
+    # The second method allows options between names, and no subcommands.
+    return one.parse_args(words[1:]) if name == "study" else one.parse_intermixed_args(words[1:])
 
 
 def _scene_instead(name: str) -> str:
@@ -174,7 +170,3 @@ def parser(name: str) -> Parser:
     one = Parser(prog=f"pointcoord {name}")
     import_module(f"validate.commands.{COMMANDS[name]}").COMMANDS[name].declare(one, name)
     return one
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -17,17 +17,13 @@ from validate.comparison.examined import Examined
 from validate.errors import UsageError
 from validate.extras import needed
 from validate.output.console import Console
-from validate.output.document import Ending, Journal, at_the_end
+from validate.output.document import Journal
 from validate.output.report import share_of_all
 from validate.plain_text import shown
 
 # The modules of the HTML page are imported only where a page is made: most runs make none.
 if TYPE_CHECKING:
     from validate.html.run import Drawings, Run
-
-
-RESULTS = ("--json", "--junit", "--summary", "--save-baseline")
-"""The options that name result files of a run of comparisons."""
 
 
 @dataclass(frozen=True)
@@ -88,18 +84,16 @@ class Page:
 
 @dataclass(frozen=True)
 class Comparing:
-    """A run of comparisons in progress; `ending.status` is its exit status."""
+    """A run of comparisons in progress; `journal.status` is its exit status."""
 
     record: Record
     journal: Journal
     page: Page | None
-    ending: Ending
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
-        """Add the results of a scene, and write all results so far."""
+        """Add the results of a scene, which the page draws if it is given, and write all results so far."""
         self.record.add(examined, since, scene)
-        # With --data no motion of the scene is solved.
-        if self.page is not None and examined.name not in self.record.files:
+        if self.page is not None:
             self.page.drawings.add(examined, scene)
         self.journal.keep()
 
@@ -115,28 +109,24 @@ def comparing(
     """
     page = Page.of(options, len(record.names))
     record.kept = None if options.save_baseline is None else {}
-
-    def what() -> str:
-        return share_of_all(record.examined, record.names, noun)
-
+    what = partial(share_of_all, record.examined, record.names, noun)
     journal = Journal.of(options, console, "validate", record.data, what)
-
     mute, brief = console.mute, page is not None and page.with_more is not None
     console.mute = mute or brief
-    with journal.closing() as ending, at_the_end(partial(_leave_files, options, record, console)):
-        yield Comparing(record, journal, page, ending)
-        ending.status = record.status
+    with journal.closing(), journal.closing(partial(_leave_files, options, record, console, journal)):
+        yield Comparing(record, journal, page)
+        journal.status = record.status
         if page is not None:
             from validate.html.run import Run
 
             made = page.write(Run(journal.head, record, page.drawings.kept), console)
-            ending.status = made.status
+            journal.status = made.status
             console.mute = mute
             if brief:
                 console.say(f"{made.sentence}\n{page.place}")
 
 
-def _leave_files(options: argparse.Namespace, record: Record, console: Console, ending: Ending) -> None:
+def _leave_files(options: argparse.Namespace, record: Record, console: Console, journal: Journal) -> None:
     """Write JUnit, summary and baseline if any scene was examined; the baseline only after a whole run.
 
     Raises:
@@ -159,5 +149,5 @@ def _leave_files(options: argparse.Namespace, record: Record, console: Console, 
     if options.summary is not None:
         from validate.ci.summary import summary
 
-        status = record.status if ending.complete else ending.status
+        status = record.status if journal.complete else journal.status
         console.put(options.summary, summary(record, status), what)

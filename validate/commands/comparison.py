@@ -14,16 +14,9 @@ from pointcoord.toml_text import parsed, read_file
 from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
 from validate.ci.record import Record, ends_the_run
-from validate.commands.comparing import RESULTS, comparing
+from validate.commands.comparing import comparing
 from validate.commands.pages import Command
-from validate.commands.usage import (
-    STANDARD_INPUT,
-    given,
-    load_scene,
-    name_of,
-    require_input_once,
-    require_results,
-)
+from validate.commands.usage import given, load_scene, name_of
 from validate.comparison.examined import Examined, examine
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -98,12 +91,8 @@ def require_sense(options: argparse.Namespace) -> str:
 
 def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
     names, pairs = _names(options), _pairs(options, console)
-    require_input_once(names)
     if options.save_baseline == "-":
         raise UsageError("--save-baseline - is not a file; a baseline is binary: give the path of a file")
-    # A new baseline may replace the one that the run is compared with.
-    kept = {None, options.save_baseline} if options.baseline == options.save_baseline else {None}
-    require_results(options, console, RESULTS, [*names, *({options.baseline} - kept)])
     for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
         formulation(name)  # a wrong name is reported before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
@@ -138,7 +127,7 @@ def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus
         if not own and not record.not_run and not options.scenes and options.scenes_dir is None:
             record.paper = compare_with_paper()
         _say_at_the_end(record, options.verbose, console)
-    return compared.ending.status
+    return compared.journal.status
 
 
 def explained(scene: Scene, examined: Examined) -> Examined:
@@ -171,9 +160,8 @@ def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
 def _names(options: argparse.Namespace) -> list[str]:
     """The named scenes, then the scenes of --scenes-dir; all built-in scenes if neither is given."""
     folder = [] if options.scenes_dir is None else _scenes_below(options.scenes_dir)
-    named = [*options.scenes, *folder] or list(DEFAULT_SCENES)
-    # A repeated scene is compared once. Repeated standard input stays in the list, and is refused later.
-    return [name for i, name in enumerate(named) if name == STANDARD_INPUT or name not in named[:i]]
+    # A repeated scene is compared once.
+    return list(dict.fromkeys((*options.scenes, *folder))) or list(DEFAULT_SCENES)
 
 
 def _scenes_below(folder: str) -> list[str]:

@@ -17,8 +17,6 @@ from validate.commands.usage import (
     load_scene,
     name_of,
     named_scene,
-    require_input_once,
-    require_results,
 )
 from validate.cost.report import Report
 from validate.cost.table import frame, measured_here
@@ -36,16 +34,11 @@ if TYPE_CHECKING:
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Measure, keep the rows, and report; or report the rows of a file."""
-    require_input_once(options.scenes)
     if options.rows == STANDARD_INPUT or not options.rows.strip():
         raise UsageError(f"--rows {options.rows!r} names no file; allowed: the path of a file")
     if options.from_rows and (more := given(options, "scenes", "--ways", "--quick")):
         what = "SCENE" if more[0] == "scenes" else more[0]
         raise UsageError(f"--from-rows shows all rows of {options.rows}; leave {what} out")
-    if options.from_rows:
-        require_results(options, console, ("--json", "--csv"), (options.rows,))
-    else:
-        require_results(options, console, ("--json", "--csv", "--rows"), options.scenes)
     if options.report is not None:
         needed("--report", "matplotlib")
     for package in ("pandas", "pyarrow"):
@@ -61,7 +54,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return counted_as(len(report.rows), "row") if report.rows else ""
 
     journal = Journal.of(options, console, "cost", lambda: report.data(), rows_so_far)
-    with journal.closing() as ending:
+    with journal.closing():
         if study is not None:
             from validate.cost.study import measure
 
@@ -70,8 +63,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
                     report = replace(report, rows=(*report.rows, *rows))
                     write_content(options.rows, frame(report.rows).to_parquet())
                     console.written[options.rows] = counted_as(len(report.rows), "row")
-        ending.status = _print_and_write(report, page, options, console)
-    return ending.status
+        journal.status = _print_and_write(report, page, options, console)
+    return journal.status
 
 
 def _study(options: argparse.Namespace, command: str) -> Study:

@@ -8,15 +8,8 @@ import os
 from validate.ci.record import Record
 from validate.ci.verdict import next_step
 from validate.closed_drawing import closing_data, closing_of, warnings_of
-from validate.commands.comparing import RESULTS, comparing
-from validate.commands.usage import (
-    STANDARD_INPUT,
-    load_scene,
-    name_of,
-    named_scene,
-    require_results,
-    to_be_filled_in,
-)
+from validate.commands.comparing import comparing
+from validate.commands.usage import load_scene, name_of, named_scene, to_be_filled_in
 from validate.comparison.examined import Examined
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -33,11 +26,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if len(options.scenes) != 1:
         given = f"{len(options.scenes)} scenes are" if options.scenes else "no scene is"
         raise UsageError(f"{given} given with --data; give the one scene that the file is about")
-    require_files(options)
     if options.accuracy is not None and not 0.0 <= options.accuracy <= FARTHEST:
         raise UsageError(f"--accuracy is {options.accuracy}; allowed: a number from 0 to {FARTHEST:g}")
     (given,) = options.scenes
-    require_results(options, console, RESULTS, (given, options.data, options.map))
     if options.map is not None and not os.path.exists(options.map):
         return to_be_filled_in(options.map, map_to_fill_in(options.data, load_scene(given)), console)
     name = name_of(given)
@@ -56,19 +47,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             defaults=scene.mechanism.defaults_taken,
         )
         record.files[name] = found
-        compared.add(examined, scene=scene)
+        compared.add(examined)
         console.warn(*examined.warnings, of=name)
         console.show(report.file_parts(found))
         if step := next_step(record):
             console.say(step)
-    return compared.ending.status
-
-
-def require_files(options: argparse.Namespace) -> None:
-    """Refuse standard input as a file of results, or as the map of one.
-
-    Raises:
-        UsageError: --data or --map is `-`.
-    """
-    if STANDARD_INPUT in (options.data, options.map):
-        raise UsageError("--data and --map read files; standard input (-) can be the scene only")
+    return compared.journal.status

@@ -6,13 +6,11 @@ import argparse
 
 from validate.closed_drawing import closed_drawing, closed_mechanism, warnings_of
 from validate.commands.pages import Command
-from validate.commands.usage import named_scene, require_results
+from validate.commands.usage import named_scene
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
 from validate.plain_text import shown, typed
-
-ENDINGS = (".xml", ".mjcf")
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -21,7 +19,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     Returns:
         NO_VERDICT if the drawing cannot be closed, since the model then has no home pose.
     """
-    target = require_results(options, console, ("--mjcf",), (options.scene,), ENDINGS, says=False)
     needed("export", "mujoco")
     from validate.peers.mjcf import mjcf_of
 
@@ -31,8 +28,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.complain(f"{name}: {drawing.words}; nothing is written")
         return ExitStatus.NO_VERDICT
     console.warn(*warnings_of(scene, drawing.closing), of=name)
-    console.put(target, mjcf_of(closed_mechanism(drawing), scene.title or name), "the model")
-    console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={typed(target)}")
+    console.put(options.mjcf, mjcf_of(closed_mechanism(drawing), scene.title or name), "the model")
+    console.say(
+        f"{shown(options.mjcf)} is written; try: python -m mujoco.viewer --mjcf={typed(options.mjcf)}"
+    )
     return ExitStatus.AGREE
 
 

@@ -6,14 +6,8 @@ import argparse
 import os
 import shlex
 
-from validate.commands.data import require_files
 from validate.commands.pages import Command
-from validate.commands.usage import (
-    TOML,
-    named_scene,
-    require_results,
-    to_be_filled_in,
-)
+from validate.commands.usage import named_scene, to_be_filled_in
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.fitting.fit import fit_hardpoints
@@ -33,14 +27,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         NO_VERDICT if least squares did not converge; with --suspects, if nothing explains the file and some
         fits did not converge.
     """
-    require_files(options)
     if options.suspects and options.output is not None:
         raise UsageError(
             f"-o {shown(options.output)}: --suspects corrects nothing; allowed: -o with --free, which fits "
             "the coordinates that it names"
         )
-    read = options.scene, options.data, options.map
-    require_results(options, console, ("-o", "--json", "--csv"), read, TOML)
     corrected, again = "", ["--data", options.data]
     if options.map is not None:
         again += ["--map", options.map]

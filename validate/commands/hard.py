@@ -6,7 +6,7 @@ import argparse
 
 from validate.commands.comparing import Page
 from validate.commands.pages import Command
-from validate.commands.usage import given, require_results
+from validate.commands.usage import given
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.registry import missing
@@ -25,13 +25,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     cases = catalogue.chosen(options.cases)
     if options.list and options.report is not None:
         raise UsageError("--report needs solved cases, and --list solves none; leave one of them out")
-    require_results(options, console, ("--json",))
     if options.list:
         console.say(report.listing(cases))
-        listed = Journal.of(
-            options, console, "hard-list", lambda: report.listing_data(cases), lambda: "the list"
-        )
-        listed.write(ExitStatus.AGREE)
+        found = report.listing_data(cases)
+        Journal.of(options, console, "hard-list", lambda: found, lambda: "the list").write(ExitStatus.AGREE)
         return ExitStatus.AGREE
     page = Page.of(options)
     lacking = missing(name for case in cases for name in case.expected)
@@ -44,30 +41,25 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         lambda: share_of_all(results, cases, "case"),
     )
 
-    def tell(result: report.Examined) -> None:
-        if result.case.group not in {one.case.group for one in results}:
-            console.say(f"== {result.case.group}\n")
-        results.append(result)
-        console.show((*report.case_parts(result, bool(options.cases)), ""))
-        journal.keep()
-        working(f"cases, {result.case.name} done", len(results))
-
-    with (
-        journal.closing() as ending,
-        console.progress("cases", total=len(cases), lines=False) as working,
-    ):
+    with journal.closing(), console.progress("cases", total=len(cases), lines=False) as working:
         for case in cases:
-            tell(report.examine(case))
+            result = report.examine(case)
+            if case.group not in {one.case.group for one in results}:
+                console.say(f"== {case.group}\n")
+            results.append(result)
+            console.show((*report.case_parts(result, bool(options.cases)), ""))
+            journal.keep()
+            working(f"cases, {case.name} done", len(results))
         console.show(report.summary_parts(results))
         if not report.as_expected(results):
-            ending.status = ExitStatus.DISAGREE
+            journal.status = ExitStatus.DISAGREE
         if page is not None:
             from validate.html.hard_cases import HardCases
             from validate.html.run import Run
 
-            document = journal.head.document(report.results_data(results), ending.status, complete=True)
-            ending.status = page.write(Run(journal.head, hard=HardCases(document)), console).status
-    return ending.status
+            document = journal.head.document(report.results_data(results), journal.status, complete=True)
+            journal.status = page.write(Run(journal.head, hard=HardCases(document)), console).status
+    return journal.status
 
 
 def count(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -76,7 +68,6 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     if others := given(options, "--list", "--report"):
         raise UsageError(f"{others[0]} goes with cases only; leave it out with --assemblies")
-    require_results(options, console, ("--json",))
     found: list[scenes.Count] = []
     names = options.cases or scenes.SHIPPED
     journal = Journal.of(
@@ -84,14 +75,14 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
         lambda: {"counts": found},
         lambda: counted_as(len(found), "count") if found else "",
     )
-    with journal.closing() as ending, console.progress("scenes", total=len(names), lines=False) as working:
+    with journal.closing(), console.progress("scenes", total=len(names), lines=False) as working:
         for done, name in enumerate(names, start=1):
             found.extend(scenes.counts(name))
             working(f"scenes, {name} done", done)
         console.show(scenes.parts(found))
         if not scenes.complete(found):
-            ending.status = ExitStatus.NO_VERDICT
-    return ending.status
+            journal.status = ExitStatus.NO_VERDICT
+    return journal.status
 
 
 COMMANDS = {"hard": Command(run)}

@@ -9,7 +9,7 @@ from dataclasses import fields
 
 from validate.closed_drawing import warnings_of
 from validate.commands.pages import Command
-from validate.commands.usage import TOML, require_results, to_be_filled_in
+from validate.commands.usage import to_be_filled_in
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.contents import DIRECTIONS
 from validate.hardpoint_files.format import formats
@@ -27,16 +27,15 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         DISAGREE if a static angle printed in the file differs from the angle of its points. The scene is
         written in this case too.
     """
-    target = require_results(options, console, ("-o",), (options.file,), TOML, says=False)
     if options.names is not None and not os.path.exists(options.names):
         text = names_of(options.file, options.format, options.suspension)
         return to_be_filled_in(options.names, text, console)
     choices = {one.name: getattr(options, one.name) for one in fields(Choices)}
     found = import_hardpoints(options.file, **choices)
     name = shown(options.file)
-    console.put(target, found.text, "the scene")
+    console.put(options.output, found.text, "the scene")
     console.say("\n".join(_report(name, found)))
-    console.say(f"{shown(target)} is written; try: pointcoord validate {typed(target)}")
+    console.say(f"{shown(options.output)} is written; try: pointcoord validate {typed(options.output)}")
     console.warn(*warnings_of(found.scene, found.stands.closing), of=name)
     if found.drawing.others:
         others = some_of([shown(point.source) for point in found.drawing.others], NAMED)

@@ -6,14 +6,18 @@ import argparse
 import math
 import re
 from argparse import ArgumentParser
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from string import Template
 from typing import Any
 
 from validate.exit_status import HELP, ExitStatus
+from validate.extras import needed
 from validate.output.console import Console
+from validate.output.files import require_known_ending
 from validate.plain_text import shown
 
 PAGES = Path(__file__).with_name("help")
@@ -27,8 +31,8 @@ def summary(name: str) -> str:
 def filled(name: str, words: Mapping[str, object]) -> str:
     """A page with each `$name` replaced by a word or a part of `shared.txt`, which may have further ones."""
     text, found = _read(name), {**parts("shared"), **words}
-    while re.search(r"\$\w", text):
-        text = re.sub(r"\$(\w+)", lambda one: str(found[one[1]]), text)
+    while "$" in text:
+        text = Template(text).substitute(found)
     return text
 
 
@@ -61,6 +65,19 @@ def positive(word: str) -> float:
     raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: a positive, finite number")
 
 
+def result_file(word: str, endings: Sequence[str]) -> str:
+    """Read the name of a result, - for standard output; its ending selects the format.
+
+    Raises:
+        UsageError: the ending is unknown. MissingLibrary: Parquet needs pyarrow.
+    """
+    if word.strip() and word != "-":
+        require_known_ending(word, endings)
+        if word.endswith(".parquet"):
+            needed(".parquet", "pyarrow.parquet")
+    return word
+
+
 TYPES: Mapping[str, Callable[[str], Any]] = {
     "N": whole(1),
     "K": whole(0),
@@ -76,8 +93,9 @@ class Command:
 
     An entry of an option begins at the start of a line: its names and the placeholder of its value (see
     `TYPES`), then two blanks and the help text. `NAME ...` may be given again, `NAME = 1` has a default, and
-    `[NAME ...]` takes any number of values. A positional argument is `name=WORD`, an optional one
-    `name=[WORD]`, and any number of them `name=[WORD ...]`.
+    `[NAME ...]` takes any number of values. The placeholder of a result has the endings that its file may
+    have: `FILE.csv|.md`. A positional argument is `name=WORD`, an optional one `name=[WORD]`, and any number
+    of them `name=[WORD ...]`.
 
     Attributes:
         run: the function that runs the command.
@@ -121,7 +139,10 @@ def _argument(entry: str) -> tuple[list[str], dict[str, Any]]:
     value = " ".join(word for word in head.split() if word not in names)
     if not value:
         return names, about | {"action": "store_true"}
-    about |= {"type": TYPES.get(value), "default": default or None, "metavar": value.strip("[].").strip()}
+    known = TYPES.get(value)
+    if names[-1] in ("--output", "--mjcf"):
+        known = partial(result_file, endings=value[value.index(".") :].split("|"))
+    about |= {"type": known, "default": default or None, "metavar": value.strip("[].").strip()}
     if value.startswith("["):
         about |= {"nargs": "+", "default": []}
     elif value.endswith("..."):

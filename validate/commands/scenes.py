@@ -22,7 +22,6 @@ from validate.output.console import Console
 from validate.output.picture import svg
 from validate.plain_text import gathered, shown
 
-PICTURES = (".svg",)
 # Names of the quantities by order of time derivative: positions, velocities and so on.
 STATES = tuple(
     f"{effect.quantities[0].words}s".replace("ys", "ies")
@@ -41,7 +40,7 @@ def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw a scene's hardpoints."""
-    target = place_of_picture(options, PICTURES, console)
+    target = place_of_picture(options, console)
     with named_scene(options.scene) as (scene, name):
         drawing = closed_drawing(scene)
     console.warn(*warnings_of(scene, drawing.closing), of=name)

@@ -1,7 +1,8 @@
 """The JSON Schema of every document that the program writes.
 
-`schema.json` describes the documents. The results in them describe themselves: their schemas are derived from
-their classes.
+`schema.json` describes the documents. Its objects have all keys of their `properties` and no others, unless
+`required` or `additionalProperties` say otherwise. The results in them describe themselves: their schemas are
+derived from their classes.
 """
 
 from __future__ import annotations
@@ -56,6 +57,18 @@ def schema_text() -> str:
     text = Path(__file__).with_name("schema.json").read_text(encoding="utf-8")
     every: list[Any] = [(one, "serialization", TypeAdapter(one)) for one in RESULTS]
     _, found = TypeAdapter.json_schemas(every, schema_generator=Generator)
-    schema = json.loads(text)
+    schema = _closed(json.loads(text))
     schema["$defs"] |= found["$defs"]
     return json.dumps(schema, indent=1) + "\n"
+
+
+def _closed(schema: Any) -> Any:
+    """A part of `schema.json`, with `required` and `additionalProperties` added where they are missing."""
+    if isinstance(schema, list):
+        return [_closed(one) for one in schema]
+    if not isinstance(schema, dict):
+        return schema
+    usual: dict[str, Any] = {"required": [*schema["properties"]]} if "properties" in schema else {}
+    if usual and schema.get("type") == "object":
+        usual["additionalProperties"] = False
+    return {key: _closed(value) for key, value in (usual | schema).items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from pointcoord import Motion, NotFollowed, PointcoordError, Scene, SceneError, simulate
@@ -12,8 +12,17 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
 from validate.commands.pages import Command
-from validate.commands.usage import name_of, named_scene, place_of_picture, require_results
-from validate.curves.numbers import TIME, TRAVEL, Curves, Number, angles_of, asking_for, numbers_called, usual
+from validate.commands.usage import name_of, named_scene, place_of_picture
+from validate.curves.numbers import (
+    TIME,
+    TRAVEL,
+    Curves,
+    angles_of,
+    asking_for,
+    numbers_called,
+    numbers_named,
+    usual,
+)
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -23,14 +32,12 @@ from validate.output.report import counted_as
 from validate.paper.printed import PRINTED
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
-PICTURES = (".svg", ".png")
 SMOOTH = 401  # a curve of fewer instants has corners
 
 
 def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve a scene and write its motion."""
-    target = require_results(options, console, ("-o",), (options.scene,), ENDINGS, says=False)
-    method, instants = BY_NAME[options.method], options.instants
+    target, method, instants = options.output, BY_NAME[options.method], options.instants
     if instants is not None and not method.dense:
         raise UsageError(
             f"--instants needs the method auto, series or map; {options.method} solves at the scene's own "
@@ -47,7 +54,7 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw curves of a scene's motion, or of a file."""
-    target = place_of_picture(options, PICTURES, console)
+    target = place_of_picture(options, console)
     needed("plot", "matplotlib")
     # Imported here: matplotlib takes a second.
     from validate.curves.picture import figure
@@ -146,21 +153,13 @@ def _curves(options: argparse.Namespace, scene: Scene, name: str) -> Curves | No
     if not options.x and not options.y:
         return None
     asked = (("--x", options.x or (TIME,)), ("--y", options.y or (TRAVEL,)))
-    across, up = (_named(words, option, scene, name) for option, words in asked)
+    across, up = (numbers_named(words, scene, f"{name}: {option}") for option, words in asked)
     if len(across) > 1 and len(up) > 1:
         raise UsageError(
             f"--x names {len(across)} numbers and --y {len(up)}; allowed: several for one of the two options "
             "only; name one component, x, y or z"
         )
     return Curves(across, up)
-
-
-def _named(words: Sequence[str], option: str, scene: Scene, name: str) -> tuple[Number, ...]:
-    try:
-        named = [number for one in words for number in numbers_called(one, scene)]
-    except UsageError as error:
-        raise UsageError(f"{name}: {option} {error}") from None
-    return tuple({number.path: number for number in named}.values())
 
 
 COMMANDS = {

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from validate.commands.pages import Command
-from validate.commands.usage import require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -48,7 +47,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             f"--workers {options.workers} is for processes on this machine only; the cluster at --scheduler "
             "has its own workers; leave one of the two options out"
         )
-    require_results(options, console, ("--json",))
     for package in ("mpmath", "flint", "pinocchio"):
         needed("study", package)
     module, _, function = STUDIES[options.study].partition(".")
@@ -98,14 +96,14 @@ def _run_study(study: Study, folder: Path, options: argparse.Namespace, console:
         console.note(f"{where} holds {held()}; to continue a stopped study, give the same command again")
         results, what = (lambda: found().data), (lambda: held() if there else "")
         journal = Journal.of(options, console, options.study, results, what)
-        with journal.closing() as ending:
+        with journal.closing():
             if missing:
                 tell(0)
                 run_tasks(study, missing, store, client, tell)
             findings = found()
-            ending.status = findings.status
+            journal.status = findings.status
     console.show(findings.parts)
-    return ending.status
+    return journal.status
 
 
 FORMULATIONS = {"formulations": ", ".join(NAMES)}, {"--formulation": {"choices": NAMES}}

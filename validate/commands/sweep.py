@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -20,17 +21,16 @@ from pointcoord import (
     grid_of,
     sweep_blocks,
 )
-from pointcoord.effects.registry import QUANTITIES
 from pointcoord.sweeping.designs import coordinates_named
 from pointcoord.sweeping.swept import Failure, Noted, merged
 from pointcoord.toml_text import read_file
 from validate.arrays import Array
 from validate.commands.pages import Command
-from validate.commands.usage import named_scene, require_results
+from validate.commands.usage import named_scene
 from validate.commands.values import finite, values_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.output.columns import ENDINGS, put_table, rows_of_sweep
+from validate.output.columns import put_table, rows_of_sweep
 from validate.output.console import Console
 from validate.output.progress import Told
 from validate.output.report import counted_as
@@ -48,59 +48,57 @@ class Summary:
 
     Attributes:
         tried, instants: numbers of designs, and of instants of each.
-        failures: number of failed designs and the first failure, by reason.
+        failed: number of failed designs by reason. first: the first failure by reason.
         notes: notes on designs, merged.
-        ends: lowest and highest value of each number of the car, each with its design, by quantity and name.
+        ends: by quantity and heading of a number of the car, its lowest and highest values in each block,
+            angles in degrees, with their designs.
     """
 
     tried: int = 0
     instants: int = 0
-    failures: dict[str, tuple[int, Failure]] = field(default_factory=dict)
+    failed: Counter[str] = field(default_factory=Counter)
+    first: dict[str, Failure] = field(default_factory=dict)
     notes: tuple[Noted, ...] = ()
-    ends: dict[tuple[str, str], tuple[tuple[float, int], tuple[float, int]]] = field(default_factory=dict)
+    ends: dict[tuple[str, str], list[tuple[float, int]]] = field(default_factory=dict)
 
     def add(self, block: Sweep) -> None:
         """Add a block of designs."""
         self.tried += len(block)
         self.instants = len(block.times)
         for failure in block.failures.values():
-            count, first = self.failures.get(failure.reason, (0, failure))
-            self.failures[failure.reason] = (count + 1, first)
+            self.failed[failure.reason] += 1
+            self.first.setdefault(failure.reason, failure)
         self.notes = merged((*self.notes, *block.notes))
         for quantity, channel in block.numbers.items():
+            factor, unit = degrees_of(channel.quantity.unit)
             for name, array in channel.items() if channel.quantity.of == "car" else ():
                 if np.isfinite(array).any():
                     # The array has a row for each design.
                     places = int(np.nanargmin(array)), int(np.nanargmax(array))
-                    low, high = (
-                        (float(array.flat[at]), block.first + at // len(block.times)) for at in places
-                    )
-                    before = self.ends.get((quantity, name), (low, high))
-                    self.ends[quantity, name] = min(before[0], low), max(before[1], high)
+                    ends = ((factor * float(array.flat[i]), block.first + i // self.instants) for i in places)
+                    self.ends.setdefault((quantity, f"{name} [{unit}]"), []).extend(ends)
 
     def failed_lines(self) -> list[str]:
         """The reasons of failed designs, the most frequent first."""
         return [
-            f"{count} of {self.tried} designs failed, {reason}; such as design {first.design}: {first.error}"
-            for reason, (count, first) in sorted(self.failures.items(), key=lambda item: -item[1][0])
+            f"{count} of {self.tried} designs failed, {reason}; such as design "
+            f"{self.first[reason].design}: {self.first[reason].error}"
+            for reason, count in self.failed.most_common()
         ]
 
     def parts(self) -> tuple[Part, ...]:
-        """The lines and the table to print, angles in degrees."""
-        solved = self.tried - sum(count for count, _ in self.failures.values())
-        rows = []
-        for (quantity, name), ends in self.ends.items():
-            factor, unit = degrees_of(QUANTITIES[quantity].unit)
-            texts = (f"{round(factor * end, 4):z.6g} (design {design})" for end, design in ends)
-            rows.append((f"{name} [{unit}]", *texts))
+        """The lines and the table to print."""
+        rows = [
+            (heading, *(f"{round(end, 4):z.6g} (design {design})" for end, design in (min(ends), max(ends))))
+            for (_, heading), ends in self.ends.items()
+        ]
         table = [Table(("over designs and instants", "lowest", "highest"), tuple(rows))] if rows else []
-        total = f"solved: {solved} of {self.tried} designs, at {counted_as(self.instants, 'instant')} each"
-        return (total, *self.failed_lines(), *table)
+        solved, instants = self.tried - self.failed.total(), counted_as(self.instants, "instant")
+        return f"solved: {solved} of {self.tried} designs, at {instants} each", *self.failed_lines(), *table
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the designs, write each block as it is solved, and print a summary."""
-    target = require_results(options, console, ("-o",), (options.scene, options.designs), ENDINGS)
     with named_scene(options.scene) as (scene, name):
         if options.instants is not None:
             time = {**scene.time.model_dump(), "samples": options.instants}
@@ -109,8 +107,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     try:
         with console.progress("designs", total=designs.count, lines=False) as progress:
             blocks = _seen(sweep_blocks(designs), summary, progress)
-            if target is not None:
-                put_table(target, rows_of_sweep(blocks), "the designs", console)
+            if options.output is not None:
+                put_table(options.output, rows_of_sweep(blocks), "the designs", console)
             else:
                 for _ in blocks:
                     pass
@@ -125,7 +123,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if console.mute:
         for line in summary.failed_lines():
             console.complain(f"{name}: {line}")
-    return ExitStatus.NO_VERDICT if summary.failures else ExitStatus.AGREE
+    return ExitStatus.NO_VERDICT if summary.failed else ExitStatus.AGREE
 
 
 def _seen(blocks: Iterator[Sweep], summary: Summary, progress: Told) -> Iterator[Sweep]:

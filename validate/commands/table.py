@@ -15,7 +15,7 @@ from pointcoord.wording import meant
 from validate.arrays import Array
 from validate.commands.pages import Command
 from validate.commands.solved import solved
-from validate.commands.usage import named_scene, require_results
+from validate.commands.usage import named_scene
 from validate.commands.values import values_of
 from validate.curves.numbers import Number, asking_for, numbers_asked, numbers_of
 from validate.errors import UsageError
@@ -29,7 +29,6 @@ from validate.plain_text import shown
 Columns = Sequence[tuple[Number, Array]]
 """Numbers over the rows of a table, (N,) each, angles in degrees."""
 
-ENDINGS = (".csv", ".md")
 ROWS = 21
 FIGURES, DECIMALS = 5, (2, 6)  # significant digits of the largest number of a column, and limits of decimals
 EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
@@ -37,7 +36,6 @@ EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print a table."""
-    target = require_results(options, console, ("-o",), (options.scene,), ENDINGS, says=False)
     if options.grid and options.rows:
         raise UsageError("--rows divides the scene's time, and a grid has none; leave --rows or --grid out")
     if options.convention:
@@ -50,13 +48,12 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     with named_scene(options.scene) as (scene, name):
         if options.convention:
             scene = scene.model_copy(update={"convention": options.convention})
-        return _of_scene(scene, name, target, options, console)
+        return _of_scene(scene, name, options, console)
 
 
-def _of_scene(
-    scene: Scene, name: str, target: str, options: argparse.Namespace, console: Console
-) -> ExitStatus:
+def _of_scene(scene: Scene, name: str, options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print the table of a scene's motion, or of a grid of its inputs."""
+    target = options.output
     axes = _axes(scene, options.grid)
     read = numbers_asked(scene, name, options.number, None if options.all else READ_FIRST)
     if not options.number:
@@ -151,10 +148,7 @@ def _text(columns: Columns, target: str, reasons: Mapping[int, str] | None = Non
     # An input and a number may have the same name, such as the damper's length.
     whole = [".".join(path if len(path := one.path) > 1 else ("input", *path)) for one in numbers]
     names = [long if names.count(name) > 1 else name for name, long in zip(names, whole, strict=True)]
-    head = tuple(
-        f"{'-' if one.minus else ''}{name} [{one.unit_shown}]"
-        for name, one in zip(names, numbers, strict=True)
-    )
+    head = tuple(one.headed(name=name) for name, one in zip(names, numbers, strict=True))
     if target.endswith(".csv"):
         lines = zip(*(each.tolist() for each in values), strict=True)
         if reasons is None:

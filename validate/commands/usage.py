@@ -5,24 +5,26 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 from typing import Any
 
 from pointcoord import Scene, SceneError
-from validate.errors import NotFinished, UsageError
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.extras import needed
-from validate.output.console import STANDARD_OUTPUT, Console
+from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable, write_content
 from validate.plain_text import shown
 
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
-TOML = (".toml",)
+RESULTS = ("-o", "--mjcf", "--json", "--csv", "--junit", "--summary", "--save-baseline")
+"""The options that name a result, of any command."""
+READ = ("scene", "scenes", "--scenes-dir", "file", "--data", "--map", "--designs", "--baseline")
+"""The options and arguments that name what a command reads, of any command."""
 
 
 def value_of(options: argparse.Namespace, name: str) -> Any:
@@ -35,30 +37,23 @@ def given(options: argparse.Namespace, *names: str) -> list[str]:
     return [name for name in names if value_of(options, name) not in (None, False, [])]
 
 
-def require_results(
-    options: argparse.Namespace,
-    console: Console,
-    results: Sequence[str],
-    read: Sequence[str | None] = (),
-    endings: Collection[str] = (),
-    says: bool = True,
-) -> Any:
-    """Check, before anything is solved, that every result has a place of its own that can be written.
+def require_files(options: argparse.Namespace, console: Console) -> None:
+    """Check the files that a command line names, before the command runs.
 
-    If a result goes to standard output, the console prints nothing else there. Returns the place of the first
-    result, - for standard output; None if it is not given.
+    Each result needs a place of its own that can be written. Standard input can be one scene only. If a
+    result goes to standard output, the console prints nothing else there.
 
-    Args:
-        results: options that name a result file, or - for standard output; options not given are skipped.
-        read: files and scenes that no result may overwrite.
-        endings: allowed endings of the first result, which select its format; empty: any.
-        says: whether the command prints on standard output in addition to its results.
     Raises:
-        UsageError: a result names no file or a file that is read, two results are the same file, or an
-            ending is unknown.
-        MissingLibrary: Parquet needs pyarrow.
-        NotFinished: a result cannot be written, or standard output is needed and closed.
+        UsageError: a result names no file or a file that is read, or two results are the same file; standard
+            input is given twice, or as a file of results.
+        NotFinished: a result cannot be written.
     """
+    if (value_of(options, "scenes") or []).count(STANDARD_INPUT) > 1:
+        raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
+    if STANDARD_INPUT in (value_of(options, "--data"), value_of(options, "--map")):
+        raise UsageError("--data and --map read files; standard input (-) can be the scene only")
+    # The rows of `cost` are measured, or read with --from-rows; those of `table` are a number.
+    results = RESULTS if getattr(options, "from_rows", True) else (*RESULTS, "--rows")
     found = {option: value_of(options, option) for option in results}
     wanted: dict[str, str] = {option: target for option, target in found.items() if target is not None}
     places: dict[str, str] = {}
@@ -67,36 +62,47 @@ def require_results(
             raise UsageError(
                 f"{option} {target!r} names no file; allowed: the path of a file, or - for standard output"
             )
-        for file in read:
-            if file and os.path.isfile(target) and os.path.isfile(file) and os.path.samefile(target, file):
-                raise UsageError(
-                    f"{option} {target} would overwrite a scene or file that is read; give another file"
-                )
+        if any(_is_that(target, file) for file in _read(options, option)):
+            raise UsageError(
+                f"{option} {target} would overwrite a scene or file that is read; give another file"
+            )
         other = places.setdefault(target if target == "-" else os.path.realpath(target), option)
         if other != option:
             raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
     console.quiet, console.mute = getattr(options, "quiet", False), "-" in wanted.values()
-    if sys.stdout is None and ((says and not console.quiet) or console.mute):
-        instead = "use --quiet, and name files for results" if says else f"use {results[0]} FILE"
-        raise NotFinished(STANDARD_OUTPUT, f"is closed; {instead}")
-    for option, target in wanted.items():
+    for target in wanted.values():
         if target != "-":
-            if endings and option == results[0]:
-                require_known_ending(target, endings)
-                if target.endswith(".parquet"):
-                    needed(".parquet", "pyarrow.parquet")
             require_writable(target)
-    return found[results[0]]
 
 
-def place_of_picture(options: argparse.Namespace, endings: Collection[str], console: Console) -> str:
-    """The file of a picture, - for standard output; checked to be writable.
+def _read(options: argparse.Namespace, option: str) -> Iterator[str]:
+    """The files, scenes and folders that a run reads and that the result of `option` must not overwrite."""
+    for one in READ:
+        value = value_of(options, one) or []
+        # A new baseline may replace the one that the run is compared with.
+        if (one, option) != ("--baseline", "--save-baseline") or value != value_of(options, option):
+            yield from [value] if isinstance(value, str) else value
+    if getattr(options, "from_rows", False):
+        yield options.rows
+
+
+def _is_that(target: str, read: str) -> bool:
+    """Whether a target is a file that is read, or a scene in a folder that is read."""
+    if not os.path.isfile(target):
+        return False
+    if os.path.isdir(read):
+        return target.endswith(".toml") and Path(read).resolve() in Path(target).resolve().parents
+    return os.path.isfile(read) and os.path.samefile(target, read)
+
+
+def place_of_picture(options: argparse.Namespace, console: Console) -> str:
+    """The file of a picture, - for standard output.
 
     If none is given and standard output is a terminal, which shows no pictures, a new file name is chosen and
     printed.
 
     Raises:
-        UsageError, NotFinished: see `require_results`.
+        UsageError, NotFinished: see `require_files`.
     """
     if options.output is None:
         options.output = "-"
@@ -105,8 +111,8 @@ def place_of_picture(options: argparse.Namespace, endings: Collection[str], cons
             names = (f"{stem}.svg" if number == 1 else f"{stem}-{number}.svg" for number in count(1))
             options.output = next(name for name in names if not os.path.lexists(name))
             console.note(f"the picture goes to {shown(options.output)}; -o FILE names another file")
-    target: str = require_results(options, console, ("-o",), (options.scene,), endings, says=False)
-    return target
+        require_files(options, console)
+    return str(options.output)
 
 
 def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
@@ -115,7 +121,7 @@ def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
     Raises:
         UsageError: its name does not end in .toml. NotFinished: it cannot be written.
     """
-    require_known_ending(target, TOML)
+    require_known_ending(target, (".toml",))
     write_content(target, text)
     console.complain(
         f"{shown(target)} did not exist, so a form is written there: fill it in, and run this again"
@@ -126,16 +132,6 @@ def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
 def name_of(scene: str) -> str:
     """The name of a scene in messages."""
     return STANDARD_INPUT_NAME if scene == STANDARD_INPUT else shown(scene)
-
-
-def require_input_once(names: Sequence[str]) -> None:
-    """Refuse standard input as more than one scene.
-
-    Raises:
-        UsageError: `-` is given more than once.
-    """
-    if names.count(STANDARD_INPUT) > 1:
-        raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
 
 
 @contextmanager

@@ -76,6 +76,10 @@ class Number:
         """Its name in tables: for a number of the car its own name, for others the whole path."""
         return self.path[-1] if len(self.path) < 3 and not self.is_force else ".".join(self.path)
 
+    def headed(self, per: str = "", name: str = "") -> str:
+        """Its heading in a table: its name, or `name`, with a minus sign if it is reversed, and its unit."""
+        return f"{'-' if self.minus else ''}{name or self.called} [{self.unit_shown}{per}]"
+
     @property
     def short(self) -> str:
         """Its short name: without the quantity for numbers of the car and for positions."""
@@ -160,18 +164,30 @@ def numbers_asked(
             "pointcoord simulate writes the numbers that the scene asks for"
         )
     if named:
-        try:
-            found = [number for words in named for number in numbers_called(words, scene)]
-        except UsageError as error:
-            raise UsageError(f"{name}: --number {error}") from None
-    elif first is None:
-        found = [number for number in every if not per_second(number.path[0])]
-    else:
-        found = []
-        for own in first:
-            called, sign = meant_by(own, scene.convention)
-            wheels = [n for n in every if n.path[1].rpartition(".")[2] == called]
-            found += wheels if sign > 0 else [n.negative() for n in wheels]
+        return numbers_named(named, scene, f"{name}: --number")
+    if first is None:
+        return tuple(number for number in every if not per_second(number.path[0]))
+    found = {}
+    for own in first:
+        called, sign = meant_by(own, scene.convention)
+        for number in every:
+            if number.path[1].rpartition(".")[2] == called:
+                found[number.path] = number if sign > 0 else number.negative()
+    return tuple(found.values())
+
+
+def numbers_named(named: Iterable[str], scene: Scene, where: str) -> tuple[Number, ...]:
+    """The numbers with some names, each once, see `numbers_called`.
+
+    Args:
+        where: the scene and the option that names them, for messages.
+    Raises:
+        UsageError: a name fits no number, or numbers with different names.
+    """
+    try:
+        found = [number for words in named for number in numbers_called(words, scene)]
+    except UsageError as error:
+        raise UsageError(f"{where} {error}") from None
     return tuple({number.path: number for number in found}.values())
 
 

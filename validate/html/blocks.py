@@ -59,21 +59,16 @@ class Panel:
 
 @dataclass(frozen=True)
 class Plots:
-    """Panels side by side, as many in a row as fit the page.
-
-    Attributes:
-        at_once: whether they are unfolded from the start, however many other plots the section has.
-    """
+    """Panels side by side, as many in a row as fit the page; unfolded if few or the first of a section."""
 
     template: ClassVar[str] = "plots.html"
     caption: str
     panels: tuple[Panel, ...]
-    at_once: bool = False
 
 
 @dataclass(frozen=True)
 class Spatial:
-    """An animated 3D drawing of the mechanism.
+    """An animated 3D drawing of the mechanism; the first of a section is unfolded.
 
     Attributes:
         scene: name of the scene.
@@ -81,7 +76,6 @@ class Spatial:
         json: the data for the script of the page.
         count: number of instants.
         curves: plots next to the drawing.
-        at_once: whether it is unfolded from the start, as the first drawing is.
     """
 
     template: ClassVar[str] = "spatial.html"
@@ -90,7 +84,6 @@ class Spatial:
     json: str
     count: int
     curves: Plots | None = None
-    at_once: bool = False
 
 
 Block = Paragraph | Plots | Spatial | Table

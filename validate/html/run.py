@@ -84,6 +84,11 @@ class Run:
     cost: Report | None = None
 
     @property
+    def by_verdict(self) -> Sequence[Drawn]:
+        """The scenes that the page draws; those that do not agree come first."""
+        return sorted(self.drawn, key=lambda one: one.examined.status is ExitStatus.AGREE)
+
+    @property
     def not_drawn(self) -> Sequence[str]:
         """A sentence on which scenes are drawn, if not all are."""
         drawn, compared = len(self.drawn), sum(bool(one.outcomes) for one in self.record.examined)

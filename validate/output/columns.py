@@ -50,7 +50,9 @@ def put_table(target: str, blocks: Iterator[Block], what: str, console: Console,
         PointcoordError: raised by the blocks as they are solved.
     """
     if target == "-":
-        console.write_lines(csv_lines(blocks))
+        for text in csv_lines(blocks):
+            console.write(text)
+        console.flush()
     else:
         write_table(target, blocks, group)
         console.written[target] = what

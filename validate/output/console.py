@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 
 from validate.errors import NotFinished
@@ -76,12 +76,6 @@ class Console:
             except (OSError, ValueError, AttributeError) as error:
                 self._lose(error)
 
-    def write_lines(self, texts: Iterable[str]) -> None:
-        """Write many texts on standard output, each as it comes."""
-        for text in texts:
-            self.write(text)
-        self.flush()
-
     def flush(self) -> None:
         """Flush standard output."""
         if self._reader_gone or sys.stdout is None:
@@ -106,7 +100,7 @@ class Console:
             return
         if isinstance(error, OSError):
             raise unwritable(STANDARD_OUTPUT, error) from None
-        raise NotFinished(STANDARD_OUTPUT, "is closed") from None
+        raise NotFinished(STANDARD_OUTPUT, "is closed; use --quiet, and name files for results") from None
 
     def complain(self, message: str) -> None:
         """One line on standard error."""

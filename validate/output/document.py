@@ -12,7 +12,7 @@ import shlex
 import time
 from argparse import Namespace
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
@@ -146,40 +146,6 @@ def _plain(data: Any) -> Any:
 
 
 @dataclass
-class Ending:
-    """How a block ends.
-
-    Attributes:
-        status: exit status of the run; the block sets it.
-        complete: whether the block ended without an exception.
-    """
-
-    status: ExitStatus = ExitStatus.AGREE
-    complete: bool = False
-
-
-@contextmanager
-def at_the_end(write: Callable[[Ending], None]) -> Iterator[Ending]:
-    """Call `write` when the block ends, also if it ends with an exception.
-
-    Raises:
-        BaseException: raised by `write`, or else by the block.
-    """
-    ending = Ending()
-    try:
-        yield ending
-        ending.complete = True
-    except KeyboardInterrupt as error:
-        ending.status = of_interruption(error)
-        raise
-    except BaseException:
-        ending.status = ExitStatus.NOT_FINISHED
-        raise
-    finally:
-        write(ending)
-
-
-@dataclass
 class Journal:
     """The JSON of a run. It is written again after each part, so that a killed run loses very little.
 
@@ -189,6 +155,8 @@ class Journal:
         target: the file, - for standard output, None if no JSON is asked for.
         results: returns all results so far, as plain data.
         what: returns the results in words, such as `3 of 20 scenes`; empty while there are none.
+        status: exit status of the run; the block of `closing` sets it.
+        complete: whether the block of `closing` ended without an exception.
     """
 
     target: str | None
@@ -196,6 +164,8 @@ class Journal:
     console: Console
     results: Callable[[], Mapping[str, Any]]
     what: Callable[[], str]
+    status: ExitStatus = ExitStatus.AGREE
+    complete: bool = False
     _next: float = 0.0
 
     @classmethod
@@ -222,18 +192,28 @@ class Journal:
             # Writing takes longer the more results there are; the pause keeps it below a tenth of the run.
             self._next = time.monotonic() + PAUSE * (time.monotonic() - began)
 
-    def closing(self) -> AbstractContextManager[Ending]:
-        """Write the document when a block ends, also after an exception, with the status that the block sets.
+    @contextmanager
+    def closing(self, write: Callable[[], None] | None = None) -> Iterator[None]:
+        """Write the document when a block ends, also after an exception.
 
+        Args:
+            write: called instead of writing the document.
         Raises:
             NotFinished: the document cannot be written; also any exception of the block.
         """
-
-        def write(ending: Ending) -> None:
-            if ending.complete or self.what():
-                self.write(ending.status, ending.complete)
-
-        return at_the_end(write)
+        try:
+            yield
+            self.complete = True
+        except BaseException as error:
+            ended = of_interruption(error) if isinstance(error, KeyboardInterrupt) else None
+            self.status = ended or ExitStatus.NOT_FINISHED
+            self.complete = False
+            raise
+        finally:
+            if write is not None:
+                write()
+            elif self.complete or self.what():
+                self.write(self.status, self.complete)
 
     def write(self, status: ExitStatus | None, complete: bool = True) -> None:
         """Write the document; status None for a run in progress.

@@ -19,7 +19,6 @@ from validate.html.run import POINTS, Run
 from validate.output.report import (
     HEAD,
     about,
-    held_to,
     pair_of,
     quantity_rows,
     used,
@@ -40,6 +39,8 @@ INK = "#000"  # readable on each of the colours, in light and in dark mode
 # Scale: -1 is not tested; 0 to 1 is the share of the tolerance; 2 disagrees.
 AMBER, PALE, GREEN, RED = "#e0a92e", "#dff2ea", "#2a9d78", "#d9481c"
 COLOURS = ((0.0, AMBER), (0.33, AMBER), (0.33, PALE), (0.67, GREEN), (0.67, RED), (1.0, RED))
+FACTS = ("command_line", "program", "started", "exit_status", "verdict", "tolerance_factor", "machine")
+"""Parts of the document of a run that say how a page was made."""
 ROW, EDGE = 1.4, 8.0  # height of a row of the heat map, and of its labels and margins, rem
 
 
@@ -106,7 +107,7 @@ def _heat_map(drawn: Sequence[Examined]) -> Block:
         "yaxis": {"autorange": "reversed", "automargin": True, "showgrid": False},
         "showlegend": False,
     }
-    return Plots("Every scene and quantity", (Panel(WORDS, (trace,), layout, EDGE + ROW * len(drawn)),), True)
+    return Plots("Every scene and quantity", (Panel(WORDS, (trace,), layout, EDGE + ROW * len(drawn)),))
 
 
 def _seen(row: Comparison) -> tuple[float, str, str]:
@@ -123,13 +124,12 @@ def _seen(row: Comparison) -> tuple[float, str, str]:
 def differences(run: Run) -> Iterator[Block]:
     """Differences over time with their tolerances."""
     blocks = []
-    for one in run.drawn:
+    for one in run.by_verdict:
         for outcome in one.examined.outcomes:
             rows = worst_rows(outcome)
             panels = tuple(panel for row in rows for panel in _panels(outcome, row, one.scene.instants))
-            apart = any(row.verdict == "disagrees" for row in rows)
             if panels:
-                blocks.append(Plots(f"{outcome.scene}: {pair_of(outcome)}", panels, at_once=apart))
+                blocks.append(Plots(f"{outcome.scene}: {pair_of(outcome)}", panels))
     if blocks:
         yield from map(Paragraph, run.not_drawn)
     yield from blocks
@@ -153,30 +153,17 @@ def _panels(outcome: Outcome, row: Comparison, instants: Array) -> Iterator[Pane
 
 def machine(run: Run) -> Iterator[Block]:
     """The command, versions, machine and settings of the run."""
-    rows = tuple((name, shown(value)) for name, value in _made_by(run))
-    yield Table(("what", "value"), rows, caption="How this page was made.")
+    facts = {key: run.document[key] for key in FACTS if key in run.document}
+    if run.head.kind == "cost":
+        del facts["machine"]  # the page may be made elsewhere: the cost section has the one that measured
+    rows = ((name.replace("_", " "), shown(value)) for name, value in _flat(facts))
+    yield Table(("what", "value"), tuple(rows), caption="How this page was made.")
 
 
-def _made_by(run: Run) -> Iterator[tuple[str, str]]:
-    document = run.document
-    yield "command", document["command_line"]
-    yield "program", " ".join(document["program"].values())
-    if document["started"] is not None:
-        yield "started", document["started"]
-    yield "exit status", f"{document['exit_status']}, {document['verdict']}"
-    if pairs := dict.fromkeys(map(pair_of, run.record.outcomes)):
-        yield "compared", "; ".join(pairs)
-    if run.record.examined:
-        yield "differences", held_to(run.record.factor)
-    # The machine that measured the times is in the cost section; the page may be made on another machine.
-    if run.head.kind != "cost":
-        yield from _flat(document["machine"])
-
-
-def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def _flat(data: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, str]]:
     """Names and values of nested mappings, flattened."""
     for name, value in data.items():
         if isinstance(value, Mapping):
-            yield from _flat(value)
+            yield from _flat(value, f"{name} ")
         else:
-            yield name, "not installed or not set" if value is None else str(value)
+            yield place + name, "not installed or not set" if value is None else str(value)

@@ -36,7 +36,7 @@ def cost(run: Run) -> Iterator[Block]:
         pictures.append(Plots(f"{scene}: error against time, a line for each method", panels))
     yield from sentences[:1]
     for picture in pictures[:1]:
-        yield Plots(picture.caption, (replace(picture.panels[0], rem=20.0),), at_once=True)
+        yield Plots(picture.caption, (replace(picture.panels[0], rem=20.0),))
     if ways:
         yield Paragraph(KEY)
     yield Table(("what", "value"), tuple(found.head()), caption="How it was measured.", folded=True)

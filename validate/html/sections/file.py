@@ -47,8 +47,7 @@ def files(run: Run) -> Iterator[Block]:
         yield Table(HEAD, tuple(cells), caption=caption)
         worst = worst_rows(outcome)
         if panels := tuple(one for row in worst for one in _panels(file, row)):
-            apart = any(row.verdict == "disagrees" for row in worst)
-            yield Plots(f"{source}: crosses: the file; line: pointcoord", panels, at_once=apart)
+            yield Plots(f"{source}: crosses: the file; line: pointcoord", panels)
 
 
 def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:

@@ -36,9 +36,9 @@ PLACE = ALWAYS[0].quantities[0].name
 
 
 def motions(run: Run) -> Iterator[Block]:
-    """An animation of each drawn scene."""
+    """An animation of each drawn scene; those that do not agree come first."""
     yield from map(Paragraph, run.not_drawn)
-    yield from map(_of_scene, run.drawn)
+    yield from map(_of_scene, run.by_verdict)
 
 
 def _of_scene(one: Drawn) -> Block:
@@ -71,7 +71,6 @@ def _of_scene(one: Drawn) -> Block:
         json.dumps(data, allow_nan=False),
         len(at),
         curves,
-        bool(one.examined.status),
     )
 
 
