@@ -4,7 +4,6 @@ import ast
 import re
 import subprocess
 import sys
-from collections import Counter
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -22,12 +21,11 @@ CONTRIBUTING = (ROOT / ".github" / "CONTRIBUTING.md").read_text(encoding="utf-8"
 
 @cache
 def modules(package: str) -> dict[str, set[str]]:
-    """Every module of a package with the modules that it imports, at any depth of its code."""
+    """Every module of a package with the modules, and names of them, that it imports anywhere in its code."""
     found = {}
     for path in (ROOT / package).rglob("*.py"):
-        parts = path.relative_to(ROOT).with_suffix("").parts
-        name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-        imported = set()
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+        imported: set[str] = set()
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):
                 imported |= {alias.name for alias in node.names}
@@ -38,66 +36,27 @@ def modules(package: str) -> dict[str, set[str]]:
     return found
 
 
-def room_of(module: str) -> str:
-    """The package inside the package that a module lies in, or its own name if it lies in none."""
-    return module.split(".")[1]
-
-
-def arrows(found: dict[str, set[str]]) -> Counter[tuple[str, str]]:
-    """How many imports lead from one room of a package to another."""
-    count: Counter[tuple[str, str]] = Counter()
-    for name, imported in found.items():
-        targets = imported & found.keys()
-        for target in targets:
-            # `from package.room import module` names the room too, of which it takes nothing.
-            taken = not any(other.startswith(f"{target}.") for other in targets)
-            if "." in name and "." in target and taken:
-                count[room_of(name), room_of(target)] += room_of(name) != room_of(target)
-    return +count
-
-
-def stacked(found: dict[str, set[str]]) -> list[str]:
-    """The modules, each after those that it imports.
-
-    Raises:
-        CycleError: some of them import each other in a circle.
-    """
-    inner = {name for name in found if "." in name}
-    return [*TopologicalSorter({name: (found[name] & inner) - {name} for name in inner}).static_order()]
-
-
-def rooms(package: str) -> list[str]:
-    """The rooms of a package as CONTRIBUTING lists them, the lowest first."""
-    (table,) = re.findall(rf"^\| `{package}` \| \|\n\|---\|---\|\n((?:\|.*\n)+)", CONTRIBUTING, flags=re.M)
-    return [
-        room.strip("/") for row in table.splitlines() for room in re.findall("`(.+?)`", row.split("|")[1])
-    ]
-
-
 @pytest.mark.parametrize("package", FORBIDDEN)
-def test_a_package_imports_only_what_the_house_allows(package: str) -> None:
+def test_a_package_imports_only_what_the_house_allows_and_its_modules_form_layers(package: str) -> None:
     found = modules(package)
-    assert found
     for name, imported in found.items():
-        roots = {module.split(".")[0] for module in imported}
-        assert not roots & FORBIDDEN[package], f"{name} imports {roots & FORBIDDEN[package]}"
-
-
-@pytest.mark.parametrize("package", FORBIDDEN)
-def test_modules_of_a_package_form_layers(package: str) -> None:
-    assert stacked(modules(package))
+        assert not {module.split(".")[0] for module in imported} & FORBIDDEN[package], name
+    inner = found.keys() - {package}
+    # Raises CycleError where some of them import each other in a circle.
+    assert [*TopologicalSorter({name: (found[name] & inner) - {name} for name in inner}).static_order()]
 
 
 @pytest.mark.parametrize("package", ["pointcoord", "validate"])
 def test_a_room_imports_only_from_the_rooms_that_contributing_lists_above_it(package: str) -> None:
-    found, order = modules(package), rooms(package)
-    assert sorted({room_of(name) for name in found if "." in name}) == sorted(order)
-    upward = {
-        f"{upper} -> {lower}": count
-        for (upper, lower), count in arrows(found).items()
-        if order.index(lower) > order.index(upper)
-    }
-    assert not upward
+    (table,) = re.findall(rf"^\| `{package}` \| \|\n\|---\|---\|\n((?:\|.*\n)+)", CONTRIBUTING, flags=re.M)
+    order = [
+        room.strip("/") for row in table.splitlines() for room in re.findall("`(.+?)`", row.split("|")[1])
+    ]
+    found = {name: imported for name, imported in modules(package).items() if name != package}
+    assert sorted({name.split(".")[1] for name in found}) == sorted(order)
+    for name, imported in found.items():
+        for target in imported & found.keys():
+            assert order.index(target.split(".")[1]) <= order.index(name.split(".")[1]), (name, target)
 
 
 def test_the_first_lines_of_the_program_need_nothing_but_python() -> None:
@@ -106,18 +65,35 @@ def test_the_first_lines_of_the_program_need_nothing_but_python() -> None:
         assert {one.partition(".")[0] for one in found[name]} <= set(sys.stdlib_module_names), name
 
 
-def test_every_name_of_pointcoord_is_what_it_says_whatever_was_imported_first() -> None:
-    program = (
-        "import pkgutil, importlib, pointcoord\n"
-        "same = dict.fromkeys(('MapError', 'OutsideMotion', 'SweepError'), 'WrongArgument')\n"
-        "same |= dict.fromkeys(('MotionTooLong', 'MotionTooRough'), 'NotFollowed')\n"
-        "same |= {'InputNotKnown': 'InputOutOfRange', 'MotionNotMapped': 'NotCovered'}\n"
-        "for found in pkgutil.walk_packages(pointcoord.__path__, 'pointcoord.'):\n"
-        "    importlib.import_module(found.name)\n"
-        "for name in pointcoord.__all__:\n"
-        "    assert getattr(pointcoord, name).__name__ == same.get(name, name), name\n"
-        "    assert callable(getattr(pointcoord, name)), name\n"
-        "assert set(pointcoord.__all__) <= set(dir(pointcoord))\n"
-        "assert not hasattr(pointcoord, 'simulates')\n"
-    )
-    subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT)
+# Names under which an error is known as well.
+ALIASES = {
+    "pointcoord": {
+        **dict.fromkeys(("MapError", "OutsideMotion", "SweepError"), "WrongArgument"),
+        **dict.fromkeys(("MotionTooLong", "MotionTooRough"), "NotFollowed"),
+        **{"InputNotKnown": "InputOutOfRange", "MotionNotMapped": "NotCovered"},
+    },
+    "validate": {},
+}
+PROGRAM = """
+import importlib, pickle, pkgutil, sys
+package = importlib.import_module({package!r})
+loaded = {{name.partition(".")[0] for name in sys.modules}}
+assert not {{"numpy", "scipy", "flint", "pinocchio", "pydantic_core"}} & loaded, loaded
+assert set(package.__all__) <= set(dir(package))
+assert not hasattr(package, "simulates")
+for found in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+    if not found.name.endswith("__main__"):
+        importlib.import_module(found.name)
+exec(f"from {{package.__name__}} import *")
+for name in package.__all__:
+    found = globals()[name]
+    assert found is getattr(package, name) and callable(found)
+    assert found.__name__ == {aliases!r}.get(name, name), name
+    assert pickle.loads(pickle.dumps(found)) is found
+"""
+
+
+@pytest.mark.parametrize("package", ALIASES)
+def test_every_name_of_a_package_is_what_it_says_and_costs_nothing_before_it_is_used(package: str) -> None:
+    program = PROGRAM.format(package=package, aliases=ALIASES[package])
+    subprocess.run([sys.executable, "-W", "error", "-c", program], check=True, cwd=ROOT)

@@ -7,9 +7,8 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from exact_states import exact_states
 from many_digits import DIGITS
-from mechanism_files import plain_scene
+from mechanism_files import exact_states, plain_scene
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 

@@ -6,15 +6,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
-from mpmath import acot, asin, atan, cos, cot, mpf, pi, sin, workdps
-from three_mechanics import DIGITS, assert_exact, assert_none, by_each, scene_of, solved_by
+from mpmath import acot, asin, atan, cos, cot, mpf, pi, sin
+from three_mechanics import assert_exact, assert_none, by_each, over_time, scene_of, solved_by
 from within_bounds import outside
 
 from pointcoord import Scene, SceneError
 
 RADIUS, WHEELBASE, HALF_TRACK = 300.0, 2500.0, 760.0
 SIDES = {"left": -1, "right": 1}
-TIMES = (mpf(0), mpf(1) / 2, mpf(1))
 # A wheel on a hinge that is fixed in the car: upright it steers, lengthwise it travels.
 CORNER = {
     "bodies": {"chassis": ["a", "b"], "knuckle": ["a", "b", "inner", "centre"]},
@@ -77,33 +76,29 @@ def test_steered_wheels_are_what_the_formulas_make_of_their_angles(
     turned = {"left": inner, "right": outer} if sign > 0 else {"left": outer, "right": inner}
     turns = {side: [sign * c for c in turn] for side, turn in turned.items()}
     effects = ["steer_angle", "ackermann", "toe", "toe_change_by_arcsine"]
-    solution = solved_by(who, axle(UPRIGHT, effects, turns))
-    exact: dict[str, list[mpf]] = {}
-    with workdps(DIGITS):
-        track, base = 2 * mpf(HALF_TRACK), mpf(WHEELBASE)
-        for time in TIMES:
-            left, right = (at(turns[side], time) for side in SIDES)
-            one, other = (left, right) if sign > 0 else (-right, -left)
-            radius = base * (cot(one) + cot(other)) / 2
-            ideal = atan(base / (radius - track / 2)) - atan(base / (radius + track / 2))
-            # The line of a wheel that is turned by more than a right angle meets the rear axle's behind it.
-            goal = acot(cot(one) + track / base)
-            numbers = {
-                "left.steer_angle": left,
-                "right.steer_angle": right,
-                "left.toe": -left,
-                "right.toe": right,
-                # Drawn straight ahead; an arcsine goes no farther than a right angle.
-                "left.toe_change_by_arcsine": asin(sin(-left)),
-                "right.toe_change_by_arcsine": asin(sin(right)),
-                "turning_radius": abs(radius),
-                "ackermann_error": other - (goal if goal >= 0 else goal + pi),
-            }
-            if radius > track / 2:
-                numbers["ackermann"] = 100 * (one - other) / ideal
-            for name, value in numbers.items():
-                exact.setdefault(name, []).append(value)
-    assert_exact(solution, exact)
+    track, base = 2 * mpf(HALF_TRACK), mpf(WHEELBASE)
+
+    def formula(time: mpf) -> dict[str, mpf]:
+        left, right = (at(turns[side], time) for side in SIDES)
+        one, other = (left, right) if sign > 0 else (-right, -left)
+        radius = base * (cot(one) + cot(other)) / 2
+        ideal = atan(base / (radius - track / 2)) - atan(base / (radius + track / 2))
+        # The line of a wheel that is turned by more than a right angle meets the rear axle's behind it.
+        goal = acot(cot(one) + track / base)
+        return {
+            "left.steer_angle": left,
+            "right.steer_angle": right,
+            "left.toe": -left,
+            "right.toe": right,
+            # Drawn straight ahead; an arcsine goes no farther than a right angle.
+            "left.toe_change_by_arcsine": asin(sin(-left)),
+            "right.toe_change_by_arcsine": asin(sin(right)),
+            "turning_radius": abs(radius),
+            "ackermann_error": other - (goal if goal >= 0 else goal + pi),
+            **({"ackermann": 100 * (one - other) / ideal} if radius > track / 2 else {}),
+        }
+
+    assert_exact(solved_by(who, axle(UPRIGHT, effects, turns)), over_time(formula))
 
 
 @by_each
@@ -124,16 +119,11 @@ def test_swing_axles_roll_about_where_the_lines_through_their_hinges_meet(
     who: str, left: tuple[float, float], roll: float
 ) -> None:
     turns = {"left": [0.0625, 0.125], "right": [0.015625, 0.03125]}
-    scene = axle(
-        lengthwise(150.0, 420.0),
-        ["axle"],
-        turns,
-        lengthwise(*left),
-        **({"roll": roll} if roll else {}),
-    )
+    rolls = {"roll": roll} if roll else {}
+    scene = axle(lengthwise(150.0, 420.0), ["axle"], turns, lengthwise(*left), **rolls)
     hinges = {"left": left, "right": (150.0, 420.0)}
-    exact: dict[str, list[mpf]] = {}
-    with workdps(DIGITS):
+
+    def formula(time: mpf) -> dict[str, mpf]:
         c, s = cos(mpf(roll)), sin(mpf(roll))
 
         def rolled(y: mpf, z: mpf) -> tuple[mpf, mpf]:
@@ -141,29 +131,28 @@ def test_swing_axles_roll_about_where_the_lines_through_their_hinges_meet(
             y, z = y - 150, z - 420
             return 150 + y * c + z * s, 420 + z * c - y * s
 
-        for time in TIMES:
-            contacts, pivots = {}, {}
-            for side, sign in SIDES.items():
-                turn, (p, q) = at(turns[side], time), hinges[side]
-                # About rearward, as the hinge leads: y to z.
-                y, z = sign * mpf(HALF_TRACK) - p, mpf(300) - q
-                wheel = rolled(p + y * cos(turn) - z * sin(turn), q + y * sin(turn) + z * cos(turn))
-                # The spin axis turns along, and the disc's lowest point lies square to it.
-                tilt = turn - mpf(roll)
-                down = (sin(tilt), -cos(tilt))
-                contacts[side] = tuple(w + RADIUS * d for w, d in zip(wheel, down, strict=True))
-                pivots[side] = rolled(mpf(p), mpf(q))
-            (y1, z1), (y2, z2) = contacts["left"], contacts["right"]
-            slope = {n: (pivots[n][1] - contacts[n][1]) / (pivots[n][0] - contacts[n][0]) for n in SIDES}
-            across = (z2 - z1 + slope["left"] * y1 - slope["right"] * y2) / (slope["left"] - slope["right"])
-            ground = z1 + (z2 - z1) * (across - y1) / (y2 - y1)
-            for name, value in {
-                "track": y2 - y1,
-                "axle_roll_centre_offset": across,
-                "axle_roll_centre_height": z1 + slope["left"] * (across - y1) - ground,
-            }.items():
-                exact.setdefault(name, []).append(value)
-    solution = solved_by(who, scene)
+        contacts, slopes = {}, {}
+        for side, sign in SIDES.items():
+            turn, (p, q) = at(turns[side], time), hinges[side]
+            # About rearward, as the hinge leads: y to z.
+            y, z = sign * mpf(HALF_TRACK) - p, mpf(300) - q
+            wheel = rolled(p + y * cos(turn) - z * sin(turn), q + y * sin(turn) + z * cos(turn))
+            # The spin axis turns along, and the disc's lowest point lies square to it.
+            tilt = turn - mpf(roll)
+            y, z = contacts[side] = wheel[0] + RADIUS * sin(tilt), wheel[1] - RADIUS * cos(tilt)
+            pivot = rolled(mpf(p), mpf(q))
+            slopes[side] = (pivot[1] - z) / (pivot[0] - y)
+        (y1, z1), (y2, z2) = contacts["left"], contacts["right"]
+        one, other = slopes["left"], slopes["right"]
+        across = (z2 - z1 + one * y1 - other * y2) / (one - other)
+        ground = z1 + (z2 - z1) * (across - y1) / (y2 - y1)
+        return {
+            "track": y2 - y1,
+            "axle_roll_centre_offset": across,
+            "axle_roll_centre_height": z1 + one * (across - y1) - ground,
+        }
+
+    solution, exact = solved_by(who, scene), over_time(formula)
     assert_exact(solution, exact)
     # What is a nanometre off is seen.
     with pytest.raises(AssertionError):
@@ -237,17 +226,18 @@ def beam(effects: list[str], **changes: Any) -> dict[str, Any]:
 @by_each
 def test_both_wheels_of_a_beam_have_numbers(who: str) -> None:
     solution = solved_by(who, Scene.from_mapping(beam(["camber", "wheel_travel"])))
-    exact: dict[str, list[mpf]] = {}
-    with workdps(DIGITS):
-        for time in TIMES:
-            turn = at([0.0625, 0.125], time)  # about rearward: y to z, so that the right wheel rises
-            for side, sign in SIDES.items():
-                exact.setdefault(f"{side}.camber", []).append(-sign * turn)
-                exact.setdefault(f"{side}.travel", []).append(sign * mpf(HALF_TRACK) * sin(turn))
-                # The contact point lies square to the beam.
-                out = mpf(HALF_TRACK) * (cos(turn) - 1) + sign * mpf(RADIUS) * sin(turn)
-                exact.setdefault(f"{side}.half_track_change", []).append(out)
-    assert_exact(solution, exact)
+
+    def formula(time: mpf) -> dict[str, mpf]:
+        turn, half = at([0.0625, 0.125], time), mpf(HALF_TRACK)  # about rearward: the right wheel rises
+        found = {}
+        for side, sign in SIDES.items():
+            found[f"{side}.camber"] = -sign * turn
+            found[f"{side}.travel"] = sign * half * sin(turn)
+            # The contact point lies square to the beam.
+            found[f"{side}.half_track_change"] = half * (cos(turn) - 1) + sign * mpf(RADIUS) * sin(turn)
+        return found
+
+    assert_exact(solution, over_time(formula))
 
 
 @pytest.mark.parametrize(
@@ -255,26 +245,10 @@ def test_both_wheels_of_a_beam_have_numbers(who: str) -> None:
     [
         (["roll_centre"], {}, "effects: 'roll_centre' needs each wheel on a body of its own"),
         (["axle"], {}, "effects: 'axle' needs each wheel on a body of its own"),
-        (
-            [],
-            {"parts": {"right": {"side": "right"}}},
-            "roles.left.knuckle: is a role of 'left', which is no part",
-        ),
-        (
-            [],
-            {"parts": {"left": {}, "right": {}, "middle": {}}},
-            "parts.middle: has no mechanism and no role",
-        ),
-        (
-            [],
-            {"stand_ins": {"a": "a"}},
-            "stand_ins.a: is 'a', the omitted point itself; allowed: another point",
-        ),
-        (
-            [],
-            {"side": "right"},
-            "side: is 'right', but each part has its own side: left is left, right is right",
-        ),
+        ([], {"parts": {"right": {}}}, "roles.left.knuckle: is a role of 'left', which is no part"),
+        ([], {"parts": {"left": {}, "right": {}, "a": {}}}, "parts.a: has no mechanism and no role"),
+        ([], {"stand_ins": {"a": "a"}}, "stand_ins.a: is 'a', the omitted point itself; allowed: another"),
+        ([], {"side": "right"}, "side: is 'right', but each part has its own side: left is left, right is"),
     ],
 )
 def test_a_wheel_is_a_part_with_roles_and_gives_a_beam_no_roll_centre(

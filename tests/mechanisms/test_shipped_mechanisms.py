@@ -21,7 +21,6 @@ import mpmath
 import numpy as np
 import pytest
 from changed_scenes import change
-from exact_states import exact_states
 from many_digits import DIGITS, Array, Points, number, unit, vector
 from mechanism_closed_forms import closed_form
 from mechanism_files import (
@@ -29,6 +28,7 @@ from mechanism_files import (
     SCENES,
     Plain,
     Tables,
+    exact_states,
     mechanism_file,
     plain,
     plain_scene,

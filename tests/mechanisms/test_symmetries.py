@@ -19,8 +19,7 @@ from three_mechanics import MECHANICS, solved_by
 from pointcoord import Scene
 from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.car_number import LENGTHS
-from pointcoord.effects.point_states import NAMED, STATES
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.arrays import Array
 from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import Solution
@@ -70,12 +69,11 @@ class Change:
 
     @property
     def matrix(self) -> Array:
-        """Of vectors, without the scale."""
+        """Of vectors, without the scale; its determinant is the sense of turns."""
         return np.array(self.turn, float)
 
     @property
     def sense(self) -> float:
-        """Of vectors that are turns."""
         return float(round(np.linalg.det(self.matrix)))
 
     def name(self, name: str) -> str:
@@ -141,6 +139,7 @@ class Change:
 
 # Its mirror image, a third of a turn about the space diagonal, a way along the car's middle plane, where the
 # origin stays, another size and the other sense of time.
+UNCHANGED = Change()
 CHANGE = Change(
     ((0, -1, 0), (0, 0, 1), (1, 0, 0)), (0.0, 512.0, -256.0), scale=3.0, mirrored=True, backwards=True
 )
@@ -184,20 +183,20 @@ def content_of(name: str) -> Content:
     return with_everything(content, name) | {"kinds": kinds}
 
 
-def scene_of(content: Content) -> Scene:
-    return Scene.from_mapping({key: value for key, value in content.items() if key != "kinds"})
+def moving_alone(name: str) -> Content:
+    """Without loads and all that is made of motions: squares of these are no numbers at such sizes."""
+    content = content_of(name)
+    return content | {"effects": [effect for effect in MOTION if effect in content["effects"]]}
+
+
+def solved(who: str, content: Content) -> Solution:
+    return solved_by(who, Scene.from_mapping({key: part for key, part in content.items() if key != "kinds"}))
 
 
 @cache
-def plain_by(who: str, name: str) -> Solution:
-    """The numbers of an unchanged car."""
-    return solved_by(who, scene_of(content_of(name)))
-
-
-@cache
-def changed_by(who: str, name: str) -> Solution:
-    """The numbers of the changed car."""
-    return solved_by(who, scene_of(CHANGE.content(content_of(name))))
+def car_by(who: str, name: str, change: Change = UNCHANGED) -> Solution:
+    """The numbers of a car, changed or not."""
+    return solved(who, change.content(content_of(name)))
 
 
 def wrong_numbers(found: Solution, plain: Solution, change: Change) -> list[tuple[str, str]]:
@@ -222,7 +221,7 @@ def wrong_numbers(found: Solution, plain: Solution, change: Change) -> list[tupl
 
 @pytest.mark.parametrize(("name", "who"), PAIRS)
 def test_a_changed_car_has_the_changed_numbers(name: str, who: str) -> None:
-    plain, found = plain_by(who, name), changed_by(who, name)
+    plain, found = car_by(who, name), car_by(who, name, CHANGE)
     assert {q: {*map(CHANGE.name, of)} for q, of in plain.numbers.items()} == {
         q: {*of} for q, of in found.numbers.items()
     }
@@ -233,7 +232,7 @@ def test_a_changed_car_has_the_changed_numbers(name: str, who: str) -> None:
 def test_no_number_loses_a_digit_far_from_the_origin(name: str, who: str) -> None:
     """Where a place is rounded by 2^-23 mm, and one of the drawing is not."""
     change = Change(shift=(2.0**30, 0.0, -(2.0**29)))
-    plain, found = plain_by(who, name), solved_by(who, scene_of(change.content(content_of(name))))
+    plain, found = car_by(who, name), car_by(who, name, change)
     assert wrong_numbers(found, plain, change) == []
     for quantity, numbers in found.numbers.items():
         for own, number in numbers.items() if quantity != "position" else ():
@@ -245,11 +244,9 @@ def test_no_number_loses_a_digit_far_from_the_origin(name: str, who: str) -> Non
 @pytest.mark.parametrize("power", [-300, 300])
 @pytest.mark.parametrize(("name", "who"), [pair for pair in [*PAIRS, *RINGS] if pair[1] != "reference"])
 def test_a_car_of_any_size_moves_alike(name: str, who: str, power: int) -> None:
-    """A power of two rounds nothing. Squares of loads and of slow screws are no numbers at such sizes."""
-    content = content_of(name)
-    content = content | {"effects": [effect for effect in MOTION if effect in content["effects"]]}
-    change = Change(scale=2.0**power)
-    plain, found = (solved_by(who, scene_of(each)) for each in (content, change.content(content)))
+    """A power of two rounds nothing."""
+    content, change = moving_alone(name), Change(scale=2.0**power)
+    plain, found = solved(who, content), solved(who, change.content(content))
     assert wrong_numbers(found, plain, change) == []
     # Without a unit; of rows that depend on each other another may be left out.
     assert (found.accuracy.condition <= 4.0 * plain.accuracy.condition).all()
@@ -260,13 +257,10 @@ def test_a_car_of_any_size_moves_alike(name: str, who: str, power: int) -> None:
 def test_rates_too_slow_and_too_fast_to_be_squared_are_bounded_as_others_are(name: str, power: int) -> None:
     """Time counts in units of its own, so a motion that takes 2^-300 of the time has the same bounds."""
     power = min(power, 200) if name == "axle-roll" else power  # a car rolls no faster than 1e140 rad/s^2
-    content = content_of(name) | {"time": {"start": 0.0, "stop": 0.0, "samples": 1}}
-    content["effects"] = [effect for effect in MOTION if effect in content["effects"]]
+    content = moving_alone(name) | {"time": {"start": 0.0, "stop": 0.0, "samples": 1}}
     laws = {n: law["polynomial"] for n, law in content["inputs"].items()}
     quick = {n: {"polynomial": [a, 2.0**power * b, 4.0**power * c]} for n, (a, b, c) in laws.items()}
-    plain, found = (
-        solved_by("pointcoord", scene_of(each)) for each in (content, content | {"inputs": quick})
-    )
+    plain, found = solved("pointcoord", content), solved("pointcoord", content | {"inputs": quick})
     for quantity, numbers in plain.numbers.items():
         for own, number in numbers.items():
             factor, claims = 2.0 ** (power * per_second(quantity)), plain.accuracy.claims[quantity][own]
@@ -276,14 +270,7 @@ def test_rates_too_slow_and_too_fast_to_be_squared_are_bounded_as_others_are(nam
             assert (off <= 2.1 * claims).all(), (quantity, own)
 
 
-def test_every_effect_is_among_them() -> None:
-    # No shipped mechanism that rolls has a damper.
-    asked = {effect for name in SCENES for effect in content_of(name)["effects"]}
-    assert asked == {*EFFECTS} - {*STATES[len(NAMED) :], "damper_by_roll"}
-
-
 def test_each_part_of_a_change_is_noticed() -> None:
-    plain, found = (by("absolute", "off-axis-strut") for by in (plain_by, changed_by))
-    whole = Change()
+    plain, found = (car_by("absolute", "off-axis-strut", change) for change in (UNCHANGED, CHANGE))
     for part in ("turn", "shift", "scale", "backwards"):
-        assert wrong_numbers(found, plain, replace(CHANGE, **{part: getattr(whole, part)})), part
+        assert wrong_numbers(found, plain, replace(CHANGE, **{part: getattr(UNCHANGED, part)})), part

@@ -1,58 +1,44 @@
-"""A car that rolls, pitches and heaves while its wheel bounces and is steered: directions and order of that.
-
-Every number of the car, near the origin and far from it, is held to the reference in test_formulations.
-"""
-
-from pathlib import Path
-from typing import Any
+"""A car that turns and is displaced in every way while its wheel moves, by all three mechanics."""
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
+from mpmath import mpf
+from one_arm import BOTH, DRAWN, place, tables
+from three_mechanics import assert_exact, by_each, over_time, scene_of, solved_by
 
-from pointcoord import InputOutOfRange, Scene, simulate
-from validate import compare
+from pointcoord import InputOutOfRange, simulate
 
-TURNED = Scene.load(Path(__file__).with_name("roll-pitch-heave.toml")).model_dump(exclude_none=True)
-# Of this car, whose x leads rearward: forward and left.
-AXES = {"roll": [-1.0, 0.0, 0.0], "pitch": [0.0, -1.0, 0.0]}
-
-
-def turned(drives: dict[str, Any] | None = None, **laws: Any) -> Scene:
-    """The car with other inputs that can be driven, or with other laws of them."""
-    part, drives = TURNED["mechanism"], drives or TURNED["mechanism"]["inputs"]
-    time = {"start": 0.0, "stop": 1.0, "samples": 5}
-    inputs = {**TURNED["inputs"], **laws}
-    return Scene.from_mapping(
-        TURNED | {"mechanism": {**part, "inputs": drives}, "inputs": inputs, "time": time}
-    )
-
-
-def test_absolute_displaces_the_car_along_every_direction_at_once() -> None:
-    ways = ("down", "left", "right", "forward", "rearward")
-    drives = TURNED["mechanism"]["inputs"] | {way: {"moves": "chassis", "along": way} for way in ways}
-    laws = {way: {"polynomial": [5.0, 2.0**speed]} for speed, way in enumerate(ways, 1)}
-    assert compare(turned(drives, **laws), "pointcoord", "absolute").agreed
+# Exact in binary.
+LAWS = {
+    "turn": [0.1875, -0.375],
+    "steer": [-12.0, 40.0],
+    "roll": [0.0625, -0.25],
+    "pitch": [-0.125, 0.1875],
+}
+# Of this car, whose x leads rearward and y to the right.
+WAYS = {
+    **{"up": (0, 0, 1), "down": (0, 0, -1), "left": (0, -1, 0), "right": (0, 1, 0)},
+    **{"forward": (-1, 0, 0), "rearward": (1, 0, 0)},
+}
 
 
-def test_turns_follow_each_other_in_the_order_of_the_file() -> None:
-    still = simulate(turned(**{name: {"constant": 0.0} for name in (*AXES, "heave")}))
-    middle, places = np.array(TURNED["mechanism"]["points"]["middle"]), []
-    for order in (("heave", "roll", "pitch"), ("pitch", "heave", "roll")):
-        drives = {n: d for n, d in TURNED["mechanism"]["inputs"].items() if n not in order}
-        scene = turned(drives | {name: TURNED["mechanism"]["inputs"][name] for name in order})
-        motion, values = simulate(scene), {n: f.series(0.5, 0)[0] for n, f in scene.functions.items()}
-        for name, place in motion.position.items():
-            meant = still.position[name][2]
-            for turn in (name for name in order if name != "heave"):
-                by = Rotation.from_rotvec(values[turn] * np.array(AXES[turn]))
-                meant = middle + by.apply(meant - middle)
-            lift = np.array([0.0, 0.0, values["heave"]])
-            np.testing.assert_allclose(place[2], meant + lift, rtol=0.0, atol=1e-11)
-        places.append(motion.position["wheel_centre"][2])
-    assert np.abs(places[0] - places[1]).max() > 0.1
+@by_each
+@pytest.mark.parametrize("turns", [BOTH, BOTH[::-1]])
+def test_a_car_turns_in_the_order_of_its_file_and_goes_along_every_direction(
+    who: str, turns: tuple[str, ...]
+) -> None:
+    mechanism = tables(turns=turns)
+    mechanism["inputs"] |= {way: {"moves": "chassis", "along": way} for way in WAYS}
+    laws = {way: [5.0, 2.0**speed] for speed, way in enumerate(WAYS)}
+
+    def formula(time: mpf) -> dict[tuple[str, str], object]:
+        values = {name: a + b * time for name, (a, b) in (LAWS | laws).items()}
+        way = sum(values[name] * np.array(along) for name, along in WAYS.items())
+        return {("position", name): place(name, values, turns) + way for name in DRAWN}
+
+    assert_exact(solved_by(who, scene_of(mechanism, [], **LAWS, **laws)), over_time(formula))
 
 
 def test_a_car_that_turns_too_fast_is_refused_with_when_and_what() -> None:
     with pytest.raises(InputOutOfRange, match="below 1e\\+140 rad/s in size"):
-        simulate(turned(roll={"polynomial": [0.0, 1e141]}))
+        simulate(scene_of(tables(), ["velocity"], **LAWS | {"roll": [0.0, 1e141]}))

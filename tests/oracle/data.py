@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from program import document, pointcoord, scene_facts
+from program import validated
 from record import Facts, Record
 
 GIVEN = Path(__file__).parent / "given"
@@ -44,11 +44,7 @@ def record(folder: Path) -> Record:
     """By file: exit status, the verdict of each column and the kinds of explanations."""
     facts: Facts = {}
     for number, (case, (data, columns, scene, options)) in enumerate(CASES.items()):
-        target = folder / f"{number}.json"
         of_map = ("--map", RESULTS / columns) if columns else ()
-        more = (*of_map, *options, "-q", "--json", target)
-        status = pointcoord("validate", "--data", RESULTS / data, *more, SCENES / f"{scene}.toml")
-        facts[case] = {"exit status of the program": status}
-        for found in scene_facts(document(target)).values():
-            facts[case] |= found
+        words = ("--data", RESULTS / data, *of_map, *options, SCENES / f"{scene}.toml")
+        facts[case] = validated(folder / f"{number}.json", *words)
     return Record(facts)

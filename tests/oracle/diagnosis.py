@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from faulty import FAULTS, SCENE_FAULTS, SCENES
-from program import document, pointcoord, scene_facts
+from program import document, validated
 from record import Facts, Record
 
 WISHBONE, STRUT = "double-wishbone", "off-axis-strut"
@@ -21,19 +21,9 @@ def record(folder: Path) -> Record:
     """By fault and scene: exit status, verdicts, which explanation comes first and the kinds of all."""
     facts: Facts = {}
     for fault, scene in CASES:
-        facts[f"{fault} in {scene}"] = _explained(folder / f"{fault}-{scene}.json", fault, scene)
+        target, words = folder / f"{fault}-{scene}.json", ("--in-process", "--solver", f"faulty:with_{fault}")
+        found = validated(target, *words, SCENES / f"{scene}.toml", ORACLE_SCENE=scene)
+        compared = [c for part in document(target).get("scenes", []) for c in part["comparisons"]]
+        kinds = [one["kind"] for c in compared for one in c["explanations"]]
+        facts[f"{fault} in {scene}"] = {**found, "first explanation": next(iter(kinds), "none")}
     return Record(facts)
-
-
-def _explained(target: Path, fault: str, scene: str) -> dict[str, object]:
-    options = ("--in-process", "--solver", f"faulty:with_{fault}", "-q", "--json", target)
-    status = pointcoord("validate", *options, SCENES / f"{scene}.toml", ORACLE_SCENE=scene)
-    content = document(target)
-    found: dict[str, object] = {"exit status of the program": status}
-    for facts in scene_facts(content).values():
-        found |= facts
-    explanations = [
-        one for part in content.get("scenes", []) for c in part["comparisons"] for one in c["explanations"]
-    ]
-    found["first explanation"] = explanations[0]["kind"] if explanations else "none"
-    return found

@@ -19,20 +19,27 @@ ONE_CORE = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 AXES = "xyz"
 
 
-def pointcoord(*arguments: str | Path, **environment: str) -> int:
-    """Run `pointcoord ARGUMENTS` with this checkout's code, on one core: its exit status."""
-    return python("-m", "pointcoord", *arguments, **ONE_CORE, **environment)
+def pointcoord(*words: str | Path, **environment: str) -> int:
+    """Run `pointcoord WORDS` with this checkout's code, on one core: its exit status.
 
-
-def python(*arguments: str | Path, **environment: str) -> int:
-    """Run this Python from the checkout's folder, with its code and this folder's to import from."""
+    In the checkout's folder; this one is there to import from, too.
+    """
     paths = os.pathsep.join(map(str, (ROOT, Path(__file__).parent)))
     return subprocess.run(
-        [sys.executable, *map(str, arguments)],
+        [sys.executable, "-m", "pointcoord", *map(str, words)],
         cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": paths, **environment},
+        env={**os.environ, "PYTHONPATH": paths, **ONE_CORE, **environment},
         capture_output=True,
     ).returncode
+
+
+def validated(target: Path, *words: str | Path, **environment: str) -> dict[str, Any]:
+    """What `validate WORDS --json TARGET` makes of one scene: its exit status and `scene_facts`."""
+    status = pointcoord("validate", *words, "-q", "--json", target, **environment)
+    found: dict[str, Any] = {"exit status of the program": status}
+    for facts in scene_facts(document(target)).values():
+        found |= facts
+    return found
 
 
 def document(path: Path) -> dict[str, Any]:

@@ -5,8 +5,7 @@ python -m tests.support.badly_drawn_struts [COUNT]        a table of how often t
 
 import sys
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass
+from contextlib import suppress
 from itertools import pairwise
 from typing import Any
 
@@ -14,10 +13,7 @@ import numpy as np
 
 import absolute
 from pointcoord import Scene, SceneError
-from pointcoord.numerics.arrays import Array
 from validate.closed_drawing import closed_drawing
-
-Places = Mapping[str, Array]
 
 SEED = 20261123
 # Shares of the car's size by which points are moved at most, and the bounds of the table's columns.
@@ -29,17 +25,12 @@ ONE, OTHER, NEITHER = "absolute refuses", "pointcoord refuses", "both refuse"
 OUTCOMES = (SAME_PLACE, OTHER_PLACE, ONE, OTHER, NEITHER)
 
 
-@dataclass(frozen=True)
-class BadlyDrawn:
-    """A scene's content, and by which share of the car's size its points are moved at most."""
+def badly_drawn(number: int) -> tuple[float, dict[str, Any]]:
+    """By which share of its size the points of a car are moved at most, and the scene's content.
 
-    share: float
-    content: dict[str, Any]
-
-
-def badly_drawn(number: int) -> BadlyDrawn:
-    """The scene `bounce` with every point moved; half of them of another car, whose points are moved by up to
-    a tenth of its size first and whose strut is put on its line."""
+    The car is that of the scene `bounce`; half of them are another one, whose points are moved by up to a
+    tenth of its size first and whose strut is put on its line.
+    """
     rng = np.random.default_rng([SEED, number])
     content = Scene.load("bounce").model_dump(exclude_none=True)
     points = {name: np.array(place, float) for name, place in content["mechanism"]["points"].items()}
@@ -54,35 +45,23 @@ def badly_drawn(number: int) -> BadlyDrawn:
     moved = {n: (place + rng.uniform(-share, share, 3) * size).tolist() for n, place in points.items()}
     content["mechanism"]["points"] = moved
     content["time"] = {"start": 0.0, "stop": 0.1, "samples": 2}
-    return BadlyDrawn(share, content)
+    return share, content
 
 
-def closed_by_pointcoord(scene: Scene) -> Places | None:
-    """Where its points are; None where it refuses."""
-    try:
-        return closed_drawing(scene).places or None
-    except SceneError:
-        return None
-
-
-def closed_by_absolute(scene: Scene) -> Places | None:
-    """Where its points are; None where it refuses."""
-    try:
-        closed = absolute.close_drawing(absolute.compile(scene.mechanism.plain(tuple(scene.inputs))))
-    except absolute.AbsoluteError:
-        return None
-    return dict(closed.position)
-
-
-def outcome(drawn: BadlyDrawn) -> str:
+def outcome(drawn: tuple[float, dict[str, Any]]) -> str:
     """One of `OUTCOMES`; a drawing that is no scene, as with its wheel inboard, is refused by both."""
+    ours = theirs = None
     try:
-        scene = Scene.from_mapping(drawn.content)
+        scene = Scene.from_mapping(drawn[1])
     except SceneError:
         return NEITHER
-    ours, theirs = closed_by_pointcoord(scene), closed_by_absolute(scene)
-    if ours is None or theirs is None:
-        return NEITHER if ours is theirs else ONE if theirs is None else OTHER
+    with suppress(SceneError):
+        ours = closed_drawing(scene).places
+    with suppress(absolute.AbsoluteError):
+        plain = scene.mechanism.plain(tuple(scene.inputs))
+        theirs = absolute.close_drawing(absolute.compile(plain)).position
+    if not (ours and theirs):
+        return OTHER if theirs else ONE if ours else NEITHER
     apart = max(float(np.abs(ours[name] - theirs[name]).max()) for name in ours)
     return SAME_PLACE if apart < SAME else OTHER_PLACE
 
@@ -91,8 +70,7 @@ def table(count: int) -> str:
     """How often each outcome is met, by how far points are moved, as Markdown."""
     found = Counter[tuple[str, int]]()
     for drawn in map(badly_drawn, range(count)):
-        column = int(np.searchsorted(SHARES, drawn.share)) - 1
-        found[outcome(drawn), column] += 1
+        found[outcome(drawn), int(np.searchsorted(SHARES, drawn[0])) - 1] += 1
     columns = range(len(SHARES) - 1)
     heads = [f"{100 * a:.3g} to {100 * b:.3g} %" for a, b in pairwise(SHARES)]
     lines = [f"| points moved by up to | {' | '.join(heads)} | all |", "|---" * (len(heads) + 2) + "|"]

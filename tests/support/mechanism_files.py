@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from many_digits import DIGITS, Points, vector
+from mpmath import mp
+
 import pointcoord
 from pointcoord.mechanism.file import MechanismFile
+from validate.reference import Design, instants_of
 
 ROOT = Path(pointcoord.__file__).parent
 MECHANISMS = tuple(sorted(path.stem for path in (ROOT / "mechanisms").glob("*.toml")))
@@ -76,6 +80,25 @@ def plain(tables: Tables, part: Mapping[str, Any], driven: Iterable[str]) -> Pla
         "car": dict(part.get("car", {})),
         "loads": {},
     }
+
+
+def exact_states(
+    plain: Mapping[str, Any], path: Sequence[Mapping[str, Sequence[Any]]], clearness: float = 0.0
+) -> list[tuple[Points, ...]]:
+    """By the reference, places of the points and their rates at some inputs, in the order in which they are
+    reached, mm and s.
+
+    Args:
+        path: value, rate and acceleration of each input.
+        clearness: how far another assembly must be from the drawing, in parts of the mechanism's size.
+    Raises:
+        NoReferenceError: with what is in the way.
+    """
+    found = []
+    for instant in instants_of(Design.from_plain(plain), path, DIGITS, clearness):
+        with mp.workdps(DIGITS):
+            found.append(tuple({name: vector(p) for name, p in of.items()} for of in instant.derivatives))
+    return found
 
 
 def full_input(drive: Mapping[str, Any]) -> Tables:

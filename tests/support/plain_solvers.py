@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 from cars_in_closed_form import STEERED, pose_of
-from many_digits import DIGITS
+from many_digits import DIGITS, Array, unit
 from mpmath import mp, mpf
 
 from validate.cars.car import Car
@@ -46,18 +46,25 @@ def solved(given: Mapping[str, Any], points: Mapping[str, Any]) -> dict[str, Any
             {n: ((after[n] - before[n]) / (2 * STEP)).astype(float) for n in now},
             {n: ((after[n] - 2 * now[n] + before[n]) / STEP**2).astype(float) for n in now},
         ]
+        axis = STEERED[car.suspension]
+        ends = (axis[0], "tie_rod_outer", "wheel_centre")
+        turning = [
+            _turning([_frame(*(pose[n][k] for n in ends)) for pose in (before, now, after)])
+            for k in range(len(now[axis[0]]))
+        ]
     quantities = ("position", "velocity", "acceleration")
     found: dict[str, Any] = {
         q: {n: state[n] for n in given["asked"].get(q, ())}
         for q, state in zip(quantities, states, strict=True)
     }
-    axis = STEERED[car.suspension]
-    turning = _turning([_sides(state, (axis[0], "tie_rod_outer", "wheel_centre")) for state in states])
-    found["angular_velocity"], found["angular_acceleration"] = ({"knuckle": turn} for turn in turning)
+    for name, rates in zip(
+        ("angular_velocity", "angular_acceleration"), zip(*turning, strict=True), strict=True
+    ):
+        found[name] = {"knuckle": np.array(rates, dtype=float)}
     inner = "wheel_axis_inner" if "wheel_axis_inner" in points else "strut_lower"
-    return found | {
-        "wheel": _angles(given, states[0]["wheel_centre"] - states[0][inner], _line(states[0], axis))
-    }
+    places = states[0]
+    spin, kingpin = places["wheel_centre"] - places[inner], places[axis[1]] - places[axis[0]]
+    return found | {"wheel": _angles(given, spin, kingpin)}
 
 
 def _poses(car: Car, inputs: Mapping[str, Any], step: mpf) -> dict[str, Any]:
@@ -71,34 +78,22 @@ def _poses(car: Car, inputs: Mapping[str, Any], step: mpf) -> dict[str, Any]:
     return {name: np.stack([pose[name] for pose in poses]) for name in poses[0]}
 
 
-def _line(state: Mapping[str, Any], ends: tuple[str, str]) -> Any:
-    return state[ends[1]] - state[ends[0]]
+def _frame(first: Array, second: Array, third: Array) -> Array:
+    """Axes of a body as columns, from three of its points."""
+    along = unit(second - first)
+    across = unit(np.cross(along, third - first))
+    return np.stack([along, across, np.cross(along, across)], axis=1)
 
 
-def _sides(state: Mapping[str, Any], names: tuple[str, ...]) -> Any:
-    """From the first point to the second and third, (N, 2, 3)."""
-    first, *others = (state[name] for name in names)
-    return np.stack([other - first for other in others], axis=1)
-
-
-def _turning(sides: list[Any]) -> tuple[Any, Any]:
-    """omega and alpha by least squares of s' = omega x s and s'' = alpha x s + omega x s' of two sides."""
-
-    def solved_for(wanted: Any) -> Any:
-        rows = np.concatenate([_crossing(sides[0][:, i]) for i in range(2)], axis=1)
-        return np.array(
-            [np.linalg.lstsq(a, b.reshape(-1), rcond=None)[0] for a, b in zip(rows, wanted, strict=True)]
-        )
-
-    omega = solved_for(sides[1])
-    return omega, solved_for(sides[2] - np.cross(omega[:, None], sides[1]))
-
-
-def _crossing(side: Any) -> Any:
-    """Matrices that give omega x side, (N, 3, 3)."""
-    x, y, z = side.T
-    zero = np.zeros_like(x)
-    return np.stack([zero, z, -y, -z, zero, x, y, -x, zero], axis=-1).reshape(-1, 3, 3)
+def _turning(frames: list[Array]) -> tuple[Array, Array]:
+    """omega and alpha of axes R: R' R^T = [omega]x, R'' R^T = [alpha]x + [omega]x^2, the square symmetric."""
+    before, now, after = frames
+    spins = ((after - before) / (2 * STEP), (after - 2 * now + before) / STEP**2)
+    omega, alpha = (
+        np.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]]) / 2
+        for m in (s @ now.T for s in spins)
+    )
+    return omega, alpha
 
 
 def _angles(given: Mapping[str, Any], spin: Any, kingpin: Any) -> dict[str, Any]:

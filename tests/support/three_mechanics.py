@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -36,6 +36,13 @@ def scene_of(mechanism: Mapping[str, Any], effects: Sequence[str], **laws: Any) 
     return Scene.from_mapping(
         {"effects": list(effects), "mechanism": dict(mechanism), "inputs": inputs, "time": time}
     )
+
+
+def over_time(formula: Callable[[Any], Mapping[Any, Any]]) -> dict[Any, list[Any]]:
+    """What a formula gives, in many digits, at the instants of `scene_of`."""
+    with workdps(DIGITS):
+        rows = [formula(mpf(k) / 2) for k in range(3)]
+    return {name: [row[name] for row in rows] for name in rows[0]}
 
 
 def assert_exact(

@@ -15,10 +15,7 @@ from validate.cars.base_cars import Variant, variants
 from validate.cars.random_cars import is_accepted
 from validate.strategies import inputs, mechanisms, near_singular, scenes
 
-ROOT = Path(__file__).parents[2]
-FEW = settings(max_examples=5)
-# The first example that is generated is the least one: there is nothing to shrink.
-FIRST = settings(max_examples=1, phases=[Phase.generate], database=None)
+FEW = settings(max_examples=3)
 
 
 @FEW
@@ -50,19 +47,16 @@ def test_nothing_is_drawn_and_thrown_away(drawn: st.SearchStrategy[object]) -> N
     seen = []
 
     @seed(1)
-    @settings(max_examples=5, phases=[Phase.generate], database=None, suppress_health_check=HealthCheck)
+    @settings(max_examples=3, phases=[Phase.generate], database=None, suppress_health_check=HealthCheck)
     @given(drawn)
     def collect(example: object) -> None:
         seen.append(example)
 
     collect()
-    assert len(seen) == 5
+    assert len(seen) == 3
     again, seen = seen, []
     collect()
     assert [str(example) for example in seen] == [str(example) for example in again]
-
-
-by_variant = pytest.mark.parametrize("variant", variants(), ids=lambda variant: variant.words)
 
 
 @FEW
@@ -81,13 +75,15 @@ def test_a_scene_file_of_ones_own_is_a_base_car(tmp_path: Path) -> None:
     (tmp_path / "links.toml").write_bytes((MECHANISMS / "five_link.toml").read_bytes())
     own = tmp_path / "own.toml"
     own.write_text(scene_text("five-link").replace('"five_link"', '"links.toml"'), encoding="utf-8")
-    found = find(scenes(suspension=str(own)), lambda _: True, settings=FIRST)
+    # The first example that is generated is the least one: there is nothing to shrink.
+    first = settings(max_examples=1, phases=[Phase.generate], database=None)
+    found = find(scenes(suspension=str(own)), lambda _: True, settings=first)
     assert found.mechanism.type is None
     assert set(found.mechanism.bodies) == set(mechanism_file("five_link")["bodies"])
     assert "wheel_travel" in found.inputs
 
 
-@by_variant
+@pytest.mark.parametrize("variant", variants(), ids=lambda variant: variant.words)
 def test_a_car_whose_points_coincide_is_drawn_back_and_no_error(variant: Variant) -> None:
     base, names = variant.base, variant.input_sets[0]
     assert is_accepted(base, names)

@@ -1,28 +1,31 @@
-"""Random cars of every mechanism are solved as drawn, and near poses have the stated distance from an end."""
+"""Random cars are solved as drawn; ends of inputs are ends, and near poses have their distance from them."""
+
+from contextlib import suppress
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from cars_in_closed_form import cars_of
+from hypothesis import given
 from hypothesis import strategies as st
+from searched import searched
 
 from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.drawing_stands import drawn_inputs as drawn_inputs_of
 from pointcoord.linkage.directions import DIRECTIONS
 from validate.cars.base_cars import variants
 from validate.cars.car import Car, content_of
-from validate.cars.input_ends import drawn_inputs, end
+from validate.cars.input_ends import at, drawn_inputs, end, redrawn
 from validate.cars.random_cars import LEFT_OVER, near_pose, random_car, sliding
 from validate.cars.random_scenes import KINDS, random_scene
+from validate.formulations.reference_solution import design_of
+from validate.reference import NoReferenceError, pose_exists
 
 NUMBERS = st.integers(0, 2**32 - 1)
-EXAMPLES = settings.default.max_examples if settings.default else 100
-DEEP = EXAMPLES > 100
-searched = settings(deadline=None, max_examples=EXAMPLES if DEEP else 8)
-# Each example searches for ends of inputs, which takes half a second.
-searched_for_ends = settings(deadline=None, max_examples=EXAMPLES if DEEP else 2)
+# Share of the range of an input: more than the rounding of the inputs of the redrawn car.
+NEAR = 1e-11
 
 
-@searched
+@searched(8)
 @given(NUMBERS)
 def test_a_random_car_is_solved_where_it_is_drawn_and_what_slides_is_drawn_on_its_line(number: int) -> None:
     drawn = random_car(np.random.default_rng(number))
@@ -32,26 +35,20 @@ def test_a_random_car_is_solved_where_it_is_drawn_and_what_slides_is_drawn_on_it
     if drawn.car.closure != "drawn":
         return
     # Points drawn off their line are moved onto it, which moves other points too.
-    for name, place in drawn.car.array.items():
-        assert np.abs(motion.position[name][0] - place).max() <= 0.05 * drawn.car.size, name
+    car, p = drawn.car, drawn.car.array
+    for name, place in p.items():
+        assert np.abs(motion.position[name][0] - place).max() <= 0.05 * car.size, name
     # At most LEFT_OVER off its line.
-    p, structure = drawn.car.array, drawn.car.structure
-    for slide in structure.slides.values():
-        if slide.through not in p:
-            continue
-        along = (
-            drawn.car.direction(slide.along)
-            if slide.along in DIRECTIONS
-            else p[slide.along] - p[slide.through]
-        )
-        for name in set(slide.points) & set(sliding(drawn.car)):
-            aside = np.cross(p[name] - p[slide.through], along) / np.linalg.norm(along)
-            far = max(float(np.abs(place).max()) for place in p.values())
-            allowed = np.sqrt(3.0) * LEFT_OVER * drawn.scale + 1e-12 * far
-            assert np.linalg.norm(aside) <= allowed, name
+    far = max(float(np.abs(place).max()) for place in p.values())
+    for slide in (one for one in car.structure.slides.values() if one.through in p):
+        there = p[slide.through]
+        along = car.direction(slide.along) if slide.along in DIRECTIONS else p[slide.along] - there
+        for name in set(slide.points) & set(sliding(car)):
+            aside = np.cross(p[name] - there, along) / np.linalg.norm(along)
+            assert np.linalg.norm(aside) <= np.sqrt(3.0) * LEFT_OVER * drawn.scale + 1e-12 * far, name
 
 
-@searched_for_ends
+@searched(2)
 @given(NUMBERS, st.floats(-11.0, -2.0))
 def test_a_near_pose_is_as_near_to_its_end_as_is_asked(number: int, decades: float) -> None:
     distance = 10.0**decades
@@ -70,6 +67,27 @@ def test_a_near_pose_is_as_near_to_its_end_as_is_asked(number: int, decades: flo
         assert distance < 1e-9
     else:
         assert condition > 0.05 / np.sqrt(distance)
+
+
+@searched(2)
+@pytest.mark.parametrize(("driven", "sign"), [("arm_angle", -1.0), ("rack", 1.0)])
+@given(car=cars_of())
+def test_an_end_separates_poses_from_none_to_a_hundred_billionth_of_the_range(
+    car: Car, driven: str, sign: float
+) -> None:
+    """By the reference."""
+    home = drawn_inputs(car)
+    try:
+        last = end(car, home, driven, sign > 0.0)
+    except PointcoordError:
+        return
+    if last is not None:
+        design = design_of(at(redrawn(car, home), home))
+        ends = (last.value - sign * NEAR * last.reach, last.value + sign * NEAR * last.reach)
+        poses = [{n: (v, 0.0, 0.0) for n, v in (home | {driven: value}).items()} for value in ends]
+        # A drawing close to another assembly has no reference.
+        with suppress(NoReferenceError):
+            assert [pose_exists(design, pose) for pose in poses] == [True, False]
 
 
 def test_a_number_names_one_scene_and_one_pose() -> None:

@@ -126,21 +126,16 @@ def test_runs_take_turns_in_another_order_each_round() -> None:
     assert len(set(rounds)) > FULL.repeats // 2
 
 
-def failing(phase: str, error: Exception, run: int) -> Toy:
-    """A toy that raises in a phase of one of its runs."""
+@pytest.mark.parametrize(("phase", "run"), [("set-up", 1), ("solve", 5)])
+def test_what_breaks_down_in_any_run_has_a_failed_row_and_no_time(phase: str, run: int) -> None:
     seen: Counter[str] = Counter()
 
     def before(now: str) -> None:
         seen[now] += 1
         if now == phase and seen[now] == run:
-            raise error
+            raise ZeroDivisionError("by\nnothing")
 
-    return Toy("toy", costs={"set-up": 10**8}, before=before)
-
-
-@pytest.mark.parametrize(("phase", "run"), [("set-up", 1), ("solve", 5)])
-def test_what_breaks_down_in_any_run_has_a_failed_row_and_no_time(phase: str, run: int) -> None:
-    toy = failing(phase, ZeroDivisionError("by\nnothing"), run)
+    toy = Toy("toy", costs={"set-up": 10**8}, before=before)
     row, fine = raced(toy, Toy("other", toy.clock), effort=QUICK)
     assert (row.verdict, row.reason) == ("failed", "ZeroDivisionError: by nothing")
     assert (row.time, row.error, row.poses) == (None, None, 0)

@@ -2,38 +2,14 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
+from made_cases import made_case
 from program import document
 
 from validate.cli import main
 from validate.hard import catalogue
 from validate.hard.answer import Answer
-from validate.hard.case import RIGHT, Case
-
-
-def case_of(name: str, answer: Answer | None, formulation: str = "absolute") -> Case:
-    """A case of one value and answer; without one it is interrupted."""
-
-    def judge(*_: object) -> Answer:
-        if answer is None:
-            raise KeyboardInterrupt
-        return answer
-
-    (one,) = catalogue.chosen(["arm-hardly-moves"])
-    made: dict[str, Any] = {"expected": {formulation: RIGHT}, "values": (1.0,), "group": "0. Made"}
-    return replace(one, name=name, scene=lambda *_: {}, judge=judge, **made)
-
-
-@pytest.fixture
-def made(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A catalogue of two small cases, of which one goes wrong."""
-
-    def wrong(name: str, formulation: str) -> Case:
-        return case_of(name, Answer(formulation, "wrong", "far off"), formulation)
-
-    monkeypatch.setattr(catalogue, "CASES", (wrong("ours-fails", "pointcoord"), wrong("quiet", "absolute")))
 
 
 def test_json_goes_alone_to_standard_output_and_holds_every_trial(
@@ -57,8 +33,13 @@ def test_json_goes_alone_to_standard_output_and_holds_every_trial(
 
 
 def test_a_wrong_number_without_a_warning_ends_with_1_and_the_page_holds_the_cases(
-    made: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    cases = [
+        made_case({1.0: Answer(of, "wrong", "far off")}, name=name, of=of)
+        for name, of in (("ours-fails", "pointcoord"), ("quiet", "absolute"))
+    ]
+    monkeypatch.setattr(catalogue, "CASES", cases)
     assert main(["hard", "--report", str(tmp_path / "page")]) == 1
     out, _ = capsys.readouterr()
     assert "NOT AS EXPECTED: pointcoord is wrong at 1: far off" in out
@@ -85,9 +66,9 @@ def test_the_list_is_json_as_well(capsys: pytest.CaptureFixture[str]) -> None:
 def test_an_interrupted_run_leaves_the_cases_that_are_finished(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    right = Answer("absolute", "right")
-    cases = (*(case_of(f"done-{i}", right) for i in range(3)), case_of("stop", None))
-    monkeypatch.setattr(catalogue, "CASES", cases)
+    right = {1.0: Answer("absolute", "right")}
+    cases = [made_case(right, name=f"done-{i}") for i in range(3)]
+    monkeypatch.setattr(catalogue, "CASES", [*cases, made_case({1.0: KeyboardInterrupt()}, name="stop")])
     target = tmp_path / "hard.json"
     assert main(["hard", "--json", str(target)]) == 130
     (line,) = capsys.readouterr().err.splitlines()

@@ -5,83 +5,64 @@ That each end parts poses from none is tested by the hard cases next to it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from copy import copy
 from dataclasses import replace
 from typing import Any
 
 import mpmath
 import pytest
 
-from pointcoord import AssemblyError, Scene
-from validate.formulations.protocol import FormulationError, Solution
+from pointcoord import Scene
+from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
 from validate.hard.cases.ends import TIE_ROD
 from validate.hard.reach import End, fault_of_kept, last_value, refusal_held
 from validate.hard.subjects import CARS, NAMED, PAPER
 
-PAPER_RACK = End(PAPER, "rack", True, links=TIE_ROD)
+RACK = End(PAPER, "rack", True, links=TIE_ROD)
+SCENE = Scene.from_mapping(RACK.beyond(PAPER, 1e-3))
 
 
-def refused(scene: Scene, solver: str) -> FormulationError:
-    """What a solver says of a scene that it refuses."""
+def refused(solver: str) -> Any:
+    """What a solver says of the scene, which it refuses."""
     with pytest.raises(FormulationError) as caught:
-        formulation(solver).solve(scene)
+        formulation(solver).solve(SCENE)
     return caught.value
 
 
-def broken(**changes: Any) -> Callable[[FormulationError], FormulationError]:
-    def change(refusal: FormulationError) -> FormulationError:
-        error: Any = refusal.reason
-        said = {n: getattr(error, n) for n in ("reached", "wanted", "limits", "reduce", "condition")}
-        told = AssemblyError("no way on", **said)
-        for attribute, edit in changes.items():
-            setattr(told, attribute, edit(said[attribute]))
-        return FormulationError(refusal.formulation, told, refusal.partial)
+def test_a_refusal_that_says_something_wrong_is_wrong() -> None:
+    right = refused("pointcoord-newton")
+    assert refusal_held(right, SCENE, RACK).outcome == "right"
 
-    return change
+    def saying(**other: Any) -> FormulationError:
+        told = copy(right.reason)
+        vars(told).update(other)
+        return FormulationError(right.formulation, told, right.partial)
 
-
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        (broken(reached=lambda r: r | {"rack": r["rack"] * (1.0 - 1e-8)}), "stops at rack"),
-        (broken(reduce=lambda _: "arm_angle"), "advises to reduce 'arm_angle'"),
-        (broken(limits=lambda limits: limits[5:]), "not those that lie in line"),
-        (lambda refusal: FormulationError(refusal.formulation, refusal.reason), "is not kept"),
-        (
-            lambda refusal: FormulationError(refusal.formulation, ValueError("no way on")),
-            "does not say how far",
-        ),
-    ],
-)
-def test_a_refusal_that_says_something_wrong_is_wrong(
-    change: Callable[[FormulationError], FormulationError], says: str
-) -> None:
-    scene = Scene.from_mapping(PAPER_RACK.beyond(PAPER, 1e-3))
-    refusal = refused(scene, "pointcoord-newton")
-    assert refusal_held(refusal, scene, PAPER_RACK).outcome == "right"
-    answer = refusal_held(change(refusal), scene, PAPER_RACK)
-    assert answer.outcome == "wrong"
-    assert says in answer.reason
+    short = right.reason.reached | {"rack": right.reason.reached["rack"] * (1.0 - 1e-8)}
+    for wrong, says in (
+        (saying(reached=short), "stops at rack"),
+        (saying(reduce="arm_angle"), "advises to reduce 'arm_angle'"),
+        (saying(limits=right.reason.limits[5:]), "not those that lie in line"),
+        (FormulationError(right.formulation, right.reason), "is not kept"),
+        (FormulationError(right.formulation, ValueError("no way on")), "does not say how far"),
+    ):
+        answer = refusal_held(wrong, SCENE, RACK)
+        assert answer.outcome == "wrong"
+        assert says in answer.reason
 
 
 def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
-    solver = "pointcoord"
-    scene = Scene.from_mapping(PAPER_RACK.beyond(PAPER, 1e-3))
-    end, refusal = float(PAPER_RACK.last.value), refused(scene, solver)
-    kept = refusal.partial
-    assert kept is not None
-    assert fault_of_kept(refusal, scene, end, "rack") == ""
-
-    def with_kept(solution: Solution) -> FormulationError:
-        return FormulationError(solver, refusal.reason, solution)
-
-    places = {name: array.copy() for name, array in kept.position.items()}
+    right, end = refused("pointcoord"), float(RACK.last.value)
+    assert fault_of_kept(right, SCENE, end, "rack") == ""
+    places = {name: array.copy() for name, array in right.partial.position.items()}
     places["tie_rod_outer"][1, 2] += 1e-6
-    moved = with_kept(kept.with_numbers({"position": places}))
-    assert "tie_rod_outer of the kept instant 1" in fault_of_kept(moved, scene, end, "rack")
-    cut = with_kept(replace(kept, times=kept.times[:-1]))
-    assert "instants are kept" in fault_of_kept(cut, scene, end, "rack")
+    for kept, says in (
+        (right.partial.with_numbers({"position": places}), "tie_rod_outer of the kept instant 1"),
+        (replace(right.partial, times=right.partial.times[:-1]), "instants are kept"),
+    ):
+        wrong = FormulationError("pointcoord", right.reason, kept)
+        assert says in fault_of_kept(wrong, SCENE, end, "rack")
 
 
 @pytest.mark.parametrize("car", ["paper", "turned"])

@@ -1,23 +1,24 @@
-"""Proven bounds against the reference on random cars, up to the poses where they lock."""
+"""Proven bounds against the reference on random cars, up to where they lock; a false claim is found."""
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import pandas as pd
 import pytest
-from hypothesis import assume, given, settings, target
+from counted_study import worked_out
+from hypothesis import assume, given, target
 from hypothesis import strategies as st
+from searched import searched
 
-from validate.cars.random_cars import NearPose, approach, near_pose
+from pointcoord.results import proof
+from validate.cars.base_cars import variants
+from validate.cars.random_cars import approach, near_pose
 from validate.exit_status import ExitStatus
 from validate.output.table import text_of
 from validate.strategies import cars
 from validate.studies.bounds import bounds, held_pose, measured
-
-EXAMPLES = settings.default.max_examples if settings.default else 100
-# An end and its pose take a second, so the short profile searches briefly and the deep one as long as any.
-searched = settings(deadline=None, max_examples=EXAMPLES if EXAMPLES > 100 else 2)
+from validate.studies.claims import claims
+from validate.studies.study import Row
 
 
 @st.composite
@@ -41,7 +42,8 @@ def checks(draw: st.DrawFn) -> pd.DataFrame:
     return measured([row])
 
 
-@searched
+# An end and its pose take a second.
+@searched(2)
 @given(check=checks())
 def test_no_search_finds_an_error_above_its_bound_or_a_sudden_loss_of_digits(check: pd.DataFrame) -> None:
     (share,), (loss,) = check["share"], check["loss"]
@@ -54,16 +56,7 @@ def test_no_search_finds_an_error_above_its_bound_or_a_sudden_loss_of_digits(che
     assert loss <= 17 * 6, check
 
 
-def beside(pose: NearPose, distance: float) -> NearPose:
-    """The same end from another distance."""
-    outward = math.copysign(1.0, pose.inputs[pose.driven] - pose.home[pose.driven])
-    near = pose.inputs[pose.driven] + outward * (pose.distance - distance) * pose.reach
-    return replace(pose, inputs=pose.inputs | {pose.driven: near}, distance=distance)
-
-
 def test_a_bound_below_the_error_is_found_and_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:
-    from pointcoord.results import proof
-
     honest = proof._of_poses
 
     def short(*given: Any) -> tuple[Any, ...]:
@@ -71,7 +64,21 @@ def test_a_bound_below_the_error_is_found_and_ends_with_status_1(monkeypatch: py
         return own, 1e-6 * bound, *others
 
     monkeypatch.setattr(proof, "_of_poses", short)
-    row = held_pose(beside(near_pose(4), 1e-4))
+    row = held_pose(near_pose(4, nearest=1e-4, farthest=1e-4))
     findings = bounds().summary([{"part": "held", "number": 0, **row}])
     assert findings.status == ExitStatus.DISAGREE
     assert "bounds below the error: 1\n  number 0, " in text_of(findings.parts)
+
+
+def test_a_claim_below_the_error_is_found_and_ends_with_status_1() -> None:
+    """That claims hold says `formulations/test_stated_accuracy.py`."""
+    study = claims(1)
+    rows = worked_out(study)
+    honest = study.summary(rows)
+    assert honest.status == ExitStatus.AGREE
+    assert "acceleration" in text_of(honest.parts)
+    broken: Row = {"suspension": variants()[0].words, "kind": "regular", "quantity": "velocity"}
+    findings = study.summary([*rows, {"number": 7, **broken, "error": 2.0, "claim": 1.0}])
+    assert findings.status == ExitStatus.DISAGREE
+    assert "7 (regular)" in text_of(findings.parts)
+    assert 2.0 in [one["largest_error_over_claim"] for one in findings.data["quantities"]]

@@ -9,7 +9,6 @@ import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pandas
@@ -88,8 +87,8 @@ def test_a_worker_of_another_version_records_nothing(
     assert not folder.exists()
 
 
-def ran(study: Any, folder: Path, other: Any, told: Any = lambda done: None) -> None:
-    with cluster.opened(other.scheduler_address) as client:
+def ran(study: Any, folder: Path, address: str, told: Any = lambda done: None) -> None:
+    with cluster.opened(address) as client:
         cluster.run(study, study.tasks, records(folder, study), client, told)
 
 
@@ -108,14 +107,13 @@ def test_a_cluster_that_cannot_work_a_study_out_is_refused(
         cluster_of(n_workers=workers, threads_per_worker=threads, processes=False) as other,
         pytest.raises(UsageError, match=words),
     ):
-        ran(counted(2, tmp_path / "marks"), tmp_path / "records", other)
+        ran(counted(2, tmp_path / "marks"), tmp_path / "records", other.scheduler_address)
 
 
 def test_an_error_of_a_task_names_it_and_leaves_what_was_recorded(address: str, tmp_path: Path) -> None:
-    study, other = counted(6, tmp_path / "marks", wrong=5), SimpleNamespace(scheduler_address=address)
-    folder = tmp_path / "records"
+    study, folder = counted(6, tmp_path / "marks", wrong=5), tmp_path / "records"
     with pytest.raises(NotFinished, match=r"^all 5: ZeroDivisionError: no square at counted_study\.py:\d+; "):
-        ran(study, folder, other)
+        ran(study, folder, address)
     assert {task.number for task in records(folder, study).rows()} == {0, 1, 2, 3, 4}
 
 
@@ -131,7 +129,7 @@ def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
                 gone.close()
 
         with pytest.raises(NotFinished, match=r"has failed .* the same command continues"):
-            ran(study, tmp_path / "records", gone, tell)
+            ran(study, tmp_path / "records", gone.scheduler_address, tell)
     assert 0 < len(records(tmp_path / "records", study).rows()) < 40
 
 

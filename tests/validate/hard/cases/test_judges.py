@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from stand_in import stand_in
+from made_cases import stand_in
 
 from pointcoord import NotFollowed, Scene, SingularConfiguration
 from pointcoord.solve import taylor
