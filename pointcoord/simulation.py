@@ -369,7 +369,7 @@ def require_scene(scene: object) -> None:
     """
     if not isinstance(scene, Scene):
         allowed = "a Scene, as Scene.load(name) gives it"
-        raise SceneError(shown(scene), "", f"is a {type(scene).__name__}, not a scene", allowed)
+        raise SceneError(shown(scene), "", f"is of type {type(scene).__name__}, not a scene", allowed)
 
 
 def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:

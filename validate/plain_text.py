@@ -22,6 +22,11 @@ def typed(path: str) -> str:
     return shlex.quote(shown(path))
 
 
+def counted_as(count: int, noun: str) -> str:
+    """A count with its noun: 1 instant, 2,000 instants."""
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
+
+
 def some_of(words: Sequence[str], most: int) -> str:
     """The first `most` words, and the number of the others."""
     more = f" and {len(words) - most} more" if len(words) > most else ""

@@ -175,7 +175,7 @@ def no_role(effect: str, role: str, topology: Topology) -> str:
 def no_radius(effect: str) -> str:
     """The message that a mechanism lacks the wheel radius that an effect needs."""
     needs = "the wheel's contact point, but the mechanism has no wheel_radius"
-    return lacks(effect, needs, "give it in mm under [mechanism], such as wheel_radius = 300.0")
+    return lacks(effect, needs, "give it under [mechanism], such as wheel_radius = 300.0 in a scene in mm")
 
 
 def not_one_input(effect: str, which: str, driven: Sequence[str]) -> str:

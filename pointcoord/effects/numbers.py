@@ -118,7 +118,7 @@ def _gradient(number: Number, way: str) -> Number:
     return Number(
         name=f"{number.name}_{way}",
         words=f"{number.words} per {per}",
-        sign=f"where it grows {entry['words']}",
+        sign=f"where {number.words} grows {entry['words']}",
         definition=f"the derivative of `{number.name}` {entry['words']}",
         formula=partial(_by_travel if travels else _slope, number),
         roles=tuple(dict.fromkeys((*number.roles, *(("wheel_axis",) if travels else ())))),

@@ -39,7 +39,7 @@ def columns_of(
     held = {name: low for name, (low, high) in domain.ranges.items() if low == high}
     for d, state in enumerate(given):
         if not isinstance(state, Mapping):
-            raise WrongArgument(STATES[d], f"is a {type(state).__name__}", "numbers or arrays by input")
+            raise WrongArgument(STATES[d], f"is of type {type(state).__name__}", "numbers or arrays by input")
         kind = ("input", "input with a rate", "input with an acceleration")[d]
         for name in state:
             if name not in topology.inputs:
@@ -108,7 +108,7 @@ def checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[floa
     """
     topology = mechanism.topology
     if not isinstance(ranges, Mapping):
-        raise WrongArgument("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
+        raise WrongArgument("ranges", f"is of type {type(ranges).__name__}", "a pair of numbers by input")
     for name in ranges:
         if name in topology.chassis_inputs and name not in topology.required_inputs:
             allowed = "no range: this input moves the whole chassis and may have any value"

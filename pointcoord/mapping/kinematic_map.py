@@ -461,7 +461,7 @@ def _hold_rows(patches: ProvenPatches) -> None:
 def _of_file(path: object, done: str, allowed: str) -> Iterator[None]:
     """Turns the errors of reading or writing a file into `WrongArgument`."""
     if not isinstance(path, str | PathLike):
-        raise WrongArgument(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
+        raise WrongArgument(f"path {path!r}", f"is of type {type(path).__name__}", "the path of a file")
     try:
         yield
     except OSError as error:

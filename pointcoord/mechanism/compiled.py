@@ -450,8 +450,8 @@ class Compiler:
         if name not in self.lengths:
             what, usual = LENGTHS[name]
             raise MechanismError(
-                f"input {input!r} is {what}, and the mechanism has no {name}; allowed: {name} in mm, such as "
-                f"{name} = {usual}",
+                f"input {input!r} is {what}, and the mechanism has no {name}; allowed: {name} under "
+                f"[mechanism], such as {name} = {usual} in a scene in mm",
                 (input,),
             )
         return self.lengths[name]

@@ -21,6 +21,7 @@ WORDS = {
 }
 # Errors whose message contains the value already.
 COMPLETE = ("missing", "too_short", "too_long", "value_error")
+MOST_KEYS = 3  # of further errors, in a message
 
 
 class TableFault(ValueError):
@@ -38,11 +39,17 @@ class TableFault(ValueError):
         """The same error in tables that are part of larger tables, at `place`."""
         return TableFault((*place, *self.place), self.problem, self.allowed)
 
-    def of_file(self, source: str, others: int = 0) -> SceneError:
-        """This error as an error of a file; `others` is the number of further errors in it."""
-        more = f" (and {others} more)" if others else ""
-        key = ".".join(shown_key(one) for one in self.place if one != "")
-        return SceneError(source, key, self.problem + more, self.allowed)
+    @property
+    def key(self) -> str:
+        """The place as dotted keys."""
+        return ".".join(shown_key(one) for one in self.place if one != "")
+
+    def of_file(self, source: str, others: Sequence[TableFault] = ()) -> SceneError:
+        """This error as an error of a file; `others` are further errors in it, named by their keys."""
+        keys = list(dict.fromkeys(one.key for one in others))
+        rest = f" and {len(keys) - MOST_KEYS} more" if len(keys) > MOST_KEYS else ""
+        more = f" (also look at: {', '.join(keys[:MOST_KEYS])}{rest})" if keys else ""
+        return SceneError(source, self.key, self.problem + more, self.allowed)
 
 
 def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str | int] = ()) -> TableFault:
@@ -76,13 +83,19 @@ def known_keys(table: object, known: Collection[str]) -> object:
     return table
 
 
-def faults_of(error: ValidationError, place: Sequence[str | int] = ()) -> list[TableFault]:
-    """Pydantic's errors in a table at a place."""
-    return [_fault(found, place) for found in error.errors(include_url=False)]
+def faults_of(
+    error: ValidationError, place: Sequence[str | int] = (), written: object = None
+) -> list[TableFault]:
+    """Pydantic's errors in a table at a place.
+
+    Args:
+        written: the table before lengths were converted to mm; messages show its values.
+    """
+    return [_fault(found, place, written) for found in error.errors(include_url=False)]
 
 
-def _fault(found: ErrorDetails, place: Sequence[str | int]) -> TableFault:
-    where, value = (*place, *found["loc"]), found["input"]
+def _fault(found: ErrorDetails, place: Sequence[str | int], written: object) -> TableFault:
+    where, value = (*place, *found["loc"]), _value_at(written, found["loc"], found["input"])
     cause: object = found.get("ctx", {}).get("error")
     if isinstance(cause, TableFault):
         return cause.under(*where)
@@ -92,3 +105,13 @@ def _fault(found: ErrorDetails, place: Sequence[str | int]) -> TableFault:
     words = WORDS.get(found["type"]) or message
     complete = found["type"] in COMPLETE or isinstance(value, Mapping | BaseModel)
     return TableFault(where, words if complete else f"{words}, not {shown(value)}")
+
+
+def _value_at(table: object, keys: Sequence[str | int], otherwise: object) -> object:
+    """The value under keys in nested tables and lists; `otherwise` if there is none."""
+    for key in keys:
+        try:
+            table = table[key]  # type: ignore[index]
+        except (TypeError, LookupError):
+            return otherwise
+    return table

@@ -102,6 +102,11 @@ class Input(Entry):
         """Directions of the car that the input needs, fixed to the chassis."""
         return self.named("direction")
 
+    @property
+    def holds(self) -> int:
+        """Number of freedoms that it holds when driven: one for each of its slides, otherwise one."""
+        return max(len(self.named("slide")), 1)
+
     def check(self, bodies: Bodies) -> None:
         """Check that the names, which exist, fit together.
 

@@ -97,14 +97,7 @@ class SolvedScene(ABC):
             instants: instants that do not decrease, shape (N,), s.
             rows: a table of results or some columns of one, shape (..., height, N). Reported states are
                 written into it, and the returned states may be views of it.
-        Raises:
-            WrongArgument: an instant outside the motion, or not a number.
         """
-        outside = ~((instants >= self.start) & (instants <= self.stop))
-        if outside.any():
-            instant = float(instants[outside][0])
-            allowed = f"{self.start:.10g} to {self.stop:.10g} s"
-            raise WrongArgument(f"t = {instant:.10g} s", "is outside the motion", allowed, instant)
         mechanism, found = self.readout.mechanism, self.readout.states(rows)
         layout, carried = mechanism.layout, mechanism.topology.carried
         unit, y = mechanism.unit[..., None, None], self.solved(instants, self.readout.plan.derivative)
@@ -131,9 +124,16 @@ class SolvedScene(ABC):
 
         Args:
             add: whether to add the origin and the displacement of the chassis.
+        Raises:
+            WrongArgument: an instant outside the motion, or not a number.
         """
         for low in range(0, len(times), BLOCK):
             here, block = times[low : low + BLOCK], rows[..., low : low + BLOCK]
+            outside = ~((here >= self.start) & (here <= self.stop))
+            if outside.any():
+                instant = float(here[outside][0])
+                allowed = f"{self.start:.10g} to {self.stop:.10g} s"
+                raise WrongArgument(f"t = {instant:.10g} s", "is outside the motion", allowed, instant)
             y = self.coordinates(here, 0)[0] if self.readout.plan.along_ways else None
             self.readout.complete(self.readout.laws(here), self.states(here, block), block, y, add=add)
 

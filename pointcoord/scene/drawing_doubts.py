@@ -20,6 +20,8 @@ from pointcoord.numerics.arrays import Array, Flags
 SMALLEST, LARGEST = 50.0, 20_000.0  # mm: no suspension is smaller, and no car longer
 # Share of the largest outboard distance of a wheel's points: a rack may end a little beyond the car's middle.
 ACROSS = 0.1
+# Most times as far from the middle as half of the points: mm read as inches are 25.4 times as far.
+FAR = 20.0
 
 
 def drawing_doubts(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> tuple[str, ...]:
@@ -48,6 +50,7 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
                 'scene states, write units = "mm", "m" or "in" at its top (mm if not given)'
             ),
         ),
+        _far_from_the_others(points),
         *_front_behind_rear(topology, points, axes),
         *_racks_outboard(topology, points, axes),
         _alone_across(topology, points, axes),
@@ -56,6 +59,22 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
         angles = (angle for angle in ANGLES.values() if wheel.role(angle.line))
         doubts += [angle.doubt(wheel, points, axes.on(wheel.side)) for angle in angles]
     return tuple(doubts)
+
+
+def _far_from_the_others(points: Mapping[str, Array]) -> Doubt:
+    """A point much farther from the middle (the median) of all points than half of them: another unit."""
+    names, places = [*points], np.stack(list(points.values()), axis=-2)
+    away = np.linalg.norm(places - np.median(places, axis=-2, keepdims=True), axis=-1)
+    near = np.median(away, axis=-1)
+
+    def words(one: tuple[int, ...]) -> str:
+        at = int(away[one].argmax())
+        return (
+            f"{names[at]} lies {float(away[one][at]):.5g} mm from the middle of the points, and half of them "
+            f"lie within {float(near[one]):.4g} mm of it: is it drawn in another unit?"
+        )
+
+    return Doubt(away.max(axis=-1) > FAR * near, words)
 
 
 def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:

@@ -192,7 +192,9 @@ def _swept(law: Mapping[str, Any], time: Any, place: Place) -> Mapping[str, Any]
         others = " and ".join(key for key in law if key != SWEEP)
         raise TableFault(place, f"is given together with {others}", "exactly one law")
     if not (_numbers(ends) and len(ends) == 2):
-        raise TableFault(place, f"is {shown(ends)}", "two numbers, such as [-50.0, 50.0]")
+        # The scene's unit of length has been converted: numbers would not be those of the file.
+        problem = f"has length {len(ends)}" if _numbers(ends) else f"is {shown(ends)}"
+        raise TableFault(place, problem, "two numbers, such as [-50.0, 50.0]")
     span: list[Any] = [
         time.get(key) if isinstance(time, Mapping) else getattr(time, key, None) for key in SPAN
     ]
@@ -227,7 +229,8 @@ def read_in(part: Any, length: object, folder: Path = Path()) -> Any:
 def _table_of(path: str, length: str) -> dict[str, list[float]]:
     allowed = "two columns of numbers, time in s and the input's value, with commas between them"
     try:
-        text = read_file(path, "the path of a file of two columns").decode("utf-8-sig")
+        written = read_file(path, "the path of a file of two columns, from the scene's folder")
+        text = written.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(path, "", "is not text in UTF-8", allowed) from None
     rows: list[list[Any]] = []

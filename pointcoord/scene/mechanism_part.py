@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -335,6 +335,11 @@ class MechanismPart(Part):
             MechanismError: the mechanism has more equations than coordinates, and the drawing does not close.
         """
         return self.file.freedoms(self.points, self.closure, self.directions)
+
+    def inputs_in_words(self, names: Iterable[str]) -> str:
+        """Inputs, each with the number of slides that it drives if there are several."""
+        held = ((name, self.structure.inputs[name].holds) for name in names)
+        return ", ".join(f"{name} ({count} slides)" if count > 1 else name for name, count in held)
 
     @property
     def axis_point(self) -> str:

@@ -57,7 +57,7 @@ class TimePart(Part):
     def agree(self) -> None:
         if self.samples == 1 and self.start != self.stop:
             raise ValueError(
-                f"one sample from {self.start} to {self.stop}; allowed: start = stop, or 2 samples"
+                f"one sample from {self.start} to {self.stop}; allowed: start = stop, or at least 2 samples"
             )
         if self.samples > 1 and not self.start < self.stop:
             raise ValueError(f"start {self.start} is not before stop {self.stop}; allowed: start < stop")
@@ -200,8 +200,9 @@ class Scene(Part):
             raise TableFault(("mechanism", *of_points), error.problem) from None
         names = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
         given = [name for name in names if name in self.inputs]
-        listed = f": {', '.join(given)}" if given else ""
-        driven = f"and {len(given)} {'is' if len(given) == 1 else 'are'} driven{listed}"
+        count = sum(part.structure.inputs[name].holds for name in given)
+        listed = f": {part.inputs_in_words(given)}" if given else ""
+        driven = f"and {count} {'is' if count == 1 else 'are'} driven{listed}"
         if not freedoms:
             askew = askew_hinges(part.structure, part.points)
             exact = f"; if the hinges {', '.join(askew)} are meant to be parallel, draw them exactly so"
@@ -212,7 +213,7 @@ class Scene(Part):
                 f"at least one freedom: leave out a rod or a slide{exact if askew else ''}",
             )
         words = f"the {part.name} has {freedoms} freedom{'' if freedoms == 1 else 's'}, {driven}"
-        more = freedoms - len(given)
+        more = freedoms - count
         if more < 0:
             raise TableFault(("inputs",), words, f"as many inputs as freedoms: leave out {-more}")
         others = (
@@ -225,7 +226,7 @@ class Scene(Part):
         except MechanismError:
             free, lost = "unknown, since the drawing does not close", ""
         if more and missing:
-            allowed = f"as many inputs as freedoms: drive {more} more of {others}"
+            allowed = f"as many inputs as freedoms: drive {more} more of {others}, or add a missing rod"
             raise TableFault(("inputs",), f"{words}; free: {free}", allowed)
         same = ", ".join(topology.fighting or given)
         words = (
@@ -261,7 +262,7 @@ class Scene(Part):
         """Check a scene given as plain data, as `tomllib` reads it.
 
         Raises:
-            SceneError: the first fault, with its key; further ones are counted.
+            SceneError: the first fault, with its key, and the keys of further ones.
         """
         return cls.checked(content, source)
 
@@ -275,7 +276,9 @@ class Scene(Part):
         """
         if not isinstance(name, str | os.PathLike):
             allowed = f"a path, or one of {', '.join(built_in_scenes())}"
-            raise SceneError(shown(name), "", f"is a {type(name).__name__}, not the name of a scene", allowed)
+            raise SceneError(
+                shown(name), "", f"is of type {type(name).__name__}, not the name of a scene", allowed
+            )
         if str(name) in built_in_scenes():
             written = (SCENES / f"{name}.toml").read_bytes()
         else:

@@ -91,13 +91,13 @@ class Part(BaseModel):
         """A checked part, from plain data or from an object.
 
         Raises:
-            SceneError: the first fault, with its key; further ones are counted.
+            SceneError: the first fault, with its key, and the keys of further ones.
         """
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            first, *others = faults_of(error)
-            raise first.of_file(source, len(others)) from None
+            first, *others = faults_of(error, written=content)
+            raise first.of_file(source, others) from None
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:

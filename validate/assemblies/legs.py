@@ -30,6 +30,7 @@ import numpy as np
 
 from validate.arrays import Array
 from validate.errors import NoAnswer
+from validate.plain_text import counted_as
 from validate.spanning_tree.tree import car_directions
 
 CHASSIS = "chassis"
@@ -78,8 +79,8 @@ def forms(mechanism: Mapping[str, Any], places: Mapping[str, Array]) -> Array:
     if len(found) != CONDITIONS + 1:
         raise NoAnswer(
             knuckle,
-            f"is held by {len(found) - 1} conditions",
-            f"{CONDITIONS}, of which assemblies are counted: rods, arms on hinges, a slide and the inputs",
+            f"is held by {counted_as(len(found) - 1, 'condition')}",
+            f"a knuckle held by {CONDITIONS}: rods, arms on hinges, a slide and the inputs",
         )
     return np.asarray(found / np.abs(found).max(axis=(1, 2), keepdims=True))
 

@@ -13,7 +13,6 @@ from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.output.report import (
     about,
-    counted_as,
     explained_lines,
     held_to,
     pair_of,
@@ -23,7 +22,7 @@ from validate.output.report import (
     told_row,
     when,
 )
-from validate.plain_text import gathered, shown, some_of, typed
+from validate.plain_text import counted_as, gathered, shown, some_of, typed
 from validate.solvers.plain import SolverFailed
 
 NAMED = 10  # largest number of scenes that a sentence names for each verdict

@@ -23,10 +23,9 @@ from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation, second_there
 from validate.output import report
 from validate.output.console import Console
-from validate.output.report import counted_as
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import WHY_NOT_EQUAL, compare_with_paper
-from validate.plain_text import shown
+from validate.plain_text import counted_as, shown
 from validate.solvers.apart import LIMIT, Apart
 from validate.solvers.check import ACCURACY, required_accuracy
 from validate.solvers.load import solver_at

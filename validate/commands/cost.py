@@ -26,7 +26,7 @@ from validate.extras import needed
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.files import write_content
-from validate.output.report import counted_as
+from validate.plain_text import counted_as
 
 if TYPE_CHECKING:
     from validate.cost.study import Study

@@ -17,7 +17,7 @@ from validate.fitting.suspects import suspected
 from validate.measured.mapping import map_to_fill_in, read_results
 from validate.output.console import Console
 from validate.output.document import Journal
-from validate.plain_text import shown
+from validate.plain_text import counted_as, shown
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -47,8 +47,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         limits = options.bounds, options.prior, options.accuracy
         problem = Problem.of(scene, measured, options.free, *limits)
         numbers, source = len(problem.spread), measured.source
-        task = "tested as suspects with" if options.suspects else "fitted to"
-        many = f"{len(problem.free)} coordinates are {task} {numbers} numbers"
+        coordinates = counted_as(len(problem.free), "coordinate")
+        task = f"testing {coordinates} as suspects with" if options.suspects else f"fitting {coordinates} to"
+        many = f"{task} {counted_as(numbers, 'number')}"
         console.note(f"{many}; this may take a while", of=name)
         if options.suspects:
             suspects = suspected(problem, progress)

@@ -12,7 +12,8 @@ from validate.exit_status import ExitStatus
 from validate.formulations.registry import missing
 from validate.output.console import Console
 from validate.output.document import Journal
-from validate.output.report import counted_as, share_of_all
+from validate.output.report import share_of_all
+from validate.plain_text import counted_as
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:

@@ -82,8 +82,8 @@ def _mechanism(scene: Scene, name: str) -> Iterator[str]:
     yield from ("joints:", *(f"  {joint}" for joint in joints_in_words(structure)))
     inputs = structure.inputs.items()
     others = [n for n, one in inputs if n not in (part.driven or ()) and not one.moves_the_chassis]
-    could = f"; could be driven as well: {', '.join(others)}" if others else ""
-    held = ", ".join(topology.holding_inputs) or "no input"
+    could = f"; could be driven instead: {', '.join(others)}" if others else ""
+    held = part.inputs_in_words(topology.holding_inputs) or "no input"
     yield f"degrees of freedom: {part.freedoms}, driven by {held}{could}"
     if topology.left_labels:
         labels, why = ", ".join(topology.left_labels), "as drawn, each follows from the other equations"

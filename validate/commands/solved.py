@@ -28,8 +28,8 @@ from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.columns import ENDINGS, GROUP, put_table, rows_of_motion
 from validate.output.console import STANDARD_OUTPUT, Console
-from validate.output.report import counted_as
 from validate.paper.printed import PRINTED
+from validate.plain_text import counted_as
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 SMOOTH = 401  # a curve of fewer instants has corners

@@ -16,8 +16,7 @@ from validate.extras import needed
 from validate.formulations.registry import NAMES
 from validate.output.console import Console
 from validate.output.document import Journal
-from validate.output.report import counted_as
-from validate.plain_text import shown
+from validate.plain_text import counted_as, shown
 
 if TYPE_CHECKING:
     from validate.studies.study import Findings, Study

@@ -33,9 +33,8 @@ from validate.exit_status import ExitStatus
 from validate.output.columns import put_table, rows_of_sweep
 from validate.output.console import Console
 from validate.output.progress import Told
-from validate.output.report import counted_as
 from validate.output.table import Part, Table
-from validate.plain_text import shown
+from validate.plain_text import counted_as, shown
 from validate.tables.cells import joined, lines_of, text_of
 from validate.tables.units import degrees_of
 
@@ -93,8 +92,9 @@ class Summary:
             for (_, heading), ends in self.ends.items()
         ]
         table = [Table(("over designs and instants", "lowest", "highest"), tuple(rows))] if rows else []
-        solved, instants = self.tried - self.failed.total(), counted_as(self.instants, "instant")
-        return f"solved: {solved} of {self.tried} designs, at {instants} each", *self.failed_lines(), *table
+        designs, instants = counted_as(self.tried, "design"), counted_as(self.instants, "instant")
+        total = f"solved: {self.tried - self.failed.total()} of {designs}, at {instants} each"
+        return (total, *self.failed_lines(), *table)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -172,7 +172,9 @@ def _designs_of_file(scene: Scene, path: str) -> Designs:
             raise WrongArgument(f"{name}: line {first}", where, "columns such as strut_top.z, each once")
     for line, row in lines:
         if len(row) != len(header):
-            raise WrongArgument(f"{name}: line {line}", f"has {len(row)} numbers", f"{len(header)}, as names")
+            raise WrongArgument(
+                f"{name}: line {line}", f"has {counted_as(len(row), 'number')}", f"{len(header)}, as names"
+            )
     values = np.array([finite(f"{name}: line {line}", row, "finite numbers, mm") for line, row in lines])
     return designs_of(scene, {column: values[:, i] for i, column in enumerate(header)})
 

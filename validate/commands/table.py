@@ -158,9 +158,10 @@ def _text(columns: Columns, target: str, reasons: Mapping[int, str] | None = Non
     kept = sum(len(one.path) == 1 for one in numbers)
     table = Table(head, tuple(zip(*map(_rounded, values), strict=True)), kept=kept)
     # The wheels of an axle share a line.
-    signs = {"-" * one.minus + one.called.rpartition(".")[2]: one.sign for one in numbers if one.of_the_car}
-    signs |= {one.called: one.sign for one in numbers if len(one.path) > 2 and not one.is_force}
-    directions = [f"{number}: positive {sign}" for number, sign in signs.items() if sign]
+    signs = {"-" * one.minus + one.called.rpartition(".")[2]: one for one in numbers if one.of_the_car}
+    signs |= {one.called: one for one in numbers if len(one.path) > 2 and not one.is_force}
+    named = {"+": "positive", "-": "negative"}
+    directions = [f"{number}: {named[one.mark]} {one.sign}" for number, one in signs.items() if one.sign]
     directions += [f"forces: {LOADS.sign}"] * any(one.is_force for one in numbers)
     if target != "-":
         return "\n".join([table.markdown, "", *(f"- {line}" for line in directions), ""])

@@ -10,8 +10,9 @@ from validate.commands.comparing import comparing
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
-from validate.output.report import counted_as, with_unit
+from validate.output.report import with_unit
 from validate.output.table import Cell, Part, Table
+from validate.plain_text import counted_as
 from validate.published.tables import MODELS, NOT_HELD, Column, Published, compare_published, tables
 
 

@@ -227,7 +227,7 @@ def solved_by(solver: Formulation, scene: Scene) -> Solution:
     except AccuracyError as error:
         raise FormulationError(solver.name, error) from error
     if not isinstance(solution, Solution):
-        problem = TypeError(f"it returns a {type(solution).__name__}; needed: a Solution")
+        problem = TypeError(f"it returns an object of type {type(solution).__name__}; needed: a Solution")
         raise FormulationError(solver.name, problem)
     return solution
 

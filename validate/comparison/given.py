@@ -14,7 +14,7 @@ import numpy as np
 from pointcoord.effects.registry import QUANTITIES
 from validate.arrays import Array
 from validate.formulations.protocol import Accuracy, FormulationError, Places, Solution, shape_of
-from validate.plain_text import shown
+from validate.plain_text import counted_as, shown
 
 Arrays = dict[str, dict[str, Array]]
 
@@ -43,7 +43,7 @@ def given(solution: Solution, instants: Array) -> Solution:
     """
     who, notes, faults = solution.formulation, list[str](), [*solution.faults]
     if not isinstance(solution.accuracy, Accuracy):
-        problem = f"its accuracy is a {type(solution.accuracy).__name__}; needed: an Accuracy"
+        problem = f"its accuracy is of type {type(solution.accuracy).__name__}; needed: an Accuracy"
         raise FormulationError(who, TypeError(problem))
     times = _real(solution.times)
     if isinstance(times, str) or times.ndim != 1:
@@ -51,7 +51,7 @@ def given(solution: Solution, instants: Array) -> Solution:
         raise FormulationError(who, ValueError(f"its times {problem}; needed: one number for each instant"))
     own = solution.accuracy
     if len(own.condition) != len(times):
-        problem = f"its accuracy is for {len(own.condition)} instants; needed: for its {len(times)} times"
+        problem = f"its accuracy is for {counted_as(len(own.condition), 'instant')}; needed: {len(times)}"
         raise FormulationError(who, ValueError(problem))
     common: Array = instants
     places: Places = slice(None)

@@ -39,7 +39,7 @@ class Number:
         path: its name: quantity, name and component, as far as it has them.
         words: its name in words.
         unit: unit of the values from `read`.
-        sign: its positive direction in words; empty if it needs no statement.
+        sign: the positive direction of its value before `minus`, in words; empty if it needs no statement.
         missing: why the scene does not give it; None if the scene asks for it.
         minus: whether it is shown with the opposite sign of pointcoord's number with this path.
     """
@@ -114,14 +114,18 @@ class Number:
         return (-1.0 if self.minus else 1.0) * degrees_of(self.unit)[0]
 
     @property
+    def mark(self) -> str:
+        """The sign of a shown value where `sign` holds: + or -."""
+        return "-" if self.minus else "+"
+
+    @property
     def unit_shown(self) -> str:
         """The shown unit: degrees for an angle."""
         return degrees_of(self.unit)[1]
 
     def negative(self) -> Number:
         """This number, shown with the opposite sign."""
-        sign = f"not {self.sign}" if self.sign else ""
-        return replace(self, words=f"minus {self.words}", sign=sign, minus=True)
+        return replace(self, words=f"minus {self.words}", minus=True)
 
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:

@@ -104,9 +104,9 @@ def _draw(axes: Axes, curves: Curves, values: Values, size: tuple[float, float])
 
 def _label(numbers: Sequence[Number], letters: int) -> str:
     """The label of an axis: number, unit and positive direction; several numbers are named in the legend."""
-    first, signs = numbers[0], list(dict.fromkeys(n.sign for n in numbers if n.sign))
+    first, signs = numbers[0], list(dict.fromkeys(f"{n.mark} {n.sign}" for n in numbers if n.sign))
     words = f"{first.words} " if len(numbers) == 1 else ""
-    positive = "; ".join(dict.fromkeys(f"+{n.called} {n.sign}" for n in numbers if n.sign))
+    positive = "; ".join(dict.fromkeys(f"{n.mark}{n.called} {n.sign}" for n in numbers if n.sign))
     if len(signs) == 1:
-        positive = f"+ {signs[0]}"
+        positive = signs[0]
     return "\n".join(fill(line, letters) for line in (f"{words}[{first.unit_shown}]", positive) if line)

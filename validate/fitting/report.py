@@ -15,7 +15,7 @@ from validate.exit_status import ExitStatus
 from validate.fitting.fit import CONFIDENCE, Combination, Coordinate, Fit
 from validate.fitting.suspects import Suspects
 from validate.output.table import csv_of
-from validate.plain_text import shown
+from validate.plain_text import counted_as, shown
 from validate.tables.units import degrees_of
 from validate.toml_written import written
 
@@ -94,7 +94,7 @@ def report_of_fit(fit: Fit, name: str, source: str) -> Report:
 def _lines_of_fit(fit: Fit, name: str, source: str) -> Iterator[str]:
     yield f"{name}: hardpoints fitted to {source}"
     for unit, (before, after, count) in fit.rms.items():
-        yield f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({count} numbers)"
+        yield f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({counted_as(count, 'number')})"
     for one in fit.columns:
         ends = f"{_of(one.unit, one.before)} before, {_of(one.unit, one.after)} after"
         yield f"    {shown(one.column)}: {ends}; standard deviation {_of(one.unit, one.known_to)}"
@@ -110,7 +110,7 @@ def _lines_of_fit(fit: Fit, name: str, source: str) -> Iterator[str]:
     if not fit.unseen:
         yield "\n  The data determine every combination of these coordinates: the answer is unique nearby."
         return
-    unseen = f"{len(fit.unseen)} of {len(fit.combinations)} combinations of coordinates"
+    unseen = f"{len(fit.unseen)} of {counted_as(len(fit.combinations), 'combination')} of coordinates"
     yield f"\n  The answer is not unique: the data do not determine {unseen}. Along these"
     yield f"  the correction follows from the prior of {fit.prior:g} mm, not from the data. Any may be added:"
     yield from (f"    {words}" for words in _undetermined(fit))
@@ -193,7 +193,7 @@ def _set(fit: Fit, equally_well: bool) -> dict[str, Any]:
 def _lines_of_suspects(found: Suspects, name: str, source: str) -> Iterator[str]:
     yield f"{name}: hardpoints that may explain {source} (a diagnosis: nothing is corrected)"
     drawn = f"{found.residual:.3g} times the rounding of the digits"
-    yield f"  residual as drawn: {drawn}, r.m.s. of {found.count} numbers"
+    yield f"  residual as drawn: {drawn}, r.m.s. of {counted_as(found.count, 'number')}"
     if not found.drawn:
         tried = zip(SIZES, found.tried, strict=False)
         fitted = "; ".join(f"{size}: {some} of {every} fitted" for size, (some, every) in tried)
@@ -218,7 +218,7 @@ def _warnings_of_suspects(found: Suspects) -> Iterator[str]:
         yield "some fits did not end at a minimum: one of their sets may still explain the file"
     if found.refused:
         some = "; ".join(found.refused[:REFUSED])
-        yield f"{len(found.refused)} sets could not be fitted: {some}"
+        yield f"{counted_as(len(found.refused), 'set')} could not be fitted: {some}"
 
 
 def verdict(found: Suspects) -> str:

@@ -113,7 +113,7 @@ class Accuracy:
 
 def _by_name(what: str, part: Mapping[str, Any]) -> Mapping[str, Any]:
     if not isinstance(part, Mapping):
-        raise AccuracyError(what, f"is a {type(part).__name__}", "arrays by quantity and name")
+        raise AccuracyError(what, f"is of type {type(part).__name__}", "arrays by quantity and name")
     return part
 
 

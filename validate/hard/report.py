@@ -11,8 +11,8 @@ from typing import Any, get_args
 
 from validate.hard.answer import MAP, Answer, Outcome, Trial
 from validate.hard.case import Case
-from validate.output.report import counted_as
 from validate.output.table import Part, Table
+from validate.plain_text import counted_as
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table

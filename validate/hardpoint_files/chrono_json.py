@@ -71,7 +71,7 @@ def _table(text: str, source: str) -> Mapping[str, Any]:
         line = getattr(error, "lineno", 0)
         raise FileError(source, line, f"is not JSON: {getattr(error, 'msg', error)}", FORM) from None
     if not isinstance(data, dict):
-        raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
+        raise FileError(source, 1, f"is of type {type(data).__name__}", FORM)
     return data
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.errors import UsageError
-from validate.plain_text import shown
+from validate.plain_text import counted_as, shown
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
 
@@ -185,7 +185,9 @@ def place_of(numbers: Sequence[object], source: str, line: int, name: str) -> Pl
         FileError: a text is not a number, or there are not three of them.
     """
     if len(numbers) != 3:
-        raise FileError(source, line, f"has {len(numbers)} numbers for {short(name)}", "x, y and z")
+        raise FileError(
+            source, line, f"has {counted_as(len(numbers), 'number')} for {short(name)}", "x, y and z"
+        )
     x, y, z = (
         number_of(number, source, line, f"{axis} of {short(name)}")
         for axis, number in zip("xyz", numbers, strict=True)

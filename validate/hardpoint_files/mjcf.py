@@ -33,6 +33,7 @@ from validate.arrays import Array
 from validate.extras import needed
 from validate.hardpoint_files.contents import DIRECTIONS, FARTHEST, Axes, Place, short
 from validate.hardpoint_files.written_scene import Drawing, ScenePoint
+from validate.plain_text import counted_as
 from validate.spanning_tree.tree import across
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
@@ -433,7 +434,9 @@ class _Builder:
             if unknown := [word for word in words if word not in known]:
                 self.facts.append(f"text {role} is ignored: no {kind} is called {short(unknown[0])}")
             elif len(words) != count:
-                self.facts.append(f"text {role} is ignored: it has {len(words)} names; allowed: {count}")
+                self.facts.append(
+                    f"text {role} is ignored: it has {counted_as(len(words), 'name')}; allowed: {count}"
+                )
             else:
                 found[role] = words if count == 2 else words[0]
         return found

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from validate.hardpoint_files.contents import Contents, FilePoint, place_of, plain, short
 from validate.measured.reading import name_and_unit
+from validate.plain_text import counted_as
 from validate.tables.cells import is_number, joined, lines_of
 from validate.tables.errors import FileError
 from validate.tables.units import length_called
@@ -77,7 +78,7 @@ def read(
             problem = f"has {count} numbers for {short(name)}, in columns without a title"
             raise FileError(source, line, problem, f"three, {SAY}")
         if columns.row >= 0 and any(map(is_number, row[(count := len(rows[columns.row][1])) :])):
-            problem = f"has {len(row)} cells under {count} titles"
+            problem = f"has {counted_as(len(row), 'cell')} under {counted_as(count, 'title')}"
             raise FileError(source, line, problem, "a title for each number, and no comma inside a number")
         corner = columns.at.get("corner", len(row))
         side, part = wheels.get(plain(row[corner]) if corner < len(row) else over, ("", ""))

@@ -11,8 +11,7 @@ from typing import Any
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.document import SCHEMA_VERSION
-from validate.output.report import counted_as
-from validate.plain_text import shown, some_of
+from validate.plain_text import counted_as, shown, some_of
 
 NAMED = 10  # cases that a sentence names
 Case = Mapping[str, Any]

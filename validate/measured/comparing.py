@@ -218,7 +218,7 @@ def _as_motion(driven: Driven, measured: Measured, rows: Indices) -> tuple[Indic
     if len(rows) < FEWEST or (len(rows) > MOST and len(driven.columns) > 1):
         return rows, None
     rows = rows[np.argsort(at, kind="stable")]
-    still = [n for n in driven.scene.effects if not EFFECTS[n].derivative and not EFFECTS[n].way]
+    still = [name for name in driven.scene.effects if not EFFECTS[name].derivative]
     inputs, _ = driven.inputs([s.values[rows] for s in measured.independent])
     return rows, row_by_row(driven.scene.model_copy(update={"effects": tuple(still)}), inputs)
 

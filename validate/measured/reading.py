@@ -23,7 +23,7 @@ from pointcoord import SceneError
 from pointcoord.toml_text import read_file
 from validate.arrays import Array
 from validate.extras import needed
-from validate.plain_text import shown
+from validate.plain_text import counted_as, shown
 from validate.tables.cells import NUMBER, is_number, joined, lines_of, text_of
 from validate.tables.errors import FileError
 from validate.tables.units import is_unit
@@ -147,7 +147,7 @@ def columns_of_text(text: str, source: str) -> Columns:
     for line, row in rows:
         if len(row) < count or any(row[count:]):
             allowed = f"{count}, one for each of {', '.join(names)}"
-            raise FileError(source, f"line {line}", f"has {len(row)} cells", allowed)
+            raise FileError(source, f"line {line}", f"has {counted_as(len(row), 'cell')}", allowed)
     words: dict[str, str] = {}
     read = np.zeros((count, len(rows), 3))
     for j, name in enumerate(names):

@@ -43,7 +43,7 @@ from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import TRAVEL
 from validate.measured.poses import Driven, Found, columns_of, swings
-from validate.plain_text import gathered, shown, some_of
+from validate.plain_text import counted_as, gathered, shown, some_of
 from validate.tables.errors import FileError
 from validate.toml_written import key_of
 
@@ -127,7 +127,7 @@ def held_of(
     notes = [*measured.notes, *driven.notes, *out_of_reach(measured, here)]
     if not here.reached.any():
         row = min(here.reasons)
-        problem = f"none of its {count} rows can be reached ({here.reasons[row]})"
+        problem = f"none of its {counted_as(count, 'row')} can be reached ({here.reasons[row]})"
         raise FileError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
     unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
     granted, reached_to = here, [s.off for s in measured.independent]

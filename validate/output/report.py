@@ -14,7 +14,7 @@ from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding
 from validate.output.table import Cell, Part, Table
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
-from validate.plain_text import gathered, shown
+from validate.plain_text import counted_as, gathered, shown
 from validate.tables.units import degrees_of
 
 if TYPE_CHECKING:  # most runs compare no file
@@ -115,11 +115,6 @@ def held_to(factor: float) -> str:
     if factor == 1.0:
         return "tolerances as derived"
     return f"tolerances are not as derived but {factor!r} times the derived tolerances"
-
-
-def counted_as(count: int, noun: str) -> str:
-    """A count with its noun: 1 instant, 2,000 instants."""
-    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 def share_of_all(done: Sized, every: Sized, noun: str) -> str:

@@ -29,8 +29,8 @@ from validate.formulations.reference_solution import (
 )
 from validate.formulations.refusals import same_reason, why_refused
 from validate.hard.answer import solved
-from validate.output.report import counted_as
 from validate.output.table import Part, Table
+from validate.plain_text import counted_as
 from validate.reference import InfeasibleError, NoReferenceError, instants_of
 from validate.studies.study import Findings, Row, Study, Task
 

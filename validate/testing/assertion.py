@@ -22,7 +22,7 @@ from validate.reference import InfeasibleError, NoReferenceError
 from validate.solvers.check import ACCURACY, AGAINST, required_accuracy
 from validate.solvers.plain import PlainSolver, as_function, given_to_solver
 
-WHO = "the states"
+WHO = "the answer"
 # Errors that concern the arguments of a test; any other error is a defect of this package.
 TOLD = (AssertionError, PointcoordError, FormulationError, NoReferenceError, UsageError)
 MOST_ROWS, MOST_EXPLANATIONS = 8, 3  # in a message; the number of further rows is stated
@@ -84,7 +84,7 @@ def assert_agrees(
 
     >>> assert_agrees({"camber": [0.0] * 131}, "bounce")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    AssertionError: the states disagree with pointcoord in 'bounce': ...
+    AssertionError: the answer disagrees with pointcoord in 'bounce': ...
     """
     __tracebackhide__ = True
     exact = required_accuracy(accuracy)
@@ -162,7 +162,7 @@ def _missing(outcome: Outcome, needed: Collection[str]) -> Iterator[str]:
             yield f"{need!r} is needed, but the scene does not ask for it{meant(str(need), known)}"
         elif names := [row.name for row in rows if row.verdict == "not given"]:
             of = "" if names == [need] else f" of {', '.join(names)}"
-            yield f"{need} is needed, but {WHO} give none{of}"
+            yield f"{need} is needed, but {WHO} gives none{of}"
 
 
 def _without_pose(scene: Scene) -> dict[float, str]:
@@ -181,7 +181,7 @@ def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:
     wrong = sorted(outcome.disagreements, key=lambda row: -row.share)
     agree = sum(row.verdict == "agrees" for row in outcome.rows)
     lines = [
-        f"{WHO} disagree with {other} in {outcome.scene!r}: {len(wrong)} of {len(wrong) + agree} tested "
+        f"{WHO} disagrees with {other} in {outcome.scene!r}: {len(wrong)} of {len(wrong) + agree} tested "
         f"numbers are off by more than the tolerances that follow from an accuracy of {accuracy:g} mm",
         *(f"  {told_row(row)}" for row in wrong[:MOST_ROWS]),
     ]
@@ -195,7 +195,7 @@ def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:
 
 def _nothing(outcome: Outcome) -> str:
     asked = ", ".join(dict.fromkeys(row.quantity for row in outcome.rows))
-    lines = [f"{WHO} contain nothing that {outcome.scene!r} asks for: {asked}"]
+    lines = [f"{WHO} contains nothing that {outcome.scene!r} asks for: {asked}"]
     if any(row.verdict == "agrees" for row in outcome.rows) or outcome.faults:
-        lines = [f"{WHO} give no verdict for {outcome.scene!r}: {outcome.why_no_verdict}"]
+        lines = [f"{WHO} gives no verdict for {outcome.scene!r}: {outcome.why_no_verdict}"]
     return "\n".join([*lines, *(f"  note: {note}" for note in outcome.notes)])

@@ -136,7 +136,7 @@ REFUSED: list[tuple[Callable[[KinematicMap], object], type[PointcoordError], str
     (lambda m: m.evaluate([1.0, 0.0, 3.0]), MapError, r"values have the shape \(3,\); allowed: \(2,\), a"),
     (lambda m: m({"arm_angle": [1.0, 1.0], "rack": np.ones(3)}), MapError, r"\(2,\), \(3,\).*broadcast"),
     (lambda m: m.covers({**AT, "arm_angle": "x"}), MapError, "arm_angle.*numbers.*'x'"),
-    (lambda m: m([1.0, 0.0]), MapError, "values is a list; allowed: .* by input"),
+    (lambda m: m([1.0, 0.0]), MapError, "values is of type list; allowed: .* by input"),
     (lambda m: m.save(None), MapError, "None.*path of a file"),
     (lambda m: m.save("/no/such/folder/map.npz"), MapError, "cannot be written"),
 ]
@@ -162,7 +162,7 @@ UNUSABLE: list[tuple[dict[str, Any], type[PointcoordError], str]] = [
     ),
     ({"ranges": {"arm_angle": (1.0, 1.0), "rack": (0.0, 0.0)}}, MapError, "leave 0 inputs free"),
     ({"ranges": {**RANGES, "arm_angle": (3.0, 3.5)}}, InputOutOfRange, "'arm_angle' is 3.5"),
-    ({"ranges": 7}, MapError, "ranges is a int"),
+    ({"ranges": 7}, MapError, "ranges is of type int"),
     ({"tolerance": 0.0}, MapError, "tolerance is 0.0; allowed: a finite number of mm above 0"),
     ({"tolerance": "1e-9"}, MapError, "tolerance is '1e-9'"),
     ({"halvings": 11}, MapError, "halvings is 11; allowed: a whole number"),

@@ -98,6 +98,13 @@ def test_an_instant_outside_the_motion_is_refused_among_others_too(bad: float, c
     assert motion.at(np.full(5000, 1.0)).position["wheel_centre"].shape == (5000, 3)
 
 
+def test_nan_is_an_instant_outside_the_motion_also_where_gradients_are_computed() -> None:
+    """Gradients need the inputs at the instants first."""
+    motion = simulate(Scene.load("five-link").model_copy(update={"effects": ("toe_by_travel",)}))
+    with pytest.raises(OutsideMotion, match="t = nan s is outside the motion"):
+        motion.at(np.nan)
+
+
 def test_results_are_written_where_they_are_wanted_and_nowhere_else() -> None:
     motion = solved("bounce", EVERY)
     instants = np.linspace(0.0, 2.6, 1000)

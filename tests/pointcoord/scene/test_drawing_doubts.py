@@ -42,6 +42,11 @@ MISDRAWN: list[tuple[str, dict[str, Any], str]] = [
         "to wheel_centre: are they swapped, or is side wrong?",
     ),
     (STRUT, {"wheel_axis_inner": (0.0, -740.0, 200.0)}, "the drawn camber is"),
+    (
+        WISHBONE,
+        {"wheel_centre": (0.0, 18237.2, 5334.0)},
+        "half of them lie within 217.3 mm of it: is it drawn",
+    ),
     (STRUT, {"lower_ball_joint": (-5.0, 712.0, 195.0)}, "the drawn kingpin angle is"),
     (STRUT, {"lower_arm_front": "lower_arm_rear"}, "drawn 300 mm behind lower_arm_rear"),
     (STRUT, {"tie_rod_inner": "tie_rod_outer"}, "tie_rod_inner lies 360 mm outboard of"),

@@ -98,7 +98,7 @@ def test_a_table_beside_the_scene_is_the_one_in_it(tmp_path: Path, head: str) ->
         ),
         ("0,1\n0.5,2\n0.5,3\n1,4\n", "table: times do not increase: 0.5 follows 0.5; allowed"),
         ("", "inputs.wheel_travel.table.times: "),
-        (None, "bump.csv: cannot be read (No such file or directory)"),
+        (None, "file or directory); allowed: the path of a file of two columns, from the scene's folder"),
     ],
 )
 def test_a_file_that_is_no_table_is_refused_with_its_place(

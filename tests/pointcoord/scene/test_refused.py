@@ -67,7 +67,9 @@ def test_what_names_no_scene_is_answered_with_the_built_in_ones(name: object) ->
 
 @pytest.mark.parametrize("given", [7, "bounce"])
 def test_what_is_no_scene_is_refused(given: object) -> None:
-    with pytest.raises(SceneError, match=rf"is a {type(given).__name__}, not a scene; allowed: a Scene, as"):
+    with pytest.raises(
+        SceneError, match=rf"is of type {type(given).__name__}, not a scene; allowed: a Scene"
+    ):
         standing(given)
 
 

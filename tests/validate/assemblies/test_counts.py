@@ -96,5 +96,5 @@ def test_what_is_not_on_six_legs_is_refused_with_what_holds_it() -> None:
     assert "names no knuckle" in found["reason"]
     assert "agreed" not in found
     mechanism, places = pose("semi-trailing-arm", "wheel_travel")
-    with pytest.raises(NoAnswer, match="arm is held by 1 conditions"):
+    with pytest.raises(NoAnswer, match="arm is held by 1 condition;"):
         forms(mechanism, places)

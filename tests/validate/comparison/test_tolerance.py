@@ -183,13 +183,16 @@ def test_numbers_that_cannot_be_read_are_told_with_what_is_needed(numbers: Any, 
     [
         (
             lambda: replace(of_wheel(BOUND)(), accuracy=None),
-            "its accuracy is a NoneType; needed: an Accuracy",
+            "accuracy is of type NoneType; needed: an Accuracy",
         ),
         (lambda: replace(of_wheel(BOUND)(), times=SCENE.instants[:, None]), "times"),
-        (lambda: {"position": {"wheel_centre": WHEEL}}, "it returns a dict; needed: a Solution"),
+        (
+            lambda: {"position": {"wheel_centre": WHEEL}},
+            "it returns an object of type dict; needed: a Solution",
+        ),
         (mine({}, {"speed": {}}), "'speed' is of no known quantity; allowed: position"),
-        (mine({}, {"position": [1e-9]}), "position is a list; allowed: arrays by"),
-        (mine({}, [1e-9]), "claims is a list; allowed: arrays by quantity and name"),
+        (mine({}, {"position": [1e-9]}), "position is of type list; allowed: arrays by"),
+        (mine({}, [1e-9]), "claims is of type list; allowed: arrays by quantity and name"),
         (
             of_wheel(-BOUND),
             "position of wheel_centre is -1e-09 at instant number 0; allowed: finite numbers from 0 up",

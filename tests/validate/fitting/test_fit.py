@@ -49,7 +49,7 @@ def test_the_corrected_scene_is_read_back_and_leaves_what_the_fit_said(
     assert main(["fit", "double-wishbone", *words]) == 0
     said = capsys.readouterr()
     # It takes a while: something is said at once, and in the end what the scene can be held to.
-    assert said.err.startswith("pointcoord: note: double-wishbone: 2 coordinates are fitted to 18 numbers")
+    assert said.err.startswith("pointcoord: note: double-wishbone: fitting 2 coordinates to 18 numbers")
     assert said.out.splitlines()[-1].endswith(f"try: pointcoord validate --data {data} {scene}")
     again, told = Scene.load(scene), document(Path(found))
     assert again.inputs == CAR.inputs

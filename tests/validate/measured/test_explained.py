@@ -106,3 +106,17 @@ def test_a_misread_hardpoint_is_named_though_one_number_has_a_fault_of_its_own()
     hardpoint, sign = explanations(RISE, AT[RISE][order], shuffled, car)
     assert "strut_top.x seems 6 mm too far back" in hardpoint.words
     assert sign.words == "toe: the other sign"
+
+
+def test_a_misread_hardpoint_is_named_by_numbers_per_travel() -> None:
+    """Roll centre and bump steer are derivatives by the travel, at each row of a file over travels."""
+    car = Scene.load("five-link").model_copy(update={"effects": ("roll_centre", "toe_by_travel")})
+    misread = designs_of(car, offsets={"toe_inner.z": 4.0}).design(0)
+    found = at_inputs(misread, {"wheel_travel": (-50.0, 50.0)}, 11)
+    columns = {
+        "input.wheel_travel [mm]": np.linspace(-50.0, 50.0, 11),
+        "roll_centre_height [mm]": found["dimension"]["roll_centre_height"],
+        "toe_by_travel [deg/mm]": np.degrees(found["angle_gradient"]["toe_by_travel"]),
+    }
+    first, *_ = compared(table(columns, 7), {}, car).outcome.explanations
+    assert "toe_inner.z seems 4 mm too high" in first.words

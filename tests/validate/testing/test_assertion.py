@@ -60,7 +60,7 @@ WRONG: list[tuple[Callable[[States], States], str, str]] = [
         "",
         "possible explanation: |  m",
     ),
-    (lambda _: {}, "", "contain nothing that 'mine' asks for"),
+    (lambda _: {}, "", "the answer contains nothing that 'mine' asks for"),
     (lambda _: {"positions": {}}, "", "'positions' | did you mean 'position'"),
     (
         lambda s: changed(s, "wheel", "camber", [4, 9], np.nan),
@@ -70,14 +70,14 @@ WRONG: list[tuple[Callable[[States], States], str, str]] = [
     # A comparison leaves out what it cannot compare and says so; nobody reads that of a test that passes.
     (lambda s: s | {"camber": np.zeros(3)}, "", "camber has the shape (3,); needed: (21,)"),
     (lambda s: s | {"cambre": TIMES}, "", "does not ask for (did you mean 'camber'?)"),
-    (camber, "velocity", "velocity is needed, but the states give none of lower_arm_front, "),
-    (camber, "toe", "toe is needed, but the states give none"),
-    (camber, "wheel", "wheel is needed, but the states give none of kingpin"),
+    (camber, "velocity", "velocity is needed, but the answer gives none of lower_arm_front, "),
+    (camber, "toe", "toe is needed, but the answer gives none"),
+    (camber, "wheel", "wheel is needed, but the answer gives none of kingpin"),
     (camber, "tow", "'tow' is needed, but the scene does not ask for it (did you mean 'toe'?)"),
     (
         lambda s: {"position": {n: x for n, x in s["position"].items() if n != "wheel_centre"}},
         "position",
-        "position is needed, but the states give none of wheel_centre",
+        "position is needed, but the answer gives none of wheel_centre",
     ),
 ]
 

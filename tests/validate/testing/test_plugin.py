@@ -93,7 +93,7 @@ def test_an_example_project_tests_its_right_and_its_wrong_solver(python: Path) -
     done = run(python, *PLAIN, "tests/wrong.py", cwd=EXAMPLE)
     assert done.returncode == 1, done.stdout + done.stderr
     said = [line.removeprefix("E").strip() for line in done.stdout.splitlines() if line.startswith("E ")]
-    assert "disagree with pointcoord" in said[0]
+    assert "disagrees with pointcoord" in said[0]
     assert said[1].startswith("camber: difference ")
     assert said[2] == "possible explanation: camber: the other sign"
     # The message is all: not where in the harness it was found.

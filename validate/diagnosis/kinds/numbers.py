@@ -20,6 +20,7 @@ from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.numerics.rounding import EPS
 from validate.arrays import Array
 from validate.diagnosis.evidence import ANY, Evidence, Hypothesis, Row, WouldBe, roundest, together
+from validate.plain_text import counted_as
 
 Times = Callable[[Row], float | Array]
 """The factor or the matrix, (3, 3), by which the numbers of a row are multiplied."""
@@ -314,7 +315,9 @@ def printed_digits(evidence: Evidence) -> Iterator[Hypothesis]:
             places = theirs * 10.0**count
             if (np.abs(places - np.rint(places)) <= 4.0 * EPS * np.abs(places)).all():
                 found = {row: _looser(evidence, row, np.asarray(10.0**-count)) for row in rows}
-                yield Hypothesis(f"printed with {count} decimals", found, cost=1.05, looser=True)
+                yield Hypothesis(
+                    f"printed with {counted_as(count, 'decimal')}", found, cost=1.05, looser=True
+                )
                 break
         if (np.abs(theirs) < np.finfo(np.float32).max).all() and (theirs == theirs.astype(np.float32)).all():
             found = {row: _looser(evidence, row, SINGLE * np.abs(evidence.held[row])) for row in rows}

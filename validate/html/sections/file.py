@@ -24,8 +24,9 @@ from validate.html.blocks import (
 )
 from validate.html.run import POINTS, Run
 from validate.measured.comparing import DataOutcome
-from validate.output.report import about, counted_as, held_to, in_degrees, used, when, worst_rows
+from validate.output.report import about, held_to, in_degrees, used, when, worst_rows
 from validate.output.table import Cell, Table
+from validate.plain_text import counted_as
 from validate.tables.units import degrees_of
 
 HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "possible explanation, or reason")

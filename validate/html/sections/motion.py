@@ -142,4 +142,4 @@ def _given(pair: tuple[Number, Number], one: Drawn, model: Solution) -> list[Arr
 
 
 def _title(number: Number) -> str:
-    return f"{number.words} [{number.unit_shown}]" + (f", + {number.sign}" if number.sign else "")
+    return f"{number.words} [{number.unit_shown}]" + (f", {number.mark} {number.sign}" if number.sign else "")
