@@ -18,9 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from absolute.description import car_of, directions_of, is_number, one_of, point_of, vector_of
+from absolute.description import corners_of, directions_of, is_number, loads_of, one_of, point_of
 from absolute.errors import DescriptionError
-from absolute.model import CHASSIS, Corner, Drawing, Input, Load, Model, Row
+from absolute.model import CHASSIS, Input, Model, Row
 from absolute.vectors import EPS, Array, cross
 
 # Squares of the lengths of a larger drawing, mm, are normal.
@@ -28,14 +28,12 @@ SMALLEST_SIZE = 1e-100
 # In units of size: coordinates of two nearer points agree in half of their digits, so that the line between
 # them has only the other half.
 SHORTEST_AXIS = math.sqrt(EPS)
-SIDES = ("left", "right")
-ROLES = ("wheel_axis", "steering_axis", "damper")
 INPUTS = ("angle", "travel", "steers", "height", "contact", "distance", "turns", "moves")
 # The body on which the car turns; no other body has an empty name.
 GROUND = ""
 NOTHING, AXES = np.zeros(3), np.eye(3)
-# Two bodies, and a point in each: first body, its point, second body, its point.
-Ends = tuple[str, str, str, str]
+# A body, and a point or a vector of it.
+End = tuple[str, str | Array]
 
 
 def compile(mechanism: Mapping[str, Any]) -> Model:
@@ -88,7 +86,7 @@ class _Compiler:
         self.reported: dict[tuple[str, ...], tuple[str, str]] = {}
         self.directions = directions_of(mechanism)
         self.middle, self.size = self._extent()
-        self.corners = self._corners()
+        self.corners = corners_of(mechanism, self.points, self.named, self.directions)
         # With free points and auxiliary bodies, which are added as rows need them.
         self.bodies: dict[str, tuple[str, ...]] = {}
         self.anchors: dict[str, Array] = {}
@@ -109,27 +107,27 @@ class _Compiler:
         for name, ends in self.rods.items():
             self._rod(name, tuple(ends))
         for name, given in self.driven.items():
-            kind = next((kind for kind in INPUTS if kind in given), "")
-            one_of(f"the kind of input {name!r}", INPUTS, kind or str(list(given)))
-            getattr(self, f"_{kind}")(name, given)
+            self._input(name, given)
         self._check()
-        holders: dict[str, str] = {}
-        for body, names in self.bodies.items():
-            for point in names:
-                holders.setdefault(point, body)
-        numbers, anchors = {n: k for k, n in enumerate(self.bodies)}, np.array([*self.anchors.values()])
+        numbers, anchors = {body: n for n, body in enumerate(self.bodies)}, [*self.anchors.values()]
+        holders = {point: numbers[self._holders(point)[0]] for point in self.points}
         return Model(
-            self.bodies,
-            Drawing(self.points, self.middle, self.size, numbers, anchors, holders),
-            tuple(self.joints),
-            tuple(self.inputs),
-            self.moves,
-            self.corners,
-            self._loads(),
-            self._dampers(),
-            self.reported,
-            tuple(body for body in self.named if body != CHASSIS),
-            frozenset(self.unturned),
+            points=self.points,
+            middle=self.middle,
+            size=self.size,
+            bodies=self.bodies,
+            origins=(np.array(anchors) - self.middle) / self.size,
+            holders=holders,
+            arms={point: (self.points[point] - anchors[n]) / self.size for point, n in holders.items()},
+            joints=tuple(self.joints),
+            inputs=tuple(self.inputs),
+            moves=self.moves,
+            corners=self.corners,
+            loads=loads_of(self.of.get("loads", {}), self.corners),
+            dampers=self._dampers(),
+            reported_joints=self.reported,
+            reported=tuple(body for body in self.named if body != CHASSIS),
+            unturned=frozenset(self.unturned),
         )
 
     def _check(self) -> None:
@@ -151,64 +149,33 @@ class _Compiler:
 
     # Reading the description
 
-    def _direction(self, name: str, given: Mapping[str, Any]) -> Array:
+    def _direction(self, what: str, given: Mapping[str, Any]) -> Array:
         along = given.get("along", "up")
-        one_of(f"`along` of input {name!r}", self.directions, along)
+        one_of(f"`along` of {what}", self.directions, along)
         return self.directions[along]
-
-    def _corners(self) -> dict[str, Corner]:
-        """Part -> its wheel, whose names begin with the part; "" -> the only wheel."""
-        radius = self.of.get("wheel_radius")
-        if radius is not None and not (is_number(radius) and radius > 0.0):
-            raise DescriptionError(
-                f"wheel_radius is {radius!r}; a length above 0 is needed, in mm", "wheel_radius", radius
-            )
-        side, car, roles = self.of.get("side"), car_of(self.of.get("car")), self.of.get("roles", {})
-        sides = self.of.get("sides") or {"": "left" if side is None else side}
-        corners = {}
-        for part, side in sides.items():
-            one_of(f"side of {part!r}" if part else "side", SIDES, side)
-            prefix = f"{part}." if part else ""
-            own = {role: tuple(roles[prefix + role]) for role in ROLES if prefix + role in roles}
-            for role, ends in own.items():
-                one_of(f"an end of the {prefix}{role}", self.points, *ends)
-            knuckle = roles.get(f"{prefix}knuckle", "")
-            if knuckle:
-                one_of(f"the {prefix}knuckle", self.named, knuckle)
-            elif "wheel_axis" in own:
-                knuckle = next((b for b, names in self.named.items() if own["wheel_axis"][1] in names), "")
-            axes = np.array([self.directions[name] for name in (side, "rearward", "up")])
-            corners[part] = Corner(side, axes, own, knuckle, radius, car)
-        return corners
-
-    def _loads(self) -> dict[str, Load]:
-        loads = {}
-        for part, given in self.of.get("loads", {}).items():
-            one_of("the part of a load", self.corners, part)
-            vectors = {"force": given.get("force"), "moment": given.get("moment", NOTHING)}
-            loads[part] = Load(*(vector_of(f"{n} of load {part!r}", part, of) for n, of in vectors.items()))
-        return loads
 
     def _dampers(self) -> dict[str, Row]:
         """Rows of the dampers' lengths, if there are loads."""
         rows = {}
         for part, corner in self.corners.items() if self.of.get("loads") else ():
-            if "damper" in corner.roles:
+            if "damper" in corner.given:
                 name = f"{part}.damper" if part else "damper"
                 if name in self.rods:
                     raise DescriptionError(f"a rod and a role are both called {name!r}: rename the rod", name)
-                rows[part] = self._distance_row(f"rod {name}", *corner.ends("damper"))[0]
+                rows[part] = self._distance_row(f"rod {name}", *corner.need("damper"))[0]
         return rows
 
     def _felt_by(self, *bodies: str) -> str:
         """The body on which a joint's force is reported: the knuckle, or the first moving body of the two."""
-        knuckles = {corner.knuckle for corner in self.corners.values()}
+        knuckles = {corner.given.get("knuckle") for corner in self.corners.values()}
         moving: list[str] = [body for body in self.named if body in bodies and body != CHASSIS]
         return next((body for body in moving if body in knuckles), moving[0])
 
-    def _are_shared(self, points: Iterable[str]) -> bool:
-        """Whether exactly two bodies have these points, so that their force is determined."""
-        return all(point not in self.guided and len(self._holders(point)) == 2 for point in points)
+    def _report(self, joint: str, first: str, second: str, *points: str) -> None:
+        """Report the force of a ball joint or a hinge, which is determined if only two bodies share it."""
+        if all(point not in self.guided and len(self._holders(point)) == 2 for point in points):
+            body = self._felt_by(first, second)
+            self.reported[tuple(point for point in self.named[body] if point in points)] = joint, body
 
     def _extent(self) -> tuple[Array, float]:
         """Middle and size of the drawing."""
@@ -274,38 +241,32 @@ class _Compiler:
 
     # Rows
 
-    def _row(
-        self, owner: str, kind: str, first: str, second: str, along: Array, one: Array, other: Array
-    ) -> Row:
-        bodies = [*self.bodies]
-        return Row(owner, kind, bodies.index(first), bodies.index(second), along, one, other)
+    def _arm(self, body: str, point: str) -> Array:
+        """Vector from the origin of a body to a point, in units of size."""
+        return np.asarray((self.points[point] - self.anchors[body]) / self.size)
 
-    def _between(
-        self, owner: str, kind: str, ends: Ends, along: Array = NOTHING, beside: Array = NOTHING
-    ) -> Row:
-        """A row of places in two bodies; `beside` leads from the points to the places, mm. It is added to the
-        arms, because coordinates have fewer digits."""
-        first, start, second, end = ends
-        one, other = (
-            (self.points[point] - self.anchors[body]) / self.size + beside / self.size
-            for body, point in ((first, start), (second, end))
+    def _row(self, owner: str, kind: str, first: End, second: End, along: Array = NOTHING) -> Row:
+        """A row of points or vectors of two bodies."""
+        (one, r1), (other, r2) = (
+            ([*self.bodies].index(body), self._arm(body, of) if isinstance(of, str) else of)
+            for body, of in (first, second)
         )
-        return self._row(owner, kind, first, second, along, one, other)
+        return Row(owner, kind, one, other, along, r1, r2)
 
-    def _meet(self, owner: str, ends: Ends, along: Iterable[Array] = AXES) -> None:
+    def _meet(self, owner: str, first: End, second: End, along: Iterable[Array] = AXES) -> None:
         """Points of two bodies meet along some directions of the first body."""
-        self.joints += [self._between(owner, "offset", ends, way) for way in along]
+        self.joints += [self._row(owner, "offset", first, second, way) for way in along]
 
     def _across(self, owner: str, first: str, second: str, one: Array, other: Array) -> None:
         """Directions of two bodies stay perpendicular. The reversed joint satisfies the row too, but small
         steps do not lead to it.
         """
-        self.joints.append(self._row(owner, "angle", first, second, one, NOTHING, other))
+        self.joints.append(self._row(owner, "angle", (first, NOTHING), (second, other), one))
 
     def _hinge(self, owner: str, first: str, second: str, point: str, axis: Array) -> None:
         x, y, z = frame = frame_about(axis)
         # Along the hinge's axes, so that a single row is redundant if hinges are parallel.
-        self._meet(owner, (first, point, second, point), frame)
+        self._meet(owner, (first, point), (second, point), frame)
         self._across(owner, first, second, y, z)
         self._across(owner, first, second, x, z)
 
@@ -320,7 +281,7 @@ class _Compiler:
                 start,
             )
         length = self._line(owner, start, end)[1]
-        row = self._between(owner, "distance", (firsts[0], start, seconds[0], end))
+        row = self._row(owner, "distance", (firsts[0], start), (seconds[0], end))
         return row._replace(drawn=length / self.size), length
 
     # Joints
@@ -343,9 +304,8 @@ class _Compiler:
                 members.append(second)
                 name = f"hinge of {second} on {members[0]}"
                 self._hinge(name, members[0], second, shared[0], self._line(name, *shared)[0])
-                if self._are_shared(shared) and not driven & {first, second}:
-                    body = self._felt_by(first, second)
-                    self.reported[tuple(p for p in self.named[body] if p in shared)] = name, body
+                if not driven & {first, second}:
+                    self._report(name, first, second, *shared)
         for point in self.points:
             apart = [[body] for body in self._holders(point)]
             for members in (members for line, members in hinges.items() if point in line):
@@ -354,9 +314,8 @@ class _Compiler:
             apart.sort(key=lambda group: group[0] != CHASSIS)
             for number, group in enumerate(apart[1:], 1):
                 name = f"ball joint {point}" + (f" of {group[0]}" if number > 1 else "")
-                self._meet(name, (apart[0][0], point, group[0], point))
-                if self._are_shared((point,)):
-                    self.reported[point,] = name, self._felt_by(apart[0][0], group[0])
+                self._meet(name, (apart[0][0], point), (group[0], point))
+                self._report(name, apart[0][0], group[0], point)
 
     def _line_of(self, slide: str) -> tuple[str, Array]:
         """A point on the line of a slide, and the line's direction."""
@@ -379,7 +338,7 @@ class _Compiler:
             label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
             owners = self._holders(point)
             held = self._other_than(body, point, what) if owners else self._held(point)[0]
-            self._meet(label, (body, through, held, point), frame[:2])
+            self._meet(label, (body, through), (held, point), frame[:2])
             # The force on a point of no body is reported if a rod at an angle to the slide pulls it.
             rods = [ends for ends in self.rods.values() if point in ends]
             felt = len(owners) == 1 or (not owners and any(not {*ends} <= {*points} for ends in rods))
@@ -411,20 +370,45 @@ class _Compiler:
 
     # Inputs
 
-    def _over(self, name: str, ends: Ends, way: Array, beside: Array = NOTHING, **more: Any) -> None:
-        """An input that is the offset of places in two bodies along a direction."""
-        drawn, per_unit = float(way @ (self.points[ends[3]] - self.points[ends[1]])), more.get("steers", 1.0)
-        row = self._between(name, "offset", ends, way, beside)
-        self.inputs.append(Input(row, name, per_unit / self.size, drawn / per_unit + 0.0, **more))
+    def _input(self, name: str, given: Mapping[str, Any]) -> None:
+        what = f"input {name!r}"
+        match given:
+            case {"angle": body}:
+                self._angle(name, body, given)
+            case {"travel": slides}:
+                self._slides(name, slides, 1.0)
+            case {"steers": slides}:
+                self._slides(name, slides, self._travel_per_radian(name))
+            case {"height": point}:
+                one_of(f"the point of {what}", self.points, point)
+                body = self._other_than(CHASSIS, point, what)
+                way = self._direction(what, given)
+                row = self._row(name, "offset", (CHASSIS, point), (body, point), way)
+                self.inputs.append(Input(row, name, 1.0 / self.size, 0.0))
+            case {"contact": ends}:
+                self._contact(name, ends, given)
+            case {"distance": ends}:
+                one_of(f"a point of {what}", self.points, *ends)
+                row, length = self._distance_row(what, *ends)
+                self.inputs.append(Input(row, name, 1.0 / self.size, length))
+            case {"turns": _, "about": point}:
+                one_of(f"the point of {what}", self.points, point)
+                axis, (on, car) = self._direction(what, given), self.carriers[name]
+                self._hinge(f"line of {name}", on, car, point, axis)
+                self._turn(name, on, car, axis, turns=given.get("along", "up"))
+            case {"moves": _}:
+                self.moves[name] = self._direction(what, given)
+            case _:
+                one_of(f"the kind of {what}", INPUTS, str(list(given)))
 
-    def _turn(self, name: str, first: str, second: str, axis: Array, **more: Any) -> None:
+    def _turn(self, name: str, first: str, second: str, axis: Array, turns: str = "") -> None:
         """An input that is the rotation of one body against another, from the drawing."""
         x, y, _ = frame_about(axis)
-        row = self._row(name, "turn", first, second, x, NOTHING, -y)
-        self.inputs.append(Input(row, name, 1.0, 0.0, **more))
+        row = self._row(name, "turn", (first, NOTHING), (second, -y), x)
+        self.inputs.append(Input(row, name, 1.0, 0.0, turns=turns))
 
-    def _angle(self, name: str, given: Mapping[str, Any]) -> None:
-        body, start = given["angle"], given["from"]
+    def _angle(self, name: str, body: str, given: Mapping[str, Any]) -> None:
+        start = given["from"]
         one_of(f"the body of input {name!r}", self.named, body)
         one_of(f"`from` of input {name!r}", (*self.directions, "drawing"), start)
         if start == "drawing":
@@ -445,13 +429,11 @@ class _Compiler:
         along, length = self._line(f"input {name!r}", about, of)
         way, factor = self.directions[start], length / self.size
         drawn = math.acos(min(max(float(way @ (self.points[of] - self.points[about])) / length, -1.0), 1.0))
-        row = self._row(name, "angle", CHASSIS, body, way, NOTHING, factor * along)
-        self.inputs.append(Input(row, name, factor, drawn, cosine=True))
+        row = self._row(name, "angle", (CHASSIS, NOTHING), (body, factor * along), way)
+        self.inputs.append(Input(row, name, factor, drawn))
 
-    def _travel(self, name: str, given: Mapping[str, Any]) -> None:
-        self._slides(name, given["travel"], 1.0)
-
-    def _steers(self, name: str, given: Mapping[str, Any]) -> None:
+    def _travel_per_radian(self, name: str) -> float:
+        """Travel of the rack per radian of the steering wheel, mm."""
         per_turn = self.of.get("rack_per_turn")
         if not is_number(per_turn) or not per_turn:
             raise DescriptionError(
@@ -460,7 +442,7 @@ class _Compiler:
                 name,
                 per_turn,
             )
-        self._slides(name, given["steers"], per_turn / math.tau)
+        return float(per_turn) / math.tau
 
     def _slides(self, name: str, slides: Iterable[str], per_unit: float) -> None:
         """An input that drives slides, by `per_unit` mm per unit of its value."""
@@ -468,17 +450,13 @@ class _Compiler:
         for slide in slides:
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second, (through, way) = self._other_than(body, point, f"slide {slide!r}"), self._line_of(slide)
-            self._over(name, (body, through, second, point), way, steers=per_unit)
+            row = self._row(name, "offset", (body, through), (second, point), way)
+            drawn = float(way @ (self.points[point] - self.points[through])) / per_unit + 0.0
+            self.inputs.append(Input(row, name, per_unit / self.size, drawn, steers=per_unit))
 
-    def _height(self, name: str, given: Mapping[str, Any]) -> None:
-        point = given["height"]
-        one_of(f"the point of input {name!r}", self.points, point)
-        body = self._other_than(CHASSIS, point, f"input {name!r}")
-        self._over(name, (CHASSIS, point, body, point), self._direction(name, given))
-
-    def _contact(self, name: str, given: Mapping[str, Any]) -> None:
-        inner, centre = given["contact"]
-        one_of(f"a point of input {name!r}", self.points, inner, centre)
+    def _contact(self, name: str, ends: Sequence[str], given: Mapping[str, Any]) -> None:
+        inner, centre = ends
+        one_of(f"a point of input {name!r}", self.points, *ends)
         carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
         radius = self.of.get("wheel_radius")
         if carrier is None or radius is None:
@@ -500,23 +478,11 @@ class _Compiler:
         disc = self._add(f"disc of {name}", (inner, centre))
         self._hinge(f"axle of {name}", carrier, disc, inner, axis)
         self._across(f"level of {name}", base, disc, up, level)
-        down = -radius * np.cross(level, axis)
-        self._over(name, (base, centre, disc, centre), up, beside=down, over_ground=on_ground)
-
-    def _distance(self, name: str, given: Mapping[str, Any]) -> None:
-        one_of(f"a point of input {name!r}", self.points, *given["distance"])
-        row, length = self._distance_row(f"input {name!r}", *given["distance"])
-        self.inputs.append(Input(row, name, 1.0 / self.size, length))
-
-    def _turns(self, name: str, given: Mapping[str, Any]) -> None:
-        one_of(f"the point of input {name!r}", self.points, given["about"])
-        axis, (ground, car) = self._direction(name, given), self.carriers[name]
-        self._hinge(f"line of {name}", ground, car, given["about"], axis)
-        rolls = given["along"] in ("forward", "rearward")
-        self._turn(name, ground, car, axis, turns=True, rolls=rolls)
-
-    def _moves(self, name: str, given: Mapping[str, Any]) -> None:
-        self.moves[name] = self._direction(name, given)
+        # Added to the arms, because coordinates have fewer digits.
+        down = -radius * np.cross(level, axis) / self.size
+        drawn, lowest = ((body, self._arm(body, centre) + down) for body in (base, disc))
+        row = self._row(name, "offset", drawn, lowest, up)
+        self.inputs.append(Input(row, name, 1.0 / self.size, 0.0, over_ground=on_ground))
 
 
 def frame_about(z: Array) -> Array:

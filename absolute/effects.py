@@ -29,9 +29,9 @@ from absolute.results import Motion
 from absolute.vectors import EPS, Array
 
 Number = Callable[[Motion], Dual]
-# (motion, direction of an axis, upward, vector from a point of the axis to the wheel centre) -> number.
-OfAxis = Callable[[Motion, Dual, Dual], Dual]
 Values = Callable[[Motion], Array]
+# (motion, components of an axis, vector from a point of the axis to the wheel centre) -> number.
+OfAxis = Callable[[Motion, Dual, Number], Dual]
 
 OUTBOARD, REARWARD, UP = 0, 1, 2
 TIME = "time"
@@ -61,80 +61,58 @@ class Effect:
     by: str = ""
 
 
-def _along(motion: Motion, role: str) -> Dual:
-    """Components of the line of a role, (3, N)."""
-    return motion.components(motion.line(*motion.corner.ends(role)))
+def _of_line(role: str, number: Callable[..., Dual]) -> Number:
+    """A number from the components of the line of a role."""
+    return lambda motion: number(*motion.components(motion.line(*motion.corner.need(role))))
 
 
-def _centre(motion: Motion) -> str:
-    return motion.corner.ends("wheel_axis")[1]
+def centre(motion: Motion) -> Dual:
+    """Place of the wheel centre, (3, N)."""
+    return motion.place(motion.corner.need("wheel_axis")[1])
 
 
-def _drawn_axis(motion: Motion) -> Dual:
-    """The line from the inner point of the spin axis to the wheel centre in the drawing, (3, 1)."""
-    inner, centre = motion.corner.ends("wheel_axis")
-    return motion.drawn(centre) - motion.drawn(inner)
-
-
-def contact(motion: Motion, drawn: bool = False) -> Dual:
+def contact(motion: Motion) -> Dual:
     """From the wheel centre to the contact point, (3, N)."""
-    spin = _drawn_axis(motion) if drawn else motion.line(*motion.corner.ends("wheel_axis"))
+    spin = motion.line(*motion.corner.need("wheel_axis"))
     normal = spin / hypot(*spin)
     up = constant(motion.corner.axes[UP][:, None])
     down = normal * motion.components(normal)[UP] - up
-    return down * (constant(motion.corner.radius) / hypot(*down))
+    return down * (constant(motion.corner.need("wheel_radius")) / hypot(*down))
 
 
-def _contact_moved(motion: Motion) -> Dual:
-    """Components of the contact point's displacement from the drawing, (3, N)."""
-    return motion.components(motion.moved(_centre(motion)) + (contact(motion) - contact(motion, drawn=True)))
+def ground(motion: Motion) -> Dual:
+    """Place of the contact point, (3, N)."""
+    return centre(motion) + contact(motion)
 
 
-def _contact_place(motion: Motion) -> Array:
-    """Components of the contact point's place, from the origin, (3, N)."""
-    centre = _centre(motion)
-    return motion.components(motion.drawn(centre) + motion.moved(centre) + contact(motion)).value
+def _moved(motion: Motion, place: Number) -> Dual:
+    """Components of the displacement of a place from the drawing, (3, N)."""
+    return motion.components(place(motion) - place(motion.drawn))
 
 
-def _of_line(role: str, number: Callable[..., Dual]) -> Number:
-    """A number from the components of the line of a role."""
-    return lambda motion: number(*_along(motion, role))
-
-
-def _caster(outboard: Dual, rearward: Dual, up: Dual) -> Dual:
-    return arctan2(rearward, up)
-
-
-def _kingpin(outboard: Dual, rearward: Dual, up: Dual) -> Dual:
-    return arctan2(-outboard, up)
-
-
-def _toe_by_arcsine(outboard: Dual, rearward: Dual, up: Dual) -> Dual:
-    """Arcsine of the forward component of the unit spin axis, as the arctangent of its two parts."""
-    return arctan2(-rearward, hypot(outboard, up))
-
-
-def toe_change_by_arcsine(motion: Motion) -> Dual:
-    """Toe by arcsine minus its drawn value, the static setting."""
-    return ANGLES["toe_by_arcsine"](motion) - _toe_by_arcsine(*motion.components(_drawn_axis(motion)))
+toe = _of_line("wheel_axis", lambda outboard, rearward, up: arctan2(-rearward, outboard))
+# Arcsine of the forward component of the unit spin axis, as the arctangent of its two parts.
+toe_by_arcsine = _of_line("wheel_axis", lambda o, rearward, up: arctan2(-rearward, hypot(o, up)))
 
 
 def steer_angle(motion: Motion) -> Dual:
     """Steer angle of the wheel plane in plan view, positive to the left."""
-    toe = ANGLES["toe"](motion)
-    return toe if motion.corner.side == "right" else -toe
+    return toe(motion) if motion.corner.side == "right" else -toe(motion)
 
 
-ANGLES: Mapping[str, Number] = {
-    "camber": _of_line("wheel_axis", lambda outboard, rearward, up: arctan2(-up, outboard)),
-    "kingpin": _of_line("steering_axis", _kingpin),
-    "toe": _of_line("wheel_axis", lambda outboard, rearward, up: arctan2(-rearward, outboard)),
-    "caster": _of_line("steering_axis", _caster),
-    "steer_angle": steer_angle,
-    "camber_by_arcsine": _of_line("wheel_axis", lambda o, rearward, up: arctan2(-up, hypot(o, rearward))),
-    "toe_by_arcsine": _of_line("wheel_axis", _toe_by_arcsine),
-    "toe_change_by_arcsine": toe_change_by_arcsine,
-}
+def travel(motion: Motion) -> Dual:
+    """Displacement of the wheel centre along up in the chassis' frame."""
+    return _moved(motion.in_the_car, centre)[UP]
+
+
+def contact_travel(motion: Motion) -> Dual:
+    """Displacement of the contact point along up in the chassis' frame."""
+    return _moved(motion.in_the_car, ground)[UP]
+
+
+def damper_length(motion: Motion) -> Dual:
+    """Distance of the ends of the damper."""
+    return hypot(*motion.line(*motion.corner.need("damper")))
 
 
 def _level_with(axis: Dual, point: Dual) -> Dual:
@@ -142,51 +120,68 @@ def _level_with(axis: Dual, point: Dual) -> Dual:
     return point - axis * (point[UP] / axis[UP])
 
 
-def _at_ground(motion: Motion, axis: Dual, centre: Dual) -> Dual:
-    return _level_with(axis, centre + motion.components(contact(motion)))
+def _at_wheel(motion: Motion, axis: Dual, to_centre: Number) -> Dual:
+    return _level_with(axis, motion.components(to_centre(motion)))
 
 
-def mechanical_trail(motion: Motion, axis: Dual, centre: Dual) -> Dual:
+def _at_ground(motion: Motion, axis: Dual, to_centre: Number) -> Dual:
+    return _level_with(axis, motion.components(to_centre(motion) + contact(motion)))
+
+
+def mechanical_trail(motion: Motion, axis: Dual, to_centre: Number) -> Dual:
     """From the contact point to the axis at the ground, along the tyre's own forward direction."""
-    outboard, rearward, _ = _at_ground(motion, axis, centre)
-    spin_outboard, spin_rearward, _ = _along(motion, "wheel_axis")
+    outboard, rearward, _ = _at_ground(motion, axis, to_centre)
+    spin_outboard, spin_rearward, _ = motion.components(motion.line(*motion.corner.need("wheel_axis")))
     return (rearward * spin_outboard - outboard * spin_rearward) / hypot(spin_outboard, spin_rearward)
 
 
-AXIS_LENGTHS: Mapping[str, OfAxis] = {
-    "kingpin_offset": lambda *of: _at_ground(*of)[OUTBOARD],
+OF_AXIS: Mapping[str, tuple[str, OfAxis]] = {
+    "kingpin": ("rad", lambda motion, axis, _: arctan2(-axis[OUTBOARD], axis[UP])),
+    "caster": ("rad", lambda motion, axis, _: arctan2(axis[REARWARD], axis[UP])),
+    "kingpin_offset": ("mm", lambda *of: _at_ground(*of)[OUTBOARD]),
     # Never negative.
-    "scrub_radius": lambda *of: hypot(_at_ground(*of)[OUTBOARD], _at_ground(*of)[REARWARD]),
-    "mechanical_trail": mechanical_trail,
-    "castor_offset": lambda *of: _at_ground(*of)[REARWARD],
-    "kingpin_offset_at_wheel": lambda motion, *of: _level_with(*of)[OUTBOARD],
-    "hub_trail": lambda motion, *of: -_level_with(*of)[REARWARD],
+    "scrub_radius": ("mm", lambda *of: hypot(_at_ground(*of)[OUTBOARD], _at_ground(*of)[REARWARD])),
+    "mechanical_trail": ("mm", mechanical_trail),
+    "castor_offset": ("mm", lambda *of: _at_ground(*of)[REARWARD]),
+    "kingpin_offset_at_wheel": ("mm", lambda *of: _at_wheel(*of)[OUTBOARD]),
+    "hub_trail": ("mm", lambda *of: -_at_wheel(*of)[REARWARD]),
 }
+
+
+def steering_axis(motion: Motion) -> Dual:
+    """From the lower to the upper point of the steering axis, (3, N)."""
+    return motion.line(*motion.corner.need("steering_axis"))
+
+
+def from_lower_point(motion: Motion) -> Dual:
+    """From the lower point of the steering axis to the wheel centre, (3, N)."""
+    (lower, _), (_, wheel_centre) = motion.corner.needs("steering_axis", "wheel_axis")
+    return motion.line(lower, wheel_centre)
 
 
 def _of_steering(number: OfAxis) -> Number:
     """A number of the steering axis."""
-
-    def of(motion: Motion) -> Dual:
-        lower, _ = motion.corner.ends("steering_axis")
-        centre = motion.components(motion.line(lower, _centre(motion)))
-        return number(motion, _along(motion, "steering_axis"), centre)
-
-    return of
+    return lambda motion: number(motion, motion.components(steering_axis(motion)), from_lower_point)
 
 
-def travel(motion: Motion) -> Dual:
-    """Displacement of the wheel centre along up in the chassis' frame."""
-    return motion.components(motion.in_the_car.moved(_centre(motion)))[UP]
-
-
-LENGTHS: Mapping[str, Number] = {
-    "travel": travel,
-    "contact_travel": lambda motion: _contact_moved(motion.in_the_car)[UP],
-    "half_track_change": lambda motion: _contact_moved(motion)[OUTBOARD],
-    "recession": lambda motion: _contact_moved(motion)[REARWARD],
-    **{name: _of_steering(number) for name, number in AXIS_LENGTHS.items()},
-    "damper_length": lambda motion: hypot(*motion.line(*motion.corner.ends("damper"))),
+# Numbers that have derivatives.
+NUMBERS: Mapping[str, tuple[str, Number]] = {
+    "camber": ("rad", _of_line("wheel_axis", lambda outboard, rearward, up: arctan2(-up, outboard))),
+    "toe": ("rad", toe),
+    "steer_angle": ("rad", steer_angle),
+    "camber_by_arcsine": (
+        "rad",
+        _of_line("wheel_axis", lambda outboard, rearward, up: arctan2(-up, hypot(outboard, rearward))),
+    ),
+    "toe_by_arcsine": ("rad", toe_by_arcsine),
+    # Without the static setting.
+    "toe_change_by_arcsine": ("rad", lambda motion: toe_by_arcsine(motion) - toe_by_arcsine(motion.drawn)),
+    **{name: (unit, _of_steering(number)) for name, (unit, number) in OF_AXIS.items()},
+    "travel": ("mm", travel),
+    "contact_travel": ("mm", contact_travel),
+    "half_track_change": ("mm", lambda motion: _moved(motion, ground)[OUTBOARD]),
+    "recession": ("mm", lambda motion: _moved(motion, ground)[REARWARD]),
+    "damper_length": ("mm", damper_length),
 }
 
 
@@ -194,31 +189,30 @@ def _slope(motion: Motion, number: Dual, by: str) -> Array:
     return number.slopes[..., -1 if by == TIME else motion.by.index((motion.part, by))]
 
 
-def _ratio(rise: Array | float, run: Array) -> Array:
-    """The quotient; NaN where run is zero."""
-    return np.where(run == 0.0, np.nan, rise / run)
+def _ratio(rise: Array | float, run: Array, least: Array | float = 0.0) -> Array:
+    """The quotient; NaN where run is not larger than `least`, below which it may be rounding."""
+    return np.where(np.abs(run) <= least, np.nan, rise / run)
 
 
-def _rising(velocity: Array) -> Array:
-    """The upward component of a velocity, from components (3, N); zero where it may be rounding."""
-    up = velocity[UP]
-    return np.where(np.abs(up) <= LEAST * np.linalg.norm(velocity, axis=0), 0.0, up)
+def _per_rise(number: Array, velocity: Array) -> Array:
+    """A number per upward component of a velocity, from components (3, N)."""
+    return _ratio(number, velocity[UP], LEAST * np.linalg.norm(velocity, axis=0))
 
 
-def _travelled(motion: Motion) -> Array:
-    """Upward velocity of the wheel centre in the chassis' frame, per unit of the wheel's input, (N,)."""
-    return _rising(_centre_velocity(motion.in_the_car))
+def _per_travel(motion: Motion, number: Array) -> Array:
+    """A number per upward velocity of the wheel centre in the chassis' frame; NaN where it does not rise."""
+    return _per_rise(number, _centre_velocity(motion.in_the_car))
 
 
-def _spin(motion: Motion, by: str) -> Array:
-    """Angular velocity w of the knuckle, (3, N)."""
-    return motion.spin(motion.corner.carrier)[..., motion.by.index((motion.part, by))]
+def _centre_velocity(motion: Motion) -> Array:
+    """Components of the wheel centre's velocity with travel, (3, N)."""
+    return _slope(motion, motion.components(centre(motion)), "travel")
 
 
 def _contact_velocity(motion: Motion) -> Array:
     """Components of the contact point's velocity v, (3, N)."""
-    velocity = motion.moved(_centre(motion)) + motion.riding(motion.corner.carrier, contact(motion))
-    return _slope(motion, motion.components(velocity), "travel")
+    carried = np.cross(motion.spin("travel"), contact(motion).value, axis=0)
+    return np.asarray(_centre_velocity(motion) + motion.corner.axes @ carried)
 
 
 def _over_the_contact(motion: Motion, velocity: Array) -> Array:
@@ -227,7 +221,13 @@ def _over_the_contact(motion: Motion, velocity: Array) -> Array:
 
     The middle plane goes through the origin. NaN where the velocity is level.
     """
-    return np.asarray(_contact_place(motion)[OUTBOARD] * _ratio(velocity[OUTBOARD], _rising(velocity)))
+    return np.asarray(_from_origin(motion)[OUTBOARD] * _per_rise(velocity[OUTBOARD], velocity))
+
+
+def _from_origin(motion: Motion) -> Array:
+    """Components of the contact point's place, from the origin, (3, N)."""
+    middle = constant(motion.model.middle[:, None])
+    return motion.components(middle + ground(motion)).value
 
 
 def arm_roll_centre_height(motion: Motion) -> Array:
@@ -237,12 +237,10 @@ def arm_roll_centre_height(motion: Motion) -> Array:
     With u the velocity of the axis' lower point and w the angular velocity of the knuckle, (w + f k) . u = 0.
     NaN where u is normal to the axis k, or zero.
     """
-    (lower, upper), centre = motion.corner.ends("steering_axis"), _centre(motion)
-    k, to_centre = motion.line(lower, upper).value, motion.line(lower, centre)
+    k, to_centre = steering_axis(motion).value, from_lower_point(motion).value
+    w, arm = motion.spin("travel"), to_centre + contact(motion).value
     # The lower point moves with the wheel centre, minus the rotation of the arm from there.
-    moving = motion.moved(centre) - motion.riding(motion.corner.carrier, to_centre)
-    u, w = _slope(motion, moving, "travel"), _spin(motion, "travel")
-    arm = to_centre.value + contact(motion).value
+    u = _slope(motion, centre(motion), "travel") - np.cross(w, to_centre, axis=0)
     speed, turning, far = (np.linalg.norm(vector, axis=0) for vector in (u, w, arm))
     along = np.where(speed <= LEAST * turning * far, 0.0, (k * u).sum(axis=0))
     turn = w - k * _ratio((w * u).sum(axis=0), along)
@@ -254,17 +252,11 @@ def instant_centre(h: int, component: int, sense: float = 1.0) -> Values:
 
     def of(motion: Motion) -> Array:
         velocity, axes = _contact_velocity(motion), motion.corner.axes
-        turn = np.cross(axes[h], axes[UP]) @ _spin(motion, "travel")
-        far = np.abs(velocity[UP]) > FARTHEST * motion.corner.radius * np.abs(turn)
-        turn = np.where(far, 0.0, turn)
-        return sense * (_ratio(velocity[h], turn) if component == UP else -_ratio(velocity[UP], turn))
+        turn = np.cross(axes[h], axes[UP]) @ motion.spin("travel")
+        least = np.abs(velocity[UP]) / (FARTHEST * motion.corner.need("wheel_radius"))
+        return sense * _ratio(velocity[h] if component == UP else -velocity[UP], turn, least)
 
     return of
-
-
-def _centre_velocity(motion: Motion) -> Array:
-    """Components of the wheel centre's velocity with travel, (3, N)."""
-    return _slope(motion, motion.components(motion.moved(_centre(motion))), "travel")
 
 
 def _anti(share: str, velocity_of: Callable[[Motion], Array]) -> Values:
@@ -279,10 +271,9 @@ def _anti(share: str, velocity_of: Callable[[Motion], Array]) -> Values:
     names = ("axle", "wheelbase", "centre_of_gravity_height", share)
 
     def of(motion: Motion) -> Array:
-        sign, wheelbase, drawn_height, part = motion.corner.numbers(*names)
-        height = drawn_height - LENGTHS["contact_travel"](motion).value
-        velocity = velocity_of(motion)
-        ratio = _ratio(velocity[REARWARD] * wheelbase, _rising(velocity) * height)
+        sign, wheelbase, drawn_height, part = motion.corner.needs(*names)
+        height, velocity = drawn_height - contact_travel(motion).value, velocity_of(motion)
+        ratio = _ratio(_per_rise(velocity[REARWARD] * wheelbase, velocity), height)
         return np.asarray(100.0 * part * sign * ratio)
 
     return of
@@ -290,34 +281,33 @@ def _anti(share: str, velocity_of: Callable[[Motion], Array]) -> Values:
 
 def damper_per_wheel(motion: Motion) -> Array:
     """Shortening of the damper per mm of travel; NaN where the wheel does not travel."""
-    return -_ratio(_slope(motion, LENGTHS["damper_length"](motion), "travel"), _travelled(motion))
+    return -_per_travel(motion, _slope(motion, damper_length(motion), "travel"))
 
 
 def wheel_per_damper(motion: Motion) -> Array:
     """Travel per mm that the damper is shortened; NaN where its length does not change."""
-    line = _slope(motion, motion.line(*motion.corner.ends("damper")), "travel")
-    grown = _slope(motion, LENGTHS["damper_length"](motion), "travel")
-    grown = np.where(np.abs(grown) <= LEAST * np.linalg.norm(line, axis=0), 0.0, grown)
-    return -_ratio(_slope(motion, travel(motion), "travel"), grown)
+    line = _slope(motion, motion.line(*motion.corner.need("damper")), "travel")
+    grown, risen = (_slope(motion, number(motion), "travel") for number in (damper_length, travel))
+    return -_ratio(risen, grown, LEAST * np.linalg.norm(line, axis=0))
 
 
 def spring_force(motion: Motion) -> Array:
     """Rate times the shortening from the free length, N; positive where the spring pushes its ends apart."""
-    rate, free = motion.corner.numbers("spring_rate", "spring_free_length")
-    return np.asarray(rate * (free - LENGTHS["damper_length"](motion).value))
+    rate, free = motion.corner.needs("spring_rate", "spring_free_length")
+    return np.asarray(rate * (free - damper_length(motion).value))
 
 
 def wheel_rate(motion: Motion) -> Array:
     """The wheel rate for a constant motion ratio, N/mm."""
-    rate, _ = motion.corner.numbers("spring_rate", "spring_free_length")
+    rate, _ = motion.corner.needs("spring_rate", "spring_free_length")
     return np.asarray(rate * damper_per_wheel(motion) ** 2)
 
 
 def _screw(motion: Motion) -> tuple[Array, Array]:
     """Angular velocity of the knuckle and velocity of the wheel centre with the rack, (3, N); NaN where the
     knuckle does not turn as the rack moves, or about a level line only."""
-    w, v = _spin(motion, "rack"), _slope(motion, motion.moved(_centre(motion)), "rack")
-    turns = np.abs(motion.corner.axes[UP] @ w) * motion.corner.radius > LEAST
+    w, v = motion.spin("rack"), _slope(motion, centre(motion), "rack")
+    turns = np.abs(motion.corner.axes[UP] @ w) * motion.corner.need("wheel_radius") > LEAST
     return np.where(turns, w, np.nan), v
 
 
@@ -336,19 +326,12 @@ def _of_screw(number: OfAxis) -> Values:
 
     def of(motion: Motion) -> Array:
         w, v = _screw(motion)
-        square = (w * w).sum(axis=0)
-        axis, off = (motion.corner.axes @ of for of in (w, np.cross(v, w, axis=0) / square))
-        return number(motion, constant(axis * np.sign(axis[UP])), constant(off)).value
+        axis, off = motion.corner.axes @ w, constant(np.cross(v, w, axis=0) / (w * w).sum(axis=0))
+        return number(motion, constant(axis * np.sign(axis[UP])), lambda _: off).value
 
     return of
 
 
-OF_RACK: Mapping[str, tuple[str, Values]] = {
-    "screw_kingpin": ("rad", _of_screw(lambda motion, axis, centre: _kingpin(*axis))),
-    "screw_caster": ("rad", _of_screw(lambda motion, axis, centre: _caster(*axis))),
-    **{f"screw_{name}": ("mm", _of_screw(number)) for name, number in AXIS_LENGTHS.items()},
-    "screw_pitch": ("mm/rad", screw_pitch),
-}
 OF_VELOCITIES: Mapping[str, tuple[str, Values]] = {
     "roll_centre_height": ("mm", lambda motion: _over_the_contact(motion, _contact_velocity(motion))),
     "arm_roll_centre_height": ("mm", arm_roll_centre_height),
@@ -366,6 +349,12 @@ OF_VELOCITIES: Mapping[str, tuple[str, Values]] = {
 }
 
 
+OF_RACK: Mapping[str, tuple[str, Values]] = {
+    **{f"screw_{name}": (unit, _of_screw(number)) for name, (unit, number) in OF_AXIS.items()},
+    "screw_pitch": ("mm/rad", screw_pitch),
+}
+
+
 def _values(number: Number, by: str) -> Values:
     """A number, or its derivative: per mm of travel, per mm of the slide or per rad of roll while all else is
     held; or per second, while everything moves."""
@@ -375,43 +364,21 @@ def _values(number: Number, by: str) -> Values:
         if not by:
             return found.value
         slope = _slope(motion, found, by)
-        return _ratio(slope, _travelled(motion)) if by == "travel" else slope
+        return _per_travel(motion, slope) if by == "travel" else slope
 
     return of
 
 
-def _with_gradients(unit: str, numbers: Mapping[str, Number]) -> dict[str, Effect]:
-    ways = [("", "", unit), *((f"_by_{by}", by, f"{unit}/{per}") for by, per in GRADIENTS.items())]
-    return {
-        name + suffix: Effect(per, _values(number, by), by)
-        for name, number in numbers.items()
-        for suffix, by, per in ways
+def _with_gradients(name: str, unit: str, number: Number) -> dict[str, Effect]:
+    gradients = {
+        f"{name}_by_{by}": Effect(f"{unit}/{of}", _values(number, by), by) for by, of in GRADIENTS.items()
     }
-
-
-def _drawn_apart(left: Motion, right: Motion) -> Array:
-    """Components at the right wheel of the vector from the left to the right drawn wheel centre, (3, 1)."""
-    return right.components(right.drawn(_centre(right)) - left.drawn(_centre(left))).value
+    return {name: Effect(unit, _values(number, ""))} | gradients
 
 
 def _apart(left: Motion, right: Motion) -> Array:
-    """Components along right and up of the vector from the left to the right contact point, (2, N).
-
-    The drawn places are subtracted first, since places far from the origin have fewer digits.
-    """
-    drawn = _drawn_apart(left, right)
-    one, other = (of.components(of.moved(_centre(of)) + contact(of)).value for of in (left, right))
-    return np.array([drawn[OUTBOARD] + one[OUTBOARD] + other[OUTBOARD], drawn[UP] - one[UP] + other[UP]])
-
-
-def _front_view(motion: Motion) -> tuple[Array, Array]:
-    """The contact point and its velocity with travel, along right and up, (2, N) each; the velocity is zero
-    where it may be rounding."""
-    velocity, size = _contact_velocity(motion), motion.mechanism.drawing.size
-    out = np.array([[1.0 if motion.corner.side == "right" else -1.0], [1.0]])
-    place, seen = (out * of[[OUTBOARD, UP]] for of in (_contact_place(motion), velocity))
-    speed = size * np.linalg.norm(_spin(motion, "travel"), axis=0) + np.linalg.norm(velocity, axis=0)
-    return place, np.where(np.hypot(*seen) <= ROUNDING * speed, 0.0, seen)
+    """From the left to the right contact point, along right, rearward and up, (3, N)."""
+    return right.components(ground(right) - ground(left)).value
 
 
 def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
@@ -420,26 +387,31 @@ def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
     With c, d the contact points and v, w their velocities, it is c + x with v . x = 0 and
     w . x = w . (d - c). NaN where the normals are parallel or a velocity is zero.
     """
-    (c, v), (_, w) = _front_view(left), _front_view(right)
-    turn, apart = v[0] * w[1] - v[1] * w[0], _apart(left, right)
-    speeds = np.hypot(*v) * np.hypot(*w)
-    turn = np.where(np.abs(turn) <= ROUNDING * speeds, 0.0, turn)
-    x = _ratio((w * apart).sum(axis=0), turn) * np.array([-v[1], v[0]])
+    (c, v), (_, w) = _front_view(left, -1.0), _front_view(right, 1.0)
+    turn, apart = v[0] * w[1] - v[1] * w[0], _apart(left, right)[[OUTBOARD, UP]]
+    along = _ratio((w * apart).sum(axis=0), turn, ROUNDING * np.hypot(*v) * np.hypot(*w))
+    x = along * np.array([-v[1], v[0]])
     return c[0] + x[0], x[1] - x[0] * apart[1] / apart[0]
+
+
+def _front_view(motion: Motion, side: float) -> tuple[Array, Array]:
+    """The contact point and its velocity with travel, along right and up, (2, N) each; the velocity is zero
+    where it may be rounding."""
+    velocity, size = _contact_velocity(motion), motion.model.size
+    place, seen = (of[[OUTBOARD, UP]] * [[side], [1.0]] for of in (_from_origin(motion), velocity))
+    speed = size * np.linalg.norm(motion.spin("travel"), axis=0) + np.linalg.norm(velocity, axis=0)
+    return place, np.where(np.hypot(*seen) <= ROUNDING * speed, 0.0, seen)
 
 
 def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
     """Steer angles of the inner and the outer wheel, NaN unless both are steered to one side; the wheelbase,
     and the track as drawn.
     """
-    (wheelbase,) = left.corner.numbers("wheelbase")
+    wheelbase = left.corner.need("wheelbase")
     one, other = (steer_angle(of).value for of in (left, right))
     sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
     inner, outer = np.where(one > 0.0, sizes, sizes[::-1])
-    width = _drawn_apart(left, right)[OUTBOARD]
-    for wheel in (left, right):
-        width = width + wheel.components(contact(wheel, drawn=True))[OUTBOARD].value
-    return inner, outer, wheelbase, np.asarray(width)
+    return inner, outer, wheelbase, _apart(left.drawn, right.drawn)[OUTBOARD]
 
 
 def turning_radius(left: Motion, right: Motion) -> Array:
@@ -467,8 +439,7 @@ def _cot(angle: Array) -> Array:
 
 
 EFFECTS: Mapping[str, Effect] = {
-    **_with_gradients("rad", ANGLES),
-    **_with_gradients("mm", LENGTHS),
+    **{n: effect for name, of in NUMBERS.items() for n, effect in _with_gradients(name, *of).items()},
     **{name: Effect(unit, value, "travel") for name, (unit, value) in OF_VELOCITIES.items()},
     **{name: Effect(unit, value, "rack") for name, (unit, value) in OF_RACK.items()},
 }
@@ -476,7 +447,7 @@ EFFECTS: Mapping[str, Effect] = {
 # along right from the middle plane, which goes through the origin. The track is the distance of both contact
 # points along right.
 AXLE_EFFECTS: Mapping[str, Effect] = {
-    "track": Effect("mm", lambda *wheels: _apart(*wheels)[0]),
+    "track": Effect("mm", lambda *wheels: _apart(*wheels)[OUTBOARD]),
     "axle_roll_centre_height": Effect("mm", lambda *wheels: _axle_roll_centre(*wheels)[1], "travel"),
     "axle_roll_centre_offset": Effect("mm", lambda *wheels: _axle_roll_centre(*wheels)[0], "travel"),
     "turning_radius": Effect("mm", turning_radius),
@@ -508,31 +479,26 @@ def effects_in(model: Model) -> dict[str, Asked]:
     return found
 
 
-def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
-    """The effects with these names.
+def effects_of(names: Sequence[str], model: Model) -> tuple[dict[str, Asked], dict[tuple[str, str], str]]:
+    """The effects with these names; and (part, "travel", "rack" or "roll") -> the value of the input by which
+    they take derivatives.
 
     Raises:
         InputError: an effect does not exist; the message names all that do.
+        DescriptionError: there is not exactly one such input.
     """
     known = effects_in(model) if names else {}
     for name in names:
         if name not in known:
             raise InputError(f"there is no effect {name!r}; it must be one of {list(known)}", name, name)
-    return {name: known[name] for name in names}
-
-
-def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str], str]:
-    """(part, "travel", "rack" or "roll") -> the value of the input by which effects take derivatives.
-
-    Raises:
-        DescriptionError: there is not exactly one such input.
-    """
-    return {
-        (part, asked.effect.by): model.input_of(part, asked.effect.by, f"effect {name!r}")
-        for name, asked in effects.items()
-        for part in asked.parts
-        if asked.effect.by not in ("", TIME)
+    found = {name: known[name] for name in names}
+    inputs = {
+        (part, of.effect.by): model.input_of(part, of.effect.by, f"effect {name!r}")
+        for name, of in found.items()
+        for part in of.parts
+        if of.effect.by not in ("", TIME)
     }
+    return found, inputs
 
 
 def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]:

@@ -178,34 +178,30 @@ def _around(mechanism: Mechanism, pose: Configurations, at: Array, goal: Array) 
 def _refusal(
     mechanism: Mechanism, blocked: BlockedError, start: Array, goal: Array, instant: int
 ) -> PoseError:
-    wanted, reached = (mechanism.named(values.tolist()) for values in (goal, blocked.reached))
-    residual = float(blocked.pose.residual[0]) * mechanism.drawing.size
-    condition = float(blocked.pose.condition[0])
-    asked = ", ".join(f"{name} = {value:.12g}" for name, value in wanted.items())
-    where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
-    limits = limits_at(mechanism, blocked.pose)
-    if not limits:
-        # Far from singular, only the rows that were left out block the path.
-        limits = mechanism.stack.owners_of(blocked.pose.choice.left_out)
+    pose, wanted, reached = blocked.pose, *map(mechanism.named, (goal.tolist(), blocked.reached.tolist()))
+    asked, where = (
+        ", ".join(f"{name} = {value:.12g}" for name, value in values.items()) for values in (wanted, reached)
+    )
+    # Far from singular, only the rows that were left out block the path.
+    limits = limits_at(mechanism, pose) or mechanism.stack.owners_of(pose.choice.left_out)
     # Change of the targets at the end of the straight path.
     change = mechanism.targets(blocked.reached, goal - start)[1]
-    limit = limiting_input(mechanism, blocked.pose, change[mechanism.joint_rows :])
-    facts = instant, wanted, reached, condition, limits, limit
+    limit = limiting_input(mechanism, pose, change[mechanism.joint_rows :])
+    condition = float(pose.condition[0])
+    near = f"{limited_by(limits)}condition number about {condition:.3g}"
     if np.allclose(blocked.reached, goal, rtol=SMALLEST_RCOND, atol=0):
-        return PoseError(
-            f"instant {instant}: {asked} is a singular pose ({limited_by(limits)}condition number about "
-            f"{condition:.3g}, "
-            f"at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and branch are not determined there; "
-            "stay away from the limit of the motion",
-            *facts,
+        message = (
+            f"{asked} is a singular pose ({near}, at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and "
+            "branch are not determined there; stay away from the limit of the motion"
         )
-    return PoseError(
-        f"instant {instant}: {asked} cannot be reached; going there the mechanism locks at {where} "
-        f"({limited_by(limits)}condition number about {condition:.3g}, rows still closed to "
-        f"{residual:.3g} mm). Keep the inputs inside that limit ({limit!r} meets it), or reach them by "
-        "another sequence of instants",
-        *facts,
-    )
+    else:
+        residual = float(pose.residual[0]) * mechanism.model.size
+        message = (
+            f"{asked} cannot be reached; going there the mechanism locks at {where} ({near}, rows still "
+            f"closed to {residual:.3g} mm). Keep the inputs inside that limit ({limit!r} meets it), or reach "
+            "them by another sequence of instants"
+        )
+    return PoseError(f"instant {instant}: {message}", instant, wanted, reached, condition, limits, limit)
 
 
 def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ import numpy as np
 
 from absolute.errors import PoseError
 from absolute.follow import BlockedError, follow, limited_by, limits_at
-from absolute.mechanism import Mechanism, too_many_rows
+from absolute.mechanism import Mechanism
 from absolute.newton import SMALLEST_RCOND, Configurations, configurations_at, signs_of
 from absolute.vectors import Array
 
@@ -28,51 +28,69 @@ def assemble(mechanism: Mechanism) -> Configurations:
     target = mechanism.targets(mechanism.drawn_inputs[None])[0]
     pose = drawn = configurations_at(mechanism, mechanism.choice, mechanism.drawn[None], target)
     if not SMALLEST_RCOND * drawn.condition[0] <= 1.0:
-        raise _singular(mechanism, drawn)
+        limits = limits_at(mechanism, drawn)
+        message = (
+            f"the drawing is singular: condition number about {drawn.condition[0]:.3g}, at most "
+            f"{1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
+            "Look for points on one line that should not be (a steering arm on the strut axis, "
+            "an arm along its own axis) or an input at its dead point; "
+            f"{limited_by(limits)}move a point off it"
+        )
+        raise _refused(mechanism, drawn, message, limits)
     if not drawn.closed[0]:
-        gap = mechanism.stack.gap(drawn.placed, target)[0]
-
-        def closing(share: Array, *rates: Array) -> Array:
-            values = drawn.placed.values[0] + share * gap
-            return np.array(np.broadcast_arrays(values, *(rate * gap for rate in rates)))
-
-        _require_clear(mechanism, drawn, gap)
-        try:
-            (pose,) = follow(mechanism, drawn, np.zeros(1), np.ones((1, 1)), closing)
-        except BlockedError as blocked:
-            raise _locked_while_closing(mechanism, blocked, gap) from blocked
-        _require_near(mechanism, pose)
-    _require_redundant(mechanism, pose)
+        pose = _closed(mechanism, drawn, mechanism.stack.gap(drawn.placed, target)[0])
+    if len(pose.choice.left_out):
+        mechanism.redundancies(pose.placed, SMALLEST_RCOND)
+        if not pose.held.all():
+            raise locked(mechanism, None, pose, mechanism.drawn_inputs.tolist())
     return pose
 
 
-def _singular(mechanism: Mechanism, drawn: Configurations) -> PoseError:
-    condition, limits = float(drawn.condition[0]), limits_at(mechanism, drawn)
-    return PoseError(
-        f"the drawing is singular: condition number about {condition:.3g}, at most "
-        f"{1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
-        "Look for points on one line that should not be (a steering arm on the strut axis, "
-        "an arm along its own axis) or an input at its dead point; "
-        f"{limited_by(limits)}move a point off it",
-        inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
-        condition=condition,
-        limits=limits,
-    )
+def _closed(mechanism: Mechanism, drawn: Configurations, gap: Array) -> Configurations:
+    """The closed pose of a drawing with gaps, (rows,)."""
+
+    def closing(share: Array, *rates: Array) -> Array:
+        values = drawn.placed.values[0] + share * gap
+        return np.array(np.broadcast_arrays(values, *(rate * gap for rate in rates)))
+
+    _require_clear(mechanism, drawn, gap)
+    try:
+        (pose,) = follow(mechanism, drawn, np.zeros(1), np.ones((1, 1)), closing)
+    except BlockedError as blocked:
+        largest = float(np.abs(gap).max()) * mechanism.model.size
+        limits = limits_at(mechanism, blocked.pose)
+        message = (
+            f"the drawing cannot be assembled: rows are violated by up to {largest:.3g} mm (most at "
+            f"{mechanism.stack.owners[int(np.abs(gap).argmax())]!r}) and closing them locks the mechanism "
+            f"with {largest * float(1.0 - blocked.reached[0]):.3g} mm left; {limited_by(limits)}"
+            "draw the points closer to an assembled pose"
+        )
+        raise _refused(mechanism, blocked.pose, message, limits) from blocked
+    _require_near(mechanism, pose)
+    return pose
+
+
+def _refused(
+    mechanism: Mechanism, pose: Configurations, message: str, limits: tuple[str, ...] = ()
+) -> PoseError:
+    """The error for a drawing, at the pose where closing it ends."""
+    inputs = mechanism.named(mechanism.drawn_inputs.tolist())
+    return PoseError(message, inputs=inputs, condition=float(pose.condition[0]), limits=limits)
 
 
 def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
     """Refuse a closed drawing so far from the drawing that another assembly may be meant."""
-    drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
+    model, (body, arms) = mechanism.model, mechanism.model.held()
     there = pose.placed.origin[0, body] + np.matvec(pose.placed.rotation[0, body], arms)
-    distances = np.linalg.norm(there - drawing.origins[body] - arms, axis=1)
+    distances = np.linalg.norm(there - model.origins[body] - arms, axis=1)
     if distances.max() > FURTHEST:
-        furthest, far = list(drawing.points)[int(distances.argmax())], float(distances.max())
-        raise PoseError(
-            f"closing the drawing moves {furthest!r} by {far * drawing.size:.3g} mm; beyond "
-            f"{FURTHEST * drawing.size:.3g} mm, a part of the mechanism's size, another assembly may be "
-            "meant: draw the points closer to an assembled pose",
-            inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
+        furthest, far = list(model.holders)[int(distances.argmax())], float(distances.max())
+        message = (
+            f"closing the drawing moves {furthest!r} by {far * model.size:.3g} mm; beyond "
+            f"{FURTHEST * model.size:.3g} mm, a part of the mechanism's size, another assembly may be "
+            "meant: draw the points closer to an assembled pose"
         )
+        raise _refused(mechanism, pose, message)
 
 
 def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> None:
@@ -93,41 +111,13 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
         return
     alone = [owner for owner in dict.fromkeys(stack.owners) if other_side(np.where(of == owner, gap, 0.0))]
     open_joints = tuple(alone) or (stack.owners[int(np.abs(gap).argmax())],)
-    largest = float(np.abs(gap[np.isin(of, open_joints)]).max()) * mechanism.drawing.size
-    raise PoseError(
+    largest = float(np.abs(gap[np.isin(of, open_joints)]).max()) * mechanism.model.size
+    message = (
         f"the drawing could mean two assemblies: {', '.join(map(repr, open_joints))} is drawn {largest:.3g} "
         "mm from closed, and a singular pose between the two assemblies lies in the way, so the assembly "
-        "depends on which of the joint's two halves is moved; draw the points closer to an assembled pose",
-        inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
-        condition=float(drawn.condition[0]),
-        limits=open_joints,
+        "depends on which of the joint's two halves is moved; draw the points closer to an assembled pose"
     )
-
-
-def _locked_while_closing(mechanism: Mechanism, blocked: BlockedError, gap: Array) -> PoseError:
-    largest = float(np.abs(gap).max()) * mechanism.drawing.size
-    limits = limits_at(mechanism, blocked.pose)
-    return PoseError(
-        f"the drawing cannot be assembled: rows are violated by up to {largest:.3g} mm (most at "
-        f"{mechanism.stack.owners[int(np.abs(gap).argmax())]!r}) and closing them locks the mechanism with "
-        f"{largest * float(1.0 - blocked.reached[0]):.3g} mm left; {limited_by(limits)}"
-        "draw the points closer to an assembled pose",
-        inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
-        condition=float(blocked.pose.condition[0]),
-        limits=limits,
-    )
-
-
-def _require_redundant(mechanism: Mechanism, pose: Configurations) -> None:
-    """Refuse surplus rows that are not redundant."""
-    left_out = pose.choice.left_out
-    if not len(left_out):
-        return
-    strengths = np.linalg.svd(pose.jacobian[0, : mechanism.joint_rows], compute_uv=False)
-    if strengths[mechanism.joint_rows - len(left_out)] > SMALLEST_RCOND * strengths[0]:
-        raise too_many_rows(mechanism.stack, left_out)
-    if not pose.held.all():
-        raise locked(mechanism, None, pose, mechanism.drawn_inputs.tolist())
+    raise _refused(mechanism, drawn, message, open_joints)
 
 
 def locked(mechanism: Mechanism, instant: int | None, pose: Configurations, inputs: list[float]) -> PoseError:
@@ -138,7 +128,7 @@ def locked(mechanism: Mechanism, instant: int | None, pose: Configurations, inpu
     where = "the closed drawing" if instant is None else f"instant {instant}"
     return PoseError(
         f"{where}: {', '.join(names)} cannot be kept together with the other joints, by "
-        f"{float(off.max()) * mechanism.drawing.size:.3g} mm: their rows follow from the others in the "
+        f"{float(off.max()) * mechanism.model.size:.3g} mm: their rows follow from the others in the "
         "drawing, but not here, so the mechanism is locked: draw axes that should be parallel or meet "
         "exactly so, or free a joint",
         instant,

@@ -21,67 +21,83 @@ from dataclasses import replace
 
 import numpy as np
 
-from absolute.effects import contact
+from absolute.effects import ground
 from absolute.errors import DescriptionError
 from absolute.mechanism import Mechanism
+from absolute.model import Model, Row
 from absolute.newton import SMALLEST_RCOND, solved
 from absolute.results import Motion
 from absolute.rows import RowStack
 from absolute.vectors import Array, cross
 
 
-def forces(motion: Motion) -> dict[str, dict[str, Array]]:
+def forces(mechanism: Mechanism, motion: Motion) -> dict[str, dict[str, Array]]:
     """`rod_force`, `joint_force` and `hinge_thrust` of `Solution`; NaN if the pose is singular with dampers
     held.
 
     Raises:
         DescriptionError: there is no load, a role is missing, or redundant rows leave forces undetermined.
     """
-    mechanism, model = motion.mechanism, motion.mechanism.model
+    model = motion.model
     _require_determined(mechanism)
-    stack, bodies, size = mechanism.stack, mechanism.drawing.bodies, mechanism.drawing.size
-    placed = stack.place(motion.instants.rotation, motion.instants.origin)
+    rows = _loaded_rows(model)
+    stack = RowStack(rows, len(model.bodies), mechanism.columns)
+    placed = stack.place(motion.rotation, motion.origin)
     along, _, second_arm = (placed.vectors[:, kind] for kind in range(3))
-    jacobian, owners = stack.jacobian(placed), list(stack.owners)
-    for part, damper in model.dampers.items():
-        moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,")
-        row = mechanism.joint_rows + [drive.value for drive in model.inputs].index(moving)
-        held = RowStack([damper], len(bodies), mechanism.columns)
-        jacobian[:, row] = held.jacobian(held.place(placed.rotation, placed.origin))[:, 0]
-        owners[row] = damper.owner
-    work = np.zeros((len(jacobian), len(bodies), 2, 3))
-    for part in model.loads:
-        try:
-            work[:, bodies[model.corners[part].carrier]] += _on_knuckle(replace(motion, part=part))
-        except DescriptionError as error:
-            raise DescriptionError(f"the load of the wheel {error}", error.name) from None
-    acting = work.reshape(len(work), 6 * len(bodies)).take(mechanism.columns, 1)[..., None]
+    jacobian = stack.jacobian(placed)
+    acting = _work_of_loads(motion)[..., mechanism.columns, None]
     with np.errstate(all="ignore"):
         found = solved(jacobian.swapaxes(1, 2), acting)[..., 0]
         found[~(np.linalg.cond(jacobian, 1) * SMALLEST_RCOND <= 1.0)] = np.nan
+
+    def place(point: str) -> Array:
+        body = model.holders[point]
+        return np.asarray(placed.origin[:, body] + np.matvec(placed.rotation[:, body], model.arms[point]))
+
     joints, thrusts = {}, {}
-    travels = {mechanism.joint_rows + i for i, drive in enumerate(model.inputs) if drive.steers}
     for points, (owner, body) in model.reported_joints.items():
-        rows = [row for row, name in enumerate(owners) if name == owner]
-        if len(rows) == 2:  # a point on a slide
-            rows += [row for row in stack.of_one_point(rows[0]) if row in travels]
-        second = stack.second[rows[0]]
-        pushed = found[:, rows, None] * (-1.0 if second == bodies[body] else 1.0)
-        force = (pushed[:, :3] * along[:, rows[:3]]).sum(axis=1)
+        own = [number for number, row in enumerate(rows) if row.owner == owner]
+        second = rows[own[0]].second
+        if len(own) == 2:  # a point on a slide
+            own += _travels_of(model, rows[own[0]])
+        pushed = found[:, own, None] * (-1.0 if second == model.numbers[body] else 1.0)
+        force = (pushed[:, :3] * along[:, own[:3]]).sum(axis=1)
         if len(points) == 1:
             joints[points[0]] = force
             continue
-        start, end = (motion.place(point).value.T / size for point in points)
+        start, end = map(place, points)
         line = (end - start) / np.sqrt(np.vecdot(end - start, end - start))[:, None]
-        meeting = placed.origin[:, second] + second_arm[:, rows[0]]
-        moment = (pushed[:, 3:] * cross(second_arm[:, rows[3:]], along[:, rows[3:]])).sum(axis=1)
+        meeting = placed.origin[:, second] + second_arm[:, own[0]]
+        moment = (pushed[:, 3:] * cross(second_arm[:, own[3:]], along[:, own[3:]])).sum(axis=1)
         moment += cross(meeting - start, force)
         at_end = cross(moment, line) / np.vecdot(line, end - start)[:, None]
         thrusts[points[0]] = np.vecdot(line, force)
         across = force - thrusts[points[0]][:, None] * line
         joints |= {points[0]: across - at_end, points[1]: at_end}
-    rods = {name[4:]: found[:, row] for row, name in enumerate(owners) if name.startswith("rod ")}
+    rods = {row.owner[4:]: found[:, n] for n, row in enumerate(rows) if row.owner.startswith("rod ")}
     return {"rod_force": rods, "joint_force": joints, "hinge_thrust": thrusts}
+
+
+def _loaded_rows(model: Model) -> list[Row]:
+    """All rows; a damper's length takes the place of the input that moves its wheel."""
+    driven, values = [drive.row for drive in model.inputs], [drive.value for drive in model.inputs]
+    for part, damper in model.dampers.items():
+        moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,")
+        driven[values.index(moving)] = damper
+    return [*model.joints, *driven]
+
+
+def _travels_of(model: Model, slide: Row) -> list[int]:
+    """Numbers of the inputs' rows that are the travel of the same point on the same line as a slide's row."""
+
+    def points(row: Row) -> list[float]:
+        return [row.first, row.second, *row.first_arm, *row.second_arm]
+
+    return [
+        number
+        for number, drive in enumerate(model.inputs, len(model.joints))
+        if drive.steers and points(drive.row) == points(slide)
+    ]
 
 
 def _require_determined(mechanism: Mechanism) -> None:
@@ -100,12 +116,17 @@ def _require_determined(mechanism: Mechanism) -> None:
         )
 
 
-def _on_knuckle(motion: Motion) -> Array:
-    """(N, 2, 3) force, N, and moment about the knuckle's origin, N times size, of a part's load."""
-    mechanism, corner = motion.mechanism, motion.corner
-    load, size = mechanism.model.loads[motion.part], mechanism.drawing.size
-    origin = motion.instants.origin[:, mechanism.drawing.bodies[corner.carrier]]
-    ground = motion.place(corner.ends("wheel_axis")[1]) + contact(motion)
-    arm = ground.value.T / size - origin
-    force, moment = np.broadcast_arrays(load.force, load.moment / size + cross(arm, load.force))
-    return np.stack([force, moment], axis=1)
+def _work_of_loads(motion: Motion) -> Array:
+    """(N, 6 * bodies) forces, N, and moments about the origins of the bodies, N times size, of all loads."""
+    model, origin = motion.model, motion.origin
+    work = np.zeros((*origin.shape[:2], 2, 3))
+    for part, (force, moment) in model.loads.items():
+        wheel = replace(motion, part=part)
+        try:
+            knuckle, at = wheel.corner.need("knuckle"), ground(wheel).value.T / model.size
+        except DescriptionError as error:
+            raise DescriptionError(f"the load of the wheel {error}", error.name) from None
+        body = model.numbers[knuckle]
+        work[:, body, 0] += force
+        work[:, body, 1] += moment / model.size + cross(at - origin[:, body], force)
+    return work.reshape(len(work), 6 * len(model.bodies))

@@ -17,29 +17,9 @@ LARGEST_DEPENDENT = 0.1
 # a row that was left out becomes independent.
 LEAST_SPANNED = 0.5
 
-
 AXES = np.eye(3)
-
-
-def _turned() -> Array:
-    """(16, 9) matrix from the products of x, y, z, w of a unit quaternion to its rotation minus the identity:
-    2 w [v] + 2 [v] [v] with [v] [v] = v v^T - v . v."""
-    shares = np.zeros((4, 4, 3, 3))
-    for i, axis in enumerate(AXES):
-        shares[i, 3] = 2.0 * np.cross(axis, AXES).T
-        shares[i, :3, i] += 2.0 * AXES
-        shares[i, i] -= 2.0 * AXES
-    return shares.reshape(16, 9)
-
-
-TURNED = _turned()
-
-
-class Group(NamedTuple):
-    """Indices of a group's rows and columns, equally many, in the Jacobian."""
-
-    rows: Places
-    columns: Places
+# (3, 9): from a vector v to the matrix [v] of the product v x.
+CROSSED = np.cross(AXES[:, None], AXES).swapaxes(1, 2).reshape(3, 9)
 
 
 class Choice(NamedTuple):
@@ -47,12 +27,13 @@ class Choice(NamedTuple):
 
     Attributes:
         kept: numbers of the rows kept. left_out: numbers of the other rows, which are only checked.
-        groups: groups of bodies that the kept rows fix one after the other.
+        groups: rows and columns, equally many, of the kept rows' Jacobian for each group of bodies that they
+            fix one after the other.
     """
 
     kept: slice | Places
     left_out: Places
-    groups: Sequence[Group]
+    groups: Sequence[tuple[Places, Places]]
 
 
 class Mechanism:
@@ -62,7 +43,7 @@ class Mechanism:
     the car are added to the solution afterwards.
 
     Attributes:
-        model, drawing, stack: the described model, its drawing, its rows.
+        model, stack: the described model, its rows.
         columns: indices of the unknowns among [o', w] of all bodies; the first body stands, points do not
         turn.
         joint_rows: number of rows before the rows of the inputs.
@@ -75,7 +56,7 @@ class Mechanism:
     """
 
     def __init__(self, model: Model) -> None:
-        self.model, self.drawing = model, model.drawing
+        self.model = model
         self.bodies = bodies = len(model.bodies)
         self._sizes = np.array([0, *(3 if body in model.unturned else 6 for body in [*model.bodies][1:])])
         self.columns = np.flatnonzero(np.arange(6) < self._sizes[:, None])
@@ -85,10 +66,10 @@ class Mechanism:
         for body in [*model.bodies][1:]:
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)
         self.drawn = pin.neutral(self.pin_model)
-        self.drawn.reshape(-1, 7)[:, :3] = self.drawing.origins[1:]
+        self.drawn.reshape(-1, 7)[:, :3] = model.origins[1:]
         self._factors = np.array([drive.factor for drive in model.inputs])
-        self._cosines = np.array([drive.cosine for drive in model.inputs], dtype=np.bool_)
-        self._turns = np.array([drive.row.kind == "turn" for drive in model.inputs], dtype=np.bool_)
+        kinds = np.array([drive.row.kind for drive in model.inputs], dtype=str)
+        self._cosines, self._turns = kinds == "angle", kinds == "turn"
         over = np.array([drive.over_ground for drive in model.inputs], dtype=np.bool_)
         moves = model.moves if over.any() else {}
         self.values = (*(drive.value for drive in model.inputs), *moves)
@@ -96,37 +77,42 @@ class Mechanism:
         ups = np.array([drive.row.along for drive in model.inputs]).reshape(-1, 3) * over[:, None]
         # Displacements of the car are subtracted from heights over the ground.
         self._shares = np.hstack([np.eye(len(ups)), *(-(ups @ way)[:, None] for way in moves.values())])
-        self.choice = self._chosen()
-
-    def _chosen(self) -> Choice:
-        """The rows to keep in the drawing; `initial_assembly` checks whether the others are redundant.
-
-        Raises:
-            DescriptionError: the others are not redundant in the drawing, even approximately.
-        """
-        many = self.stack.count - self.stack.unknowns
-        if many <= 0:
-            return self._leaving_out(np.arange(0))
-        vanishing, strengths = self._vanishing(self.stack.place(*self.poses(self.drawn)))
-        left_out = _largest(vanishing)
-        if strengths[self.joint_rows - many] > LARGEST_DEPENDENT * strengths[0]:
-            raise too_many_rows(self.stack, left_out)
-        return self._leaving_out(left_out)
+        self.choice = self._leaving_out(np.arange(0))
+        if self.stack.count > self.stack.unknowns:
+            # `initial_assembly` checks the rest when the drawing is closed.
+            placed = self.stack.place(*self.poses(self.drawn[None]))
+            self.choice = self._leaving_out(_largest(self.redundancies(placed, LARGEST_DEPENDENT)))
 
     def choice_at(self, placed: Placed, before: Choice) -> Choice:
         """The choice for a pose, (1,); the previous choice if its rows span nearly as much."""
         if not len(before.left_out):
             return before
-        vanishing = self._vanishing(Placed(*(of[0] for of in placed)))[0]
+        vanishing = self.redundancies(placed)
         left_out = _largest(vanishing)
         # The volume of the kept rows is that of the rows left out in the vanishing combinations.
         spanned, most = (abs(np.linalg.det(vanishing[rows])) for rows in (before.left_out, left_out))
         return before if spanned >= LEAST_SPANNED * most else self._leaving_out(left_out)
 
-    def _vanishing(self, placed: Placed) -> tuple[Array, Array]:
-        """(joint rows, surplus) linear combinations of joint rows that vanish; and singular values."""
-        combined, strengths, _ = np.linalg.svd(self.stack.jacobian(placed)[: self.joint_rows])
-        return combined[:, self.stack.unknowns - self.stack.count :], strengths
+    def redundancies(self, placed: Placed, largest: float = np.inf) -> Array:
+        """(joint rows, surplus) linear combinations of joint rows that vanish at a pose, (1,).
+
+        Raises:
+            DescriptionError: one does not, its strength being above `largest` as a share of the strongest.
+        """
+        combined, strengths, _ = np.linalg.svd(self.stack.jacobian(placed)[0, : self.joint_rows])
+        independent = self.joint_rows - (self.stack.count - self.stack.unknowns)
+        vanishing = combined[:, independent:]
+        if (strengths[independent:] > largest * strengths[0]).any():
+            owners = self.stack.owners_of(_largest(vanishing))
+            raise DescriptionError(
+                f"joints and inputs give {self.stack.count} rows for {self.stack.unknowns} unknown "
+                f"velocities, and {vanishing.shape[1]} of them ({', '.join(owners)}) do not follow from the "
+                "others in the drawing, so the mechanism is overconstrained: remove an input, or free a "
+                "joint",
+                owners[0],
+                self.stack.count,
+            )
+        return vanishing
 
     def _leaving_out(self, rows: Places) -> Choice:
         kept = np.setdiff1d(np.arange(self.stack.count), rows)
@@ -138,16 +124,14 @@ class Mechanism:
         """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), the standing body first, for
         configurations (..., 7 * moving bodies)."""
         each = q.reshape(*q.shape[:-1], -1, 7)
-        turned = each[..., 3:]
-        products = (turned[..., :, None] * turned[..., None, :]).reshape(*turned.shape[:-1], 16)
-        rotation, origin = (
-            np.empty((*q.shape[:-1], self.bodies, 9)),
-            np.zeros((*q.shape[:-1], self.bodies, 3)),
-        )
-        rotation[...] = AXES.ravel()
-        rotation[..., 1:, :] += products @ TURNED
+        rotation = np.empty((*q.shape[:-1], self.bodies, 3, 3))
+        origin = np.zeros(rotation.shape[:-1])
+        # For a unit quaternion (v, w): 1 + 2 w [v] + 2 [v] [v].
+        across = (each[..., 3:6] @ CROSSED).reshape(*each.shape[:-1], 3, 3)
+        rotation[...] = AXES
+        rotation[..., 1:, :, :] += 2.0 * (each[..., 6:, None] * across + across @ across)
         origin[..., 1:, :] = each[..., :3]
-        return rotation.reshape(*origin.shape, 3), origin
+        return rotation, origin
 
     def spread(self, step: Array) -> Array:
         """(..., bodies, 2, 3) [o', w] from the unknowns; the others are zero."""
@@ -192,8 +176,9 @@ class Mechanism:
         return targets
 
 
-def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
-    """Groups of the moving bodies that their rows fix one after the other, each as small as possible.
+def groups_of(first: Places, second: Places, sizes: Places) -> list[tuple[Places, Places]]:
+    """Rows and columns of the groups of moving bodies that their rows fix one after the other, each as small
+    as possible.
 
     A group has as many rows among its bodies, the standing body and earlier groups as it has freedoms: first
     a driven link, then links attached to it, and so on (Assur groups). A group's determinant changes sign
@@ -212,13 +197,13 @@ def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
     held = csr_array((first[:, None] == holder) | (second[:, None] == holder))
     matched = maximum_bipartite_matching(held, perm_type="column")
     if len(first) != len(holder) or (matched < 0).any():
-        return [Group(np.arange(len(first)), np.arange(len(holder)))]
+        return [(np.arange(len(first)), np.arange(len(holder)))]
     own = holder[matched]
     waits = np.zeros((len(sizes), len(sizes)), dtype=np.bool_)
     waits[own, first] = waits[own, second] = True
     _, group = connected_components(csr_array(waits), connection="strong")
     return [
-        Group(np.flatnonzero(group[own] == one), np.flatnonzero(group[holder] == one))
+        (np.flatnonzero(group[own] == one), np.flatnonzero(group[holder] == one))
         for one in np.unique(group[1:])
     ]
 
@@ -228,15 +213,3 @@ def _largest(vanishing: Array) -> Places:
     from scipy.linalg import qr
 
     return np.sort(qr(vanishing.T, mode="r", pivoting=True)[1][: vanishing.shape[1]]).astype(np.intp)
-
-
-def too_many_rows(stack: RowStack, left_out: Places) -> DescriptionError:
-    """The error for surplus rows that are not redundant, named by their owners."""
-    owners = stack.owners_of(left_out)
-    return DescriptionError(
-        f"joints and inputs give {stack.count} rows for {stack.unknowns} unknown velocities, and "
-        f"{len(left_out)} of them ({', '.join(owners)}) do not follow from the others in the "
-        "drawing, so the mechanism is overconstrained: remove an input, or free a joint",
-        owners[0],
-        stack.count,
-    )

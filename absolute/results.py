@@ -1,16 +1,12 @@
 """Points, bodies and lines of a solved motion, from the poses and rates of its bodies."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from absolute.dual import Dual, constant
-from absolute.mechanism import Mechanism
-from absolute.model import CHASSIS, Corner
+from absolute.dual import Dual
+from absolute.model import CHASSIS, Corner, Model
 from absolute.solution import Solution
 from absolute.vectors import EPS, Array, Counts, carried, cross
 
@@ -20,16 +16,18 @@ class Instants(NamedTuple):
 
     Attributes:
         rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), the standing body first.
-        rates: (N, R, bodies, 2, 3) velocities [o', w], accelerations [o'', w'] and higher rates of the
-            bodies; zero for the standing body, and for all without rates.
-        slopes: (N, K, bodies, 2, 3) velocities of the bodies for a unit rate of one input each.
+        slopes: (N, K + 1, bodies, 2, 3) velocities [o', w] of the bodies for a unit rate of one input each,
+            then as they move.
+        higher: (N, R - 1, bodies, 2, 3) accelerations [o'', w'] and higher rates of the bodies.
         residual, condition, corrections: (N,) as in `Configurations`.
+
+    Rates are zero for the standing body, and those of the motion for all bodies if they were not asked for.
     """
 
     rotation: Array
     origin: Array
-    rates: Array
     slopes: Array
+    higher: Array
     residual: Array
     condition: Array
     corrections: Counts
@@ -37,46 +35,50 @@ class Instants(NamedTuple):
 
 @dataclass(frozen=True)
 class Motion:
-    """Instants of a mechanism for effects and loads, in mm, before the car is displaced.
+    """Bodies of a model at N instants for effects and loads, in mm, before the car is displaced.
 
     Places are measured from the middle of the drawing, so that the distance of the car from its origin costs
     only the rounding of the last sum.
 
     Attributes:
+        rotation, origin, slopes: as in `Instants`, in units of size.
         by: part, and "travel", "rack" or "roll", of the K inputs by which effects take derivatives; the
             derivatives by time follow these.
         part: the part whose wheel is used.
     """
 
-    mechanism: Mechanism
-    instants: Instants
+    model: Model
+    rotation: Array
+    origin: Array
+    slopes: Array
     by: tuple[tuple[str, str], ...] = ()
     part: str = ""
 
     @property
     def corner(self) -> Corner:
         """The wheel of the part."""
-        return self.mechanism.model.corners[self.part]
+        return self.model.corners[self.part]
 
     @property
     def in_the_car(self) -> "Motion":
         """The motion in the frame of the chassis."""
-        of, car = self.instants, self.mechanism.drawing.bodies[CHASSIS]
+        car = self.model.numbers[CHASSIS]
         if not car:
             return self
-        turned, base = of.rotation[:, [car]], of.origin[:, [car]]
-        back, arm = turned.swapaxes(-1, -2), of.origin - base
-        slopes = self._slopes - self._slopes[:, :, [car]]
-        slopes[..., 0, :] -= cross(self._slopes[:, :, [car], 1], arm[:, None])
-        slopes = slopes @ turned[:, None]
-        rotation, origin = back @ of.rotation, np.matvec(back, arm)
-        still = of._replace(rotation=rotation, origin=origin, slopes=slopes[:, :-1], rates=slopes[:, -1:])
-        return replace(self, instants=still)
+        turned, moving = self.rotation[:, [car]], self.slopes[:, :, [car]]
+        back, arm = turned.swapaxes(-1, -2), self.origin - self.origin[:, [car]]
+        slopes = self.slopes - moving
+        slopes[..., 0, :] -= cross(moving[..., 1, :], arm[:, None])
+        poses = {"rotation": back @ self.rotation, "origin": np.matvec(back, arm)}
+        return replace(self, slopes=slopes @ turned[:, None], **poses)
 
-    @cached_property
-    def _slopes(self) -> Array:
-        """(N, K + 1, bodies, 2, 3) velocities for unit rates of the inputs, then by time."""
-        return np.concatenate((self.instants.slopes, self.instants.rates[:, :1]), 1)
+    @property
+    def drawn(self) -> "Motion":
+        """The drawing, as one instant at rest."""
+        bodies = len(self.model.bodies)
+        rotation = np.broadcast_to(np.eye(3), (1, bodies, 3, 3))
+        slopes = np.zeros((1, 1, bodies, 2, 3))
+        return replace(self, rotation=rotation, origin=self.model.origins[None], slopes=slopes)
 
     def components(self, vector: Dual) -> Dual:
         """Components of a vector (3, N) along outboard, rearward and up as drawn."""
@@ -84,64 +86,44 @@ class Motion:
 
     def line(self, start: str, end: str) -> Dual:
         """(3, N) from one point to another; within one body it is the rotated drawn vector."""
-        drawing, bodies = self.mechanism.drawing, self.mechanism.model.bodies
-        body = next((body for body, points in bodies.items() if {start, end} <= set(points)), None)
+        model = self.model
+        body = next((body for body, points in model.bodies.items() if {start, end} <= set(points)), None)
         if body is None:
             return self.place(end) - self.place(start)
-        return self._turned(drawing.bodies[body], drawing.line(start, end))
+        return self._turned(model.numbers[body], model.line(start, end))
 
-    def moved(self, point: str) -> Dual:
-        """(3, N) displacement of a point from its drawn place."""
-        drawing = self.mechanism.drawing
-        body = drawing.bodies[drawing.holders[point]]
-        drawn = (drawing.origins[body] + drawing.arm(body, point)) * drawing.size
-        return self.place(point) - constant(drawn[:, None])
-
-    def drawn(self, point: str) -> Dual:
-        """(3, 1) drawn place of a point."""
-        return constant(self.mechanism.drawing.points[point][:, None])
-
-    def riding(self, on: str, arm: Dual) -> Dual:
-        """A vector (3, N) with its derivatives if it turns with a body."""
-        return Dual(arm.value, cross(self.spin(on).T, arm.value.T).T)
-
-    def spin(self, on: str) -> Array:
-        """(3, N, K + 1) angular velocity of a body for unit rates of the inputs, then by time."""
-        return self._slopes[:, :, self.mechanism.drawing.bodies[on], 1].transpose(2, 0, 1)
+    def spin(self, by: str) -> Array:
+        """(3, N) angular velocity of the knuckle for a unit rate of "travel", "rack" or "roll"."""
+        body = self.model.numbers[self.corner.need("knuckle")]
+        return np.asarray(self.slopes[:, self.by.index((self.part, by)), body, 1].T)
 
     def place(self, point: str) -> Dual:
         """(3, N) place of a point, from the middle."""
-        drawing = self.mechanism.drawing
-        body = drawing.bodies[drawing.holders[point]]
-        arm = self._turned(body, drawing.arm(body, point))
-        origin, slopes = self.instants.origin[:, body].T, self._slopes[:, :, body, 0].transpose(2, 0, 1)
-        return Dual(origin * drawing.size, slopes * drawing.size) + arm
+        size, body = self.model.size, self.model.holders[point]
+        origin = Dual(self.origin[:, body].T * size, self.slopes[:, :, body, 0].transpose(2, 0, 1) * size)
+        return origin + self._turned(body, self.model.arms[point])
 
     def _turned(self, body: int, line: Array) -> Dual:
         """(3, N) a vector fixed in a body; given as drawn, (3,), in units of size."""
-        turned = self.instants.rotation[:, body] @ (line * self.mechanism.drawing.size)
-        return Dual(turned.T, cross(self._slopes[:, :, body, 1], turned[:, None]).transpose(2, 0, 1))
+        turned = self.rotation[:, body] @ (line * self.model.size)
+        return Dual(turned.T, cross(self.slopes[:, :, body, 1], turned[:, None]).transpose(2, 0, 1))
 
 
-def solution_of(
-    mechanism: Mechanism,
-    found: Instants,
-    displaced: Array,
-    rates: bool,
-    **asked: Mapping[str, Array],
-) -> Solution:
+def solution_of(model: Model, found: Instants, displaced: Array, rates: bool, **asked: Any) -> Solution:
     """The solution in mm, with the requested effects and forces by name.
 
     Args:
         displaced: (N, 1 + R, 3) displacement of the car and its rates, mm and s.
     """
-    size, turns = mechanism.drawing.size, sum(drive.turns for drive in mechanism.model.inputs)
-    states = _points(mechanism, found, displaced, 1 + found.rates.shape[1] if rates else 1)
-    points = [dict(zip(mechanism.drawing.points, map(_locked, state), strict=True)) for state in states]
+    moving = np.concatenate((found.slopes[:, -1:], found.higher), 1) if rates else found.higher[:, :0]
+    states = [dict(zip(model.points, of, strict=True)) for of in _points(model, found, moving, displaced)]
     # Without rates, all rates are empty.
-    position, velocity, acceleration, *higher = points if rates else (*points, {}, {})
-    bodies = {name: mechanism.drawing.bodies[name] for name in mechanism.model.reported if rates}
-    spins = [{n: _locked(found.rates[:, order, k, 1]) for n, k in bodies.items()} for order in range(2)]
+    position, velocity, acceleration, *higher = states if rates else (*states, {}, {})
+    spins = [{n: moving[:, order, model.numbers[n], 1] for n in model.reported if rates} for order in (0, 1)]
+    # Coordinates up to the diameter are rounded by half a unit in the last place. The body on which a car
+    # turns has 13 roundings in its rotation and origin (see `rows`), so an error of sqrt(13) eps / 2, which
+    # all points share.
+    rounding = (1 + 2 * sum(bool(drive.turns) for drive in model.inputs)) * EPS
     return Solution(
         position=position,
         velocity=velocity,
@@ -149,37 +131,27 @@ def solution_of(
         higher=tuple(higher),
         angular_velocity=spins[0],
         angular_acceleration=spins[1],
-        iterations=_locked(found.corrections),
-        residual=_locked(found.residual * size),
-        condition=_locked(found.condition),
-        # Coordinates up to the diameter are rounded by half a unit in the last place. The body on which a car
-        # turns has 13 roundings in its rotation and origin (see `rows`), so an error of sqrt(13) eps / 2,
-        # which all points share.
-        accuracy=_locked((found.residual + (1 + 2 * turns) * EPS) * size),
-        **{kind: {n: _locked(a) for n, a in of.items()} for kind, of in asked.items()},
+        iterations=found.corrections,
+        residual=found.residual * model.size,
+        condition=found.condition,
+        accuracy=(found.residual + rounding) * model.size,
+        **asked,
     )
 
 
-def _points(mechanism: Mechanism, found: Instants, displaced: Array, orders: int) -> Array:
-    """(orders, P, N, 3) all points and their rates, mm and s."""
-    drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
+def _points(model: Model, found: Instants, moving: Array, displaced: Array) -> Array:
+    """(1 + R, P, N, 3) all points and their rates, mm and s, from the rates of the bodies."""
+    body, arms = model.held()
     arm = np.matvec(found.rotation[:, body].swapaxes(0, 1), arms[:, None])
-    state = np.empty((orders, *arm.shape))
+    state = np.empty((1 + moving.shape[1], *arm.shape))
     state[0] = found.origin[:, body].swapaxes(0, 1) + arm
-    if orders > 1:
-        speeds, spins = found.rates[:, :, body].transpose(3, 1, 2, 0, 4)
-        # p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r)
-        state[1:] = speeds + carried(arm, spins, orders)[1:]
-    state *= drawing.size
+    speeds, spins = moving[:, :, body].transpose(3, 1, 2, 0, 4)
+    # p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r)
+    state[1:] = speeds + np.array(carried(arm, spins, len(state))[1:]).reshape(speeds.shape)
+    state *= model.size
     # The standing body's points are exactly where they are drawn.
-    given, still = np.array(list(drawing.points.values()))[:, None], (body == 0)[:, None, None]
-    base = np.where(still, given, drawing.middle)
+    given, still = np.array(list(model.points.values()))[:, None], (body == 0)[:, None, None]
     state[0] = np.where(still, 0.0, state[0])
-    state += displaced.swapaxes(0, 1)[:orders, None]
-    state[0] += base
+    state += displaced.swapaxes(0, 1)[: len(state), None]
+    state[0] += np.where(still, given, model.middle)
     return state
-
-
-def _locked(array: NDArray[Any]) -> Any:
-    array.setflags(write=False)
-    return array

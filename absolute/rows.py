@@ -130,13 +130,6 @@ class RowStack:
         """Names of the joints and inputs of these rows, each once."""
         return tuple(dict.fromkeys(self.owners[row] for row in rows))
 
-    def of_one_point(self, row: int) -> list[int]:
-        """Numbers of the rows with the same points of the same two bodies."""
-        arms = self._local[1:]
-        same = (arms == arms[:, [row]]).all(axis=(0, 2)) & (self._offset > 0.0)
-        same &= (self.first == self.first[row]) & (self.second == self.second[row])
-        return [int(number) for number in np.flatnonzero(same)]
-
     def read_at_foot(self, placed: Placed, gap: Array) -> Placed:
         """Open rows with their joints' forces at the foot on the first body.
 

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from absolute.vectors import Array, Counts
 
 
@@ -46,6 +48,12 @@ class Solution:
     rod_force: Mapping[str, Array] = field(default_factory=dict)
     joint_force: Mapping[str, Array] = field(default_factory=dict)
     hinge_thrust: Mapping[str, Array] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for of in (*vars(self).values(), *self.higher):
+            for array in of.values() if isinstance(of, dict) else (of,):
+                if isinstance(array, np.ndarray):
+                    array.setflags(write=False)
 
     @property
     def derivatives(self) -> tuple[Mapping[str, Array], ...]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.effects import TIME, effects_of, inputs_of, numbers_of
+from absolute.effects import TIME, effects_of, numbers_of
 from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
 from absolute.initial_assembly import assemble, locked
@@ -48,7 +48,7 @@ def close_drawing(model: Model) -> ClosedDrawing:
     inputs = assembled.drawn_inputs
     still = {name: np.array([[value, 0.0, 0.0]]) for name, value in inputs.items()}
     position = {name: place[0] for name, place in assembled.solve(still, rates=False).position.items()}
-    drawn = model.drawing.points
+    drawn = model.points
     moved = {name: float(np.linalg.norm(place - drawn[name])) for name, place in position.items()}
     return ClosedDrawing(inputs, position, moved)
 
@@ -124,8 +124,7 @@ class Assembled:
     ) -> Solution:
         """The motion for inputs at N instants; arguments and errors as for `solve`."""
         model, mechanism = self.model, self._mechanism
-        asked = effects_of(effects, model)
-        by = inputs_of(asked, model)
+        asked, by = effects_of(effects, model)
         rated = rates or any(one.effect.by == TIME for one in asked.values())
         series = _series({*mechanism.values, *model.moves}, inputs)
         # Rows with the same value have a column each.
@@ -137,19 +136,17 @@ class Assembled:
             displaced += series[name][..., None] * way
         followed = self._followed(columns, rated, tuple(by.values()))
 
-        def numbers(found: Instants) -> dict[str, Mapping[str, Array]]:
-            motion = Motion(mechanism, found, tuple(by))
-            return {"effects": numbers_of(asked, motion), **(forces(motion) if loads else {})}
-
         def solution(count: int | None = None) -> Solution:
             found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
-            moved = displaced[: len(found.residual)]
-            return solution_of(mechanism, found, moved, rates, **numbers(found))
+            motion = Motion(model, *found[:3], tuple(by))
+            loaded = forces(mechanism, motion) if loads else {}
+            moved, numbers = displaced[: len(found.residual)], numbers_of(asked, motion)
+            return solution_of(model, found, moved, rates, effects=numbers, **loaded)
 
         with np.errstate(over="ignore", invalid="ignore"):
-            # A description that lacks data for effects or loads is refused before solving, even for N = 0.
             runs = [next(followed)]
-            numbers(runs[0])
+            # A description that lacks data for effects or loads is refused before solving, even for N = 0.
+            solution()
             try:
                 runs += followed
             except AbsoluteError as error:
@@ -179,25 +176,26 @@ class Assembled:
         named = np.array(mechanism.values)
         units = [mechanism.targets(series[:, 0], (named == value) / per)[1] for value in by]
 
-        def at(found: Configurations, rated: bool) -> tuple[Instants, NDArray[np.bool_]]:
+        def at(found: Configurations) -> tuple[Instants, NDArray[np.bool_]]:
             """The results at some configurations, and whether left-out rows hold for all velocities."""
-            placed, here = found.placed, slice(done, done + len(found.q))
-            shape = (*placed.origin.shape[:2], 2, 3)
-            slopes, moving = np.zeros((len(units), *shape)), np.zeros((len(targets) - 1, *shape))
-            held, residual = np.ones(len(found.q), dtype=np.bool_), found.residual
-            for number, unit in enumerate(units):
-                (slopes[number],) = rates(mechanism, found, unit[here])
-                held &= _of_rates(mechanism, found, slopes[number])[1]
+            rotation, origin = found.placed[:2]
+            here = slice(done, done + len(origin))
             if rated:
-                moving[:] = rates(mechanism, found, *targets[1:, here])
-                residual, followed = _of_rates(mechanism, found, moving[0])
+                moving = rates(mechanism, found, *targets[1:, here])
+            else:
+                moving = [np.zeros((*origin.shape[:2], 2, 3))] * (len(targets) - 1)
+            slopes = np.stack([*(rates(mechanism, found, unit[here])[0] for unit in units), moving[0]], 1)
+            higher = np.stack(moving[1:], 1)
+            held, residual = np.ones(len(origin), dtype=np.bool_), found.residual
+            for velocity in slopes.swapaxes(0, 1):
+                residual, followed = _of_rates(mechanism, found, velocity)
                 held &= followed
-            moving, slopes, where = moving.swapaxes(0, 1), slopes.swapaxes(0, 1), placed[:2]
-            return Instants(*where, moving, slopes, residual, found.condition, found.corrections), held
+            results = residual, found.condition, found.corrections
+            return Instants(rotation, origin, slopes, higher, *results), held
 
-        yield at(self._drawn.part(slice(0)), rated=False)[0]
+        yield at(self._drawn.part(slice(0)))[0]
         for found in through(mechanism, self._drawn, series[:, 0]):
-            instants, held = at(found, rated)
+            instants, held = at(found)
             good = leading(held)
             if good:
                 yield Instants._make(part[:good] for part in instants)

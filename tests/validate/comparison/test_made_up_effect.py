@@ -45,7 +45,7 @@ def known_to_absolute(monkeypatch: pytest.MonkeyPatch, scale: float | None) -> N
     """The absolute model's own, right or too long; None for a model that does not know it."""
 
     def value(motion: Motion) -> np.ndarray:
-        return scale * motion.components(motion.line(*motion.corner.ends("wheel_axis")))[0].value
+        return scale * motion.components(motion.line(*motion.corner.need("wheel_axis")))[0].value
 
     own = {} if scale is None else {"stub_axle": AbsoluteEffect("mm", value)}
     monkeypatch.setattr("absolute.effects.EFFECTS", {**absolute.EFFECTS, **own})
