@@ -32,8 +32,9 @@ PACKAGES = ("pointcoord", "absolute", "validate")
 # Families, which are caught and never raised themselves.
 BASES = {"PointcoordError", "AbsoluteError"}
 # SIGTERM ends the program as Ctrl-C does, which `tests/validate/commands/test_door.py` tries, and so does
-# what the program answers without working: its version. A solver's own failure is a formulation's refusal.
-CAUGHT = {"Terminated", "Answer", "SolverFailed"}
+# what the program answers without working: its version. A solver's own failure is a formulation's refusal;
+# a scene that cannot be solved ends a command (`tests/validate/commands/answered.txt`).
+CAUGHT = {"Terminated", "Answer", "SolverFailed", "NotSolved"}
 
 BOUNCE = pointcoord.Scene.load("bounce")
 TABLE = dict(BOUNCE.mechanism.points)

@@ -11,7 +11,7 @@ from typing import NoReturn
 from pointcoord.wording import meant, shown
 from validate.commands.pages import filled, summary
 from validate.commands.usage import require_files
-from validate.errors import NotFinished, UsageError
+from validate.errors import NotFinished, NotSolved, UsageError
 from validate.exit_status import HELP, ExitStatus, of_interruption
 from validate.extras import needing
 from validate.output.console import Console
@@ -75,7 +75,7 @@ def _ending(error: BaseException, console: Console) -> tuple[ExitStatus, str] | 
 
     if isinstance(error, UsageError | PointcoordError):
         return ExitStatus.WRONG_INPUT, str(error)
-    if isinstance(error, FormulationError):
+    if isinstance(error, FormulationError | NotSolved):
         return ExitStatus.NO_VERDICT, str(error)
     if isinstance(error, NotFinished):
         return ExitStatus.NOT_FINISHED, str(error)

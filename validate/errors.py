@@ -31,6 +31,10 @@ class NotFinished(Exception):
         return f"{self.what}: {self.problem}"
 
 
+class NotSolved(Exception):
+    """A scene that the command line names is well written, and cannot be solved; the message names both."""
+
+
 class NoAnswer(Exception):
     """A spanning tree, a peer program or another solver has no answer for a mechanism.
 

@@ -40,12 +40,18 @@ class Sensitivity(ReadOnly):
     failures: Mapping[str, str]
 
     def largest(self, number: str) -> Array:
-        """The derivative of largest magnitude over all instants, with its sign, (coordinates,); 0 if none."""
-        found = np.nan_to_num(self.derivatives[number])
-        return np.asarray(np.take_along_axis(found, np.abs(found).argmax(axis=1)[:, None], axis=1)[:, 0])
+        """The derivative of largest magnitude over all instants, with its sign, (coordinates,).
+
+        NaN for a coordinate without a derivative.
+        """
+        found = self.derivatives[number]
+        place = np.nan_to_num(np.abs(found), nan=-1.0).argmax(axis=1)
+        return np.asarray(np.take_along_axis(found, place[:, None], axis=1)[:, 0])
 
     def spread(self, number: str, tolerance: float) -> tuple[float, float]:
         """Largest spread of a number over time, to first order, for one tolerance of all coordinates.
+
+        Coordinates without a derivative are left out.
 
         Args:
             tolerance: tolerance of every coordinate, mm: a standard deviation, or a limit.

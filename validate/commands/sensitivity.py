@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pointcoord import sensitivity, sweep
+from pointcoord import sensitivity, simulate, sweep
 from pointcoord.effects.numbers import RANKED_FIRST
 from pointcoord.sweeping.sensitivity import numbers_named
 from validate.arrays import Array
@@ -40,6 +40,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         numbers = numbers or numbers_asked(scene, name, None, None)
         called = [number.called for number in numbers]
         scene = asking_for(scene, numbers)
+        simulate(scene)  # a car that cannot move has one error, not one for each coordinate
         found = sensitivity(scene, called, options.point)
         offsets = {one: random.normal(0.0, options.tolerance, DESIGNS) for one in found.coordinates}
         designs = sweep(scene, offsets=offsets)
@@ -50,8 +51,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     for number, array in zip(numbers, numbers_named(designs.numbers, called).values(), strict=True):
         changes[number.headed("/mm")] = number.factor * found.largest(number.called)[order]
         deviation, worst = found.spread(number.called, options.tolerance)
-        drawn = float(np.nanstd(array[designs.solved], axis=0).max())  # at the instant where it is largest
-        spread = (f"{abs(number.factor) * one:.4f}" for one in (deviation, drawn, worst))
+        solved = array[designs.solved]
+        known = solved[:, np.isfinite(solved).any(axis=0)]
+        # At the instant where it is largest.
+        drawn = float(np.nanstd(known, axis=0).max()) if known.size else np.nan
+        spread = (_shown(abs(number.factor) * one, ".4f") for one in (deviation, drawn, worst))
         spreads.append((number.headed(), *spread))
     if ending in PICTURES:
         console.put(target, _picture(coordinates, changes, name, ending), "the picture")
@@ -66,9 +70,13 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return ExitStatus.NO_VERDICT if found.failures else ExitStatus.AGREE
 
 
+def _shown(number: float, form: str) -> str:
+    return "none" if np.isnan(number) else format(number, form)
+
+
 def _first_rows(coordinates: Sequence[str], changes: Mapping[str, Array]) -> Iterator[Part]:
     """The table of the first coordinates, and the number of the others."""
-    texts = ([f"{change:z.5f}" for change in each[:ROWS]] for each in changes.values())
+    texts = ([_shown(change, "z.5f") for change in each[:ROWS]] for each in changes.values())
     yield Table(("hardpoint", *changes), tuple(zip(coordinates[:ROWS], *texts, strict=True)))
     if (rest := len(coordinates) - ROWS) > 0:
         yield f"{rest} more coordinates: -o FILE.csv has all"

@@ -80,7 +80,7 @@ class Summary:
     def failed_lines(self) -> list[str]:
         """The reasons of failed designs, the most frequent first."""
         return [
-            f"{count} of {self.tried} designs failed, {reason}; such as design "
+            f"{count} of {counted_as(self.tried, 'design')} failed: {reason}; such as design "
             f"{self.first[reason].design}: {self.first[reason].error}"
             for reason, count in self.failed.most_common()
         ]

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pointcoord import Motion, PointcoordError, Scene, SceneError, UnknownName, WrongArgument, solve_poses
+from pointcoord import Motion, Scene, UnknownName, WrongArgument, solve_poses
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.numbers import CONVENTIONS, READ_FIRST
 from pointcoord.wording import meant
@@ -93,13 +93,7 @@ def _on_grid(
     grid = dict(zip(axes, map(np.ravel, np.meshgrid(*axes.values(), indexing="ij")), strict=True))
     at = {number.path[0]: values for number, values in grid.items()}
     held = {n: law.series(scene.time.start, 0)[0] for n, law in scene.functions.items() if n not in at}
-    try:
-        poses = solve_poses(scene, held | at)
-    except SceneError:
-        raise
-    except PointcoordError as error:
-        console.complain(f"{name}: {error}; nothing is written")
-        return ExitStatus.NO_VERDICT
+    poses = solve_poses(scene, held | at)
     columns = [(number, number.factor * values) for number, values in grid.items()]
     rows = np.arange(float(len(poses.bound)))
     there = Solution("pointcoord", rows, poses.numbers, Accuracy(np.ones(len(rows))))

@@ -11,8 +11,17 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from pointcoord import Scene, SceneError
-from validate.errors import UsageError
+from pointcoord import (
+    AssemblyError,
+    InputOutOfRange,
+    MechanismError,
+    NotCovered,
+    NotFollowed,
+    Scene,
+    SceneError,
+    SingularConfiguration,
+)
+from validate.errors import NotSolved, UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable, write_content
@@ -134,22 +143,30 @@ def name_of(scene: str) -> str:
     return STANDARD_INPUT_NAME if scene == STANDARD_INPUT else shown(scene)
 
 
+# The errors of a scene that is well written, and whose mechanism cannot follow its inputs.
+STOPS = AssemblyError, InputOutOfRange, MechanismError, NotCovered, NotFollowed, SingularConfiguration
+
+
 @contextmanager
 def named_scene(given: str, read: Callable[[str], Scene] | None = None) -> Iterator[tuple[Scene, str]]:
     """A scene that the command line names, and its name in messages.
 
     Within this context, an error of the scene names it as the command line does, not by its title.
+    A motion that cannot be solved ends the command without a verdict.
 
     Args:
         read: reads the scene; `load_scene` if not given.
     Raises:
         SceneError: there is no such scene, or it is wrong.
+        NotSolved: its mechanism cannot follow its inputs.
     """
     scene, name = (read or load_scene)(given), name_of(given)
     try:
         yield scene, name
     except SceneError as error:
         raise error.of(name) from error
+    except STOPS as error:
+        raise NotSolved(f"{name}: {error}") from error
 
 
 def load_scene(name: str) -> Scene:

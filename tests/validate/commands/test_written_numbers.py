@@ -68,7 +68,7 @@ def test_the_designs_of_a_sweep_are_written_in_every_kind_of_file(
     assert main(["sweep", SCENE, *VARY, "--instants", "5", "-o", "-"]) == 3
     out, err = capsys.readouterr()
     assert out.encode() == (swept / "t.csv").read_bytes()
-    assert "1 of 3 designs failed, the mechanism cannot be assembled; such as design 2: " in err
+    assert "1 of 3 designs failed: the mechanism cannot be assembled; such as design 2: " in err
     found = in_every_kind(swept)
     assert found["design"].tolist() == np.repeat(np.arange(3), 5).tolist()
     assert [status == "solved" for status in found["status"].tolist()] == [True] * 10 + [False] * 5
