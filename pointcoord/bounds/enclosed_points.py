@@ -100,7 +100,9 @@ def enclosed_coordinates(
     Args:
         rates: computed time derivatives of y, with exact values of the known ones, (G, m, size), units per
             unit of time^d.
-        unsolved: distance from its assembly at which the solver stopped, largest in each group, (G,).
+        unsolved: expected distance of each coordinate from its assembly, largest in each group, (G, unknowns)
+            or (G, 1): where the solver stopped, and where a series is cut for rates that are solved for at
+            the pose (those with a series of their own have it in `cut`).
         cut: truncation error of the series, by derivative, (G, size); empty if there is no series.
         opened: rates of coordinates that only some rows read, in addition to `rates`, as a gap opens,
             (size,); and 1 for these rows.
@@ -111,7 +113,7 @@ def enclosed_coordinates(
     spread = certificate.spread[:, 0] + 32.0 * UNIT_ROUNDOFF * largest
     proven = spread + _tail(system, poses, magnitude, spread + largest)
     uncertain = system.uncertainty(pose.high[:, 0], pose.radius[1, :, 0])
-    looking = np.matvec(magnitude, uncertain) + unsolved[:, None]
+    looking = np.matvec(magnitude, uncertain) + unsolved
     result = [_moved(pose, -certificate.step, proven, looking)]
     moved = np.zeros((len(proven), system.size))
     moved[:, :n] = largest + proven

@@ -137,7 +137,7 @@ def _positions(solved: SolvedScene, times: Array, certain: bool) -> tuple[Certif
     functions = solved.readout.chassis.functions
     laws = {name: [law.enclosed(times)[0].together(together)] for name, law in functions.items()}
     number = len(poses.factors.condition)
-    coordinates = enclosed_coordinates(mechanism, poses, (), np.zeros(number), ())
+    coordinates = enclosed_coordinates(mechanism, poses, (), np.zeros((number, 1)), ())
     points = enclosed_points(mechanism, coordinates)
     return poses, enclosed_poses(solved.readout, points, laws, [np.ones((number, 1))])
 
@@ -163,14 +163,16 @@ def _with_rates(solved: SolvedScene, times: Array, unsolved: Array) -> tuple[Cer
     powers = [time**d for d in range(len(rates) + 1)]
     computed = [rate.scaled(power[:, None, None]) for rate, power in zip(computed, powers[1:], strict=True)]
     cut = _left_out(poses, times, solved, (y, *rates), powers)
-    most = together(unsolved).max(axis=1)
+    most = together(unsolved).max(axis=1)[:, None]
     coordinates = enclosed_coordinates(mechanism, poses, computed, most, cut)
     own = {name: laws[name] for name in readout.chassis.functions}
     points = enclosed_points(mechanism, coordinates)
     exact = enclosed_poses(readout, points, own, [power[:, None] for power in powers])
     ways = readout.plan.ways(mechanism.topology)
+    # A slope has no series: it is solved for at the pose, which is off by what its series leaves out.
+    off = most + cut[0][:, : mechanism.map.unknowns] if cut else most
     slopes = {
-        way: _slopes(readout, poses, slope, laws, most, way)
+        way: _slopes(readout, poses, slope, laws, off, way)
         for way, slope in zip(ways, way_slopes(mechanism, y, ways), strict=True)
     }
     return poses, replace(exact, slopes=slopes)

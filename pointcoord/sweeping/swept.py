@@ -155,7 +155,9 @@ class Sweep(Samples):
         """Proven error bounds of one design's numbers at each of the times.
 
         The design is solved again separately and its poses are proven. The distance between these poses and
-        the numbers of the sweep is added to the bounds.
+        the numbers of the sweep is added to the proven bounds. `expected` is what is expected of the design
+        solved separately: series that designs share are cut elsewhere, so at a coarse tolerance the numbers
+        of the sweep may be off by more, within that tolerance.
 
         Raises:
             WrongArgument: the design is not in this block.

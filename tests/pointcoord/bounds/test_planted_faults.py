@@ -107,7 +107,7 @@ def toy_holds(off: float, rest: float, doubt: float, apart: float) -> bool:
         rates = [
             with_known(together(state), 1, known) for state, known in zip(states[1:], parts[1:], strict=True)
         ]
-        found = enclosed_coordinates(TOY, poses, rates, np.zeros(len(poses.factors.condition)), ())
+        found = enclosed_coordinates(TOY, poses, rates, np.zeros((len(poses.factors.condition), 1)), ())
     within = [_within(state, exact, poses) for state, exact in zip(found, (u, u1, u2), strict=True)]
     return all(within)
 

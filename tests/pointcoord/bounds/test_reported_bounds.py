@@ -118,6 +118,21 @@ def test_neighbours_that_share_an_inverse_are_as_well_proven_as_each_alone_in_an
         assert np.array_equal(bound[mixed], other.proven[quantity][name]), (quantity, name)
 
 
+def test_a_gradient_at_a_coarsely_solved_pose_is_expected_to_be_off_with_the_pose() -> None:
+    """Solved for at the pose, it has no series whose last terms say what is left out of it."""
+    laws = {"rack": {"sine": {"amplitude": 8.0, "angular_frequency": 80.0, "phase": 1e6}}}
+    time = {"start": 0.0, "stop": 1.0, "samples": 9}
+    scene = scene_with(
+        "bounce", {"wheel_radius": 300.0}, laws=laws, time=time, effects=["steering_axis_by_rack"]
+    )
+    right = simulate(scene, "newton").numbers["dimension_gradient"]
+    motion = simulate(scene.model_copy(update={"tolerance": 1e-2}), "map")
+    expected = motion.proof(rates=True).expected["dimension_gradient"]
+    for name, gradient in motion.numbers["dimension_gradient"].items():
+        off = np.abs(gradient - right[name])
+        assert (off <= expected[name]).all(), off / expected[name]
+
+
 def test_a_coefficient_that_is_far_off_is_in_the_bounds_with_what_curvature_makes_of_it() -> None:
     """Of every number: what points are off by the square of the coefficient is in what is made of them."""
     relative, motion = 1e-4, with_every_number()
