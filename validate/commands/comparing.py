@@ -129,6 +129,8 @@ def comparing(
 def _leave_files(options: argparse.Namespace, record: Record, console: Console, journal: Journal) -> None:
     """Write JUnit, summary and baseline if any scene was examined; the baseline only after a whole run.
 
+    A cut-off run says that its page is not written.
+
     Raises:
         NotFinished: a file cannot be written.
     """
@@ -151,3 +153,5 @@ def _leave_files(options: argparse.Namespace, record: Record, console: Console, 
 
         status = record.status if journal.complete else journal.status
         console.put(options.summary, summary(record, status), what)
+    if options.report is not None and not record.ended:
+        console.complain(f"report {shown(options.report)}: not written, because {record.stopped}")

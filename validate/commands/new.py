@@ -24,8 +24,11 @@ TYPE = re.compile(r'^(type *= *)"(\w+)"', re.MULTILINE)
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Write both files."""
     name, copied = options.name.removesuffix(".toml"), vars(options)["from"]
-    if not name:
-        raise UsageError("NAME is empty; allowed: the name of the new files, without .toml")
+    if os.path.basename(name) in ("", "-"):
+        raise UsageError(
+            f"NAME is {shown(options.name)!r}, which names no file; allowed: the name of the new files, "
+            "without .toml"
+        )
     if copied not in built_in_scenes():
         raise UnknownName("built-in scene", copied, built_in_scenes())
     text = (SCENES / f"{copied}.toml").read_text(encoding="utf-8")

@@ -65,6 +65,13 @@ def positive(word: str) -> float:
     raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: a positive, finite number")
 
 
+def number(word: str) -> float:
+    """Read a number; its user checks the range."""
+    with suppress(ValueError):
+        return float(word)
+    raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: a number, such as 1e-6")
+
+
 def result_file(word: str, endings: Sequence[str]) -> str:
     """Read the name of a result, - for standard output; its ending selects the format.
 
@@ -82,7 +89,7 @@ TYPES: Mapping[str, Callable[[str], Any]] = {
     "N": whole(1),
     "K": whole(0),
     **dict.fromkeys(("S", "F", "MM"), positive),
-    **dict.fromkeys(("A", "DEG"), float),
+    **dict.fromkeys(("A", "DEG"), number),
 }
 """Reader of an option's value by its placeholder: counts, seconds, factors, accuracies, sizes."""
 

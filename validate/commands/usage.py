@@ -32,7 +32,8 @@ STANDARD_INPUT_NAME = "standard input"
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
 RESULTS = ("-o", "--mjcf", "--json", "--csv", "--junit", "--summary", "--save-baseline")
 """The options that name a result, of any command."""
-READ = ("scene", "scenes", "--scenes-dir", "file", "--data", "--map", "--designs", "--baseline")
+READ_OPTIONS = ("--scenes-dir", "--data", "--map", "--designs", "--baseline", "--names", "--hard", "--cost")
+READ = ("scene", "scenes", "file", *READ_OPTIONS)
 """The options and arguments that name what a command reads, of any command."""
 
 
@@ -53,14 +54,18 @@ def require_files(options: argparse.Namespace, console: Console) -> None:
     result goes to standard output, the console prints nothing else there.
 
     Raises:
-        UsageError: a result names no file or a file that is read, or two results are the same file; standard
-            input is given twice, or as a file of results.
+        UsageError: an option names no file, a result names a file that is read, or two results are the same
+            file; standard input is given twice, or as a file of results.
         NotFinished: a result cannot be written.
     """
     if (value_of(options, "scenes") or []).count(STANDARD_INPUT) > 1:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
     if STANDARD_INPUT in (value_of(options, "--data"), value_of(options, "--map")):
         raise UsageError("--data and --map read files; standard input (-) can be the scene only")
+    for option in READ_OPTIONS:
+        # As by the variable of a script that is not set; '' would be the current folder.
+        if (place := value_of(options, option)) is not None and not place.strip():
+            raise UsageError(f"{option} {place!r} names nothing to read; allowed: a path")
     # The rows of `cost` are measured, or read with --from-rows; those of `table` are a number.
     results = RESULTS if getattr(options, "from_rows", True) else (*RESULTS, "--rows")
     found = {option: value_of(options, option) for option in results}

@@ -149,6 +149,8 @@ class Outcome:
             return ""
         if any(row.verdict == "agrees" for row in self.rows):
             return f"all numbers that agree were given to the solver: {GIVEN_BACK}"
+        if all(row.verdict == "not given" for row in self.rows):
+            return "no number is given"
         return "none of the numbers given is tested"
 
     def explained(self, row: Comparison) -> tuple[str, ...]:

@@ -6,14 +6,19 @@ After a full disk, a kill or Ctrl-C the old file is still there, unchanged.
 from __future__ import annotations
 
 import errno
+import glob
 import os
+import secrets
 import stat
+import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from validate.errors import NotFinished, UsageError
+
+LEFT = 3600.0  # s without a write, after which a temporary file is taken for that of a killed run
 
 
 def require_known_ending(target: str, endings: Iterable[str]) -> None:
@@ -35,17 +40,17 @@ def unwritable(target: str, error: OSError) -> NotFinished:
 def require_writable(target: str) -> None:
     """Refuse a file that cannot be written, before anything is solved; an old file is not changed.
 
+    Temporary files that killed runs left for this target are removed.
+
     Raises:
         NotFinished: the file cannot be written.
     """
     try:
         if not _is_special(target):
             beside = _beside(target)
-            there = beside.exists()
-            with beside.open("ab"):
-                pass
-            if not there:
-                beside.unlink()
+            beside.touch(exist_ok=False)
+            beside.unlink()
+            _remove_left_over(target)
     except OSError as error:
         raise unwritable(target, error) from None
 
@@ -121,10 +126,24 @@ def _is_special(target: str) -> bool:
 
 
 def _beside(target: str) -> Path:
-    """The temporary file of a target; one that a killed run left is replaced by the next with this target."""
+    """A new temporary file of a target; runs at the same time with this target have files of their own."""
     place = Path(os.path.realpath(target))
     if not place.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"there is no folder {str(place.parent)!r}")
     with suppress(FileNotFoundError):
         os.stat(place)  # raises OSError if the name is too long
-    return place.with_name(f".pointcoord-{place.name[:200]}.part")
+    return place.with_name(_temporary(place, secrets.token_hex(4)))
+
+
+def _remove_left_over(target: str) -> None:
+    """Remove the temporary files of a target that killed runs have left."""
+    place = Path(os.path.realpath(target))
+    for path in place.parent.glob(_temporary(Path(glob.escape(place.name)), "*")):
+        # Another run may have removed it, or it belongs to another user.
+        with suppress(OSError):
+            if time.time() - path.stat().st_mtime > LEFT:
+                path.unlink()
+
+
+def _temporary(place: Path, token: str) -> str:
+    return f".pointcoord-{place.name[:200]}-{token}.part"

@@ -132,14 +132,20 @@ def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) 
     rows = [*quantity_rows(outcome)]
     rows += [(words, "", "-", "-", "-", "-", "-", Cell("not given")) for words in absent]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
-    count = counted_as(len(outcome.solutions[0].times), "row" if over else "instant")
+    times = len(outcome.solutions[0].times)
+    count = rows_over(times, over) if over else counted_as(times, "instant")
     remarks = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
     lines = (*silent_lines(outcome), *(f"note: {note}" for note in remarks), *explained_lines(outcome))
     return (
-        f"{outcome.scene}: {pair_of(outcome)}, {count}{f' over {shown(over)}' if over else ''}{factor}",
+        f"{outcome.scene}: {pair_of(outcome)}, {count}{factor}",
         Table(HEAD, tuple(rows)),
         *(f"  {line}" for line in lines),
     )
+
+
+def rows_over(rows: int, over: str) -> str:
+    """The rows of a file in words, with their abscissa if it is one column: 11 rows over bump [mm]."""
+    return counted_as(rows, "row") + ("" if over == "row" else f" over {shown(over)}")
 
 
 def quantity_rows(outcome: Outcome) -> Iterator[tuple[str | Cell, ...]]:

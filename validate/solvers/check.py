@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from numbers import Real
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
@@ -55,7 +56,7 @@ def required_accuracy(accuracy: float) -> float:
     Raises:
         UsageError: it is not a length above 0.
     """
-    if not (math.isfinite(accuracy) and accuracy > 0.0):
+    if not (isinstance(accuracy, Real) and 0.0 < accuracy < math.inf):
         raise UsageError(f"the accuracy is {accuracy!r} mm; give a length above 0, such as 1e-6")
     return float(accuracy)
 

@@ -37,6 +37,7 @@ FILES = {
     "FILE": "mine",
     "FOREIGN/index.html": "<p>mine</p>",
     "CURVES": "time [s],camber [deg]\n0,1\n1,2\n",
+    "GRID.csv": "arm_angle [deg],rack [mm],toe [deg]\n86.5,0,0\n85,10,0.5\n",
     "LENGTHS.csv": "time [s],damper [mm]\n0,1\n",
     "none.csv": "",
     "column.csv": "strut_top\n1\n",
@@ -54,6 +55,8 @@ FILES = {
     "own/right.py": "def solve(given): ...\nclass Twice:\n  def __init__(self, a): ...\n",
     "own/half.py": f"{ANGLES}return {{'wheel': a}}\n",
     "own/wrong.py": f"{ANGLES}return {{'camber': -a['camber'], 'toe': a['toe']}}\n",
+    "own/silent.py": "def solve(given): return {}\n",
+    "own/empty.py": f"{ANGLES}return {{name: x * float('nan') for name, x in a.items()}}\n",
     "own/partly.py": f"{ANGLES}return {{'camber': a['camber'], 'toe': a['toe'][1:]}}\n",
     "own/few.py": f"{ANGLES}t = given['instants'][:2] + [0, 1e-9]\n    "
     "return {'instants': t, 'camber': a['camber'][:2]}\n",

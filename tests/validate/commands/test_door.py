@@ -95,6 +95,7 @@ def test_an_ended_run_is_one_line_and_what_is_finished_is_in_the_file(
     scenes = [short_scene(tmp_path), short_scene(tmp_path, "long.toml", samples=LONG)]
     words = [*PROGRAM, "validate", *scenes, "--second", "absolute", "--json", str(target)]
     words += ["--junit", str(xml), "--summary", str(summary), "--save-baseline", str(baseline)]
+    words += ["--report", str(tmp_path / "page")]
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     process = subprocess.Popen(words, text=True, env=ENVIRONMENT, cwd=ROOT, **streams)
     late = time.monotonic() + 60
@@ -109,8 +110,9 @@ def test_an_ended_run_is_one_line_and_what_is_finished_is_in_the_file(
     assert (left["complete"], [scene["verdict"] for scene in left["scenes"]]) == (False, ["agree"])
     assert not baseline.exists()
     if word:  # nobody hears of a kill
-        *_, kept, ended = err.splitlines()
-        assert "not written, because the run did not finish" in kept
+        *_, kept, page, ended = err.splitlines()
+        for file, line in ((baseline, kept), (tmp_path / "page", page)):
+            assert f"{file}: not written, because the run did not finish" in line
         assert ended.startswith(f"pointcoord: {word}; ")
         assert [f"{file} holds 1 of 2 scenes" in ended for file in (target, xml, summary)] == [True] * 3
         assert (left["exit_status"], left["verdict"]) == (status, word)

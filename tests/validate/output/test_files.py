@@ -42,16 +42,35 @@ def test_what_was_there_is_whole_and_nothing_else_is_left(
     assert [path.read_bytes() for path in tmp_path.iterdir()] == ([] if before is None else [before])
 
 
-def test_what_a_kill_left_half_written_goes_when_the_file_is_written_again(tmp_path: Path) -> None:
+def test_two_runs_with_one_file_both_write_it_whole(tmp_path: Path) -> None:
     target = tmp_path / "x.json"
+
+    def slower(stream: BinaryIO) -> None:
+        stream.write(b"slower")
+        require_writable(str(target))
+        write_whole(str(target), new)
+        assert target.read_bytes() == b"new"
+
+    write_whole(str(target), slower)
+    assert target.read_bytes() == b"slower"
+    assert [*tmp_path.iterdir()] == [target]
+
+
+def test_what_a_kill_left_half_written_goes_an_hour_later_with_the_next_run(tmp_path: Path) -> None:
+    target = tmp_path / "[x].json"
     killed = (
         "import os, signal, sys\n"
         "from validate.output.files import write_whole\n"
         "write_whole(sys.argv[1], lambda stream: os.kill(os.getpid(), signal.SIGKILL))"
     )
     subprocess.run([sys.executable, "-c", killed, target], check=False, cwd=Path(__file__).parents[3])
-    assert [path.suffix for path in tmp_path.iterdir()] == [".part"]
+    (left,) = tmp_path.iterdir()
+    assert left.suffix == ".part"
     require_writable(str(target))
+    assert left.exists()
+    os.utime(left, (0.0, left.stat().st_mtime - 4000.0))
+    require_writable(str(target))
+    assert not left.exists()
     write_whole(str(target), new)
     # To ask whether a file can be written changes nothing.
     before = target.stat().st_mtime_ns

@@ -201,6 +201,7 @@ def test_a_solver_is_a_function_an_object_or_a_class_and_its_accuracy_a_length()
         outcome = check(solver, SCENE)
         assert outcome.passed
         assert outcome.solutions[0].formulation.lower().startswith(("solver", "called"))
-    for accuracy in (-1e-6, float("nan")):
+    mistyped: list[Any] = ["1e-6", {"camber": 1e-6}, None]
+    for accuracy in (-1e-6, float("nan"), *mistyped):
         with pytest.raises(UsageError, match="give a length above 0"):
             check(closed_form, SCENE, accuracy)

@@ -155,7 +155,8 @@ def _factor(evidence: Evidence, rows: Sequence[Row]) -> float | None:
     # The middle of the interval that the digits allow, if there is one, and not the least-squares factor.
     with np.errstate(divide="ignore", invalid="ignore"):
         low, high = np.sort([(theirs - off) / ours, (theirs + off) / ours], axis=0)
-    if (least := np.nanmax(low)) <= (most := np.nanmin(high)):
+    # fmax and fmin ignore NaN, and return NaN if there is nothing else.
+    if (least := np.fmax.reduce(low)) <= (most := np.fmin.reduce(high)):
         found = 0.5 * float(least + most)
     if not np.isfinite(found) or found == 0.0 or abs(found - 1.0) <= NEAR_ONE:
         return None

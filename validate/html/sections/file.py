@@ -24,9 +24,8 @@ from validate.html.blocks import (
 )
 from validate.html.run import POINTS, Run
 from validate.measured.comparing import DataOutcome
-from validate.output.report import about, held_to, in_degrees, used, when, worst_rows
+from validate.output.report import about, held_to, in_degrees, rows_over, used, when, worst_rows
 from validate.output.table import Cell, Table
-from validate.plain_text import counted_as
 from validate.tables.units import degrees_of
 
 HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "possible explanation, or reason")
@@ -39,8 +38,8 @@ def files(run: Run) -> Iterator[Block]:
         # A file may give every number of every point, so numbers that disagree come first.
         rows = sorted(outcome.rows, key=lambda row: row.verdict != "disagrees")
         yield Paragraph(
-            f"{source} compared with the car of {name}: {counted_as(len(file.rows), 'row')} over "
-            f"{file.over}, {held_to(run.record.factor)}."
+            f"{source} compared with the car of {name}: {rows_over(len(file.rows), file.over)}, "
+            f"{held_to(run.record.factor)}."
         )
         caption = "Each point, body or angle that the file gives; angles in degrees."
         cells, absent = [_cells(file, row) for row in rows], Cell("not given", verdict="not given")
