@@ -64,7 +64,9 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
 def _far_from_the_others(points: Mapping[str, Array]) -> Doubt:
     """A point much farther from the middle (the median) of all points than half of them: another unit."""
     names, places = [*points], np.stack(list(points.values()), axis=-2)
-    away = np.linalg.norm(places - np.median(places, axis=-2, keepdims=True), axis=-1)
+    # Points so far off that this overflows are refused with their mechanism.
+    with np.errstate(over="ignore"):
+        away = np.linalg.norm(places - np.median(places, axis=-2, keepdims=True), axis=-1)
     near = np.median(away, axis=-1)
 
     def words(one: tuple[int, ...]) -> str:
