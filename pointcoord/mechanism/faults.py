@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -107,11 +108,11 @@ def _fault(found: ErrorDetails, place: Sequence[str | int], written: object) -> 
     return TableFault(where, words if complete else f"{words}, not {shown(value)}")
 
 
-def _value_at(table: object, keys: Sequence[str | int], otherwise: object) -> object:
+def _value_at(table: Any, keys: Sequence[str | int], otherwise: object) -> object:
     """The value under keys in nested tables and lists; `otherwise` if there is none."""
     for key in keys:
         try:
-            table = table[key]  # type: ignore[index]
+            table = table[key]
         except (TypeError, LookupError):
             return otherwise
     return table

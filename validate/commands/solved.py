@@ -20,7 +20,7 @@ from validate.curves.numbers import (
     angles_of,
     asking_for,
     numbers_called,
-    numbers_named,
+    numbers_chosen,
     usual,
 )
 from validate.errors import UsageError
@@ -153,7 +153,7 @@ def _curves(options: argparse.Namespace, scene: Scene, name: str) -> Curves | No
     if not options.x and not options.y:
         return None
     asked = (("--x", options.x or (TIME,)), ("--y", options.y or (TRAVEL,)))
-    across, up = (numbers_named(words, scene, f"{name}: {option}") for option, words in asked)
+    across, up = (numbers_chosen(words, scene, f"{name}: {option}") for option, words in asked)
     if len(across) > 1 and len(up) > 1:
         raise UsageError(
             f"--x names {len(across)} numbers and --y {len(up)}; allowed: several for one of the two options "

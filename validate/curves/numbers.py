@@ -168,7 +168,7 @@ def numbers_asked(
             "pointcoord simulate writes the numbers that the scene asks for"
         )
     if named:
-        return numbers_named(named, scene, f"{name}: --number")
+        return numbers_chosen(named, scene, f"{name}: --number")
     if first is None:
         return tuple(number for number in every if not per_second(number.path[0]))
     found = {}
@@ -180,7 +180,7 @@ def numbers_asked(
     return tuple(found.values())
 
 
-def numbers_named(named: Iterable[str], scene: Scene, where: str) -> tuple[Number, ...]:
+def numbers_chosen(named: Iterable[str], scene: Scene, where: str) -> tuple[Number, ...]:
     """The numbers with some names, each once, see `numbers_called`.
 
     Args:

@@ -18,6 +18,7 @@ from typing import BinaryIO
 
 from validate.errors import NotFinished, UsageError
 
+TOKEN = 8  # digits that tell the temporary files of runs at the same time apart
 LEFT = 3600.0  # s without a write, after which a temporary file is taken for that of a killed run
 
 
@@ -132,18 +133,19 @@ def _beside(target: str) -> Path:
         raise FileNotFoundError(errno.ENOENT, f"there is no folder {str(place.parent)!r}")
     with suppress(FileNotFoundError):
         os.stat(place)  # raises OSError if the name is too long
-    return place.with_name(_temporary(place, secrets.token_hex(4)))
+    return place.with_name(f"{_begun(place)}{secrets.token_hex(TOKEN // 2)}.part")
 
 
 def _remove_left_over(target: str) -> None:
     """Remove the temporary files of a target that killed runs have left."""
     place = Path(os.path.realpath(target))
-    for path in place.parent.glob(_temporary(Path(glob.escape(place.name)), "*")):
+    for path in place.parent.glob(f"{glob.escape(_begun(place))}{'?' * TOKEN}.part"):
         # Another run may have removed it, or it belongs to another user.
         with suppress(OSError):
             if time.time() - path.stat().st_mtime > LEFT:
                 path.unlink()
 
 
-def _temporary(place: Path, token: str) -> str:
-    return f".pointcoord-{place.name[:200]}-{token}.part"
+def _begun(place: Path) -> str:
+    """The part of the names of a target's temporary files before the token of a run."""
+    return f".pointcoord-{place.name[:200]}-"
