@@ -90,6 +90,7 @@ def test_numbers_agree_up_to_the_sum_of_what_both_claim_and_no_farther(share: fl
     found = row(outcome, "position", "wheel_centre")
     assert found.verdict == verdict
     assert found.share == pytest.approx(share, abs=1e-6)
+    assert found.tolerance == pytest.approx(2.0 * claim, rel=1e-6)
 
 
 def outcome_of(*verdicts: str, own: bool, faults: tuple[str, ...] = ()) -> Outcome:
