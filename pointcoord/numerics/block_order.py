@@ -1,14 +1,14 @@
 """Block order of a square system: which rows determine which unknowns, block after block.
 
-A row reads some coordinates. A perfect matching assigns each unknown a row of its own (Duff's MC21: depth
-first with a look ahead; ACM Trans. Math. Softw. 7 (1981) 315). Draw an arrow from each row to the rows of the
-unknowns that it reads: rows on a common cycle belong together. These strong components (Tarjan, SIAM J.
-Comput. 1 (1972) 146) are the blocks, found in an order in which they can be solved. In this order the
-Jacobian is block triangular, so it has full rank if each diagonal block has. The blocks do not depend on
-which perfect matching is found (Dulmage and Mendelsohn).
+A row reads some coordinates. A perfect matching assigns each unknown a row of its own, by augmenting paths
+(Kuhn, Naval Research Logistics Quarterly 2 (1955) 83). Draw an arrow from each row to the rows of the
+unknowns that it reads: rows on a common cycle belong together. These strong components (Sharir, Computers &
+Mathematics with Applications 7 (1981) 67) are the blocks, found in an order in which they can be solved. In
+this order the Jacobian is block triangular, so it has full rank if each diagonal block has. The blocks do not
+depend on which perfect matching is found (Dulmage and Mendelsohn).
 
-Both searches use explicit stacks, so long chains cause no deep recursion. The components take one pass over
-the entries; so does the matching of a linkage, where few rows must give up their unknown to another.
+The searches use lists, so long chains cause no deep recursion. The components take one pass over the entries;
+so does the matching of a linkage, where few rows must give up their unknown to another.
 """
 
 from __future__ import annotations
@@ -116,79 +116,64 @@ def _block(patterns: Sequence[Collection[int]], rows: Collection[int], unknowns:
 def _matching(entries: Sequence[Sequence[int]], unknowns: int) -> tuple[list[int], tuple[int, ...]]:
     """The row of each unknown, each row used once; and a set of rows that cannot all have an unknown.
 
-    A row takes a free unknown if it reads one; else it looks for a row that can give up its unknown, and so
-    on. If none can, the visited rows occupy all unknowns that they read, and are one more (Hall).
+    A row takes a free unknown if it reads one; else it asks the rows of the unknowns that it reads to give
+    them up, and so on, breadth first. If none can, the rows that were asked occupy all unknowns that they
+    read, and are one more (Hall).
     """
-    row_of = [FREE] * unknowns
-    looked = [0] * len(
-        entries
-    )  # how far each row has looked for a free unknown; a taken one is never free again
-    visited = [FREE] * unknowns  # by the search of which row
+    row_of, unknown_of = [FREE] * unknowns, [FREE] * len(entries)
     for start in range(len(entries)):
-        path, wanted, places = [start], [FREE], [0]
-        while path:
-            row = path[-1]
-            while looked[row] < len(entries[row]) and row_of[entries[row][looked[row]]] != FREE:
-                looked[row] += 1
-            if looked[row] < len(entries[row]):
-                # Each row on the path takes the unknown that the next row gives up.
-                wanted[-1] = entries[row][looked[row]]
-                for one, unknown in zip(path, wanted, strict=True):
-                    row_of[unknown] = one
+        asking = dict[int, int]()  # unknown -> the row that would take it
+        rows = [start]
+        for row in rows:
+            for unknown in entries[row]:
+                if unknown not in asking:
+                    asking[unknown] = row
+                    rows.append(row_of[unknown])
+            if FREE in rows:
                 break
-            while places[-1] < len(entries[row]) and visited[entries[row][places[-1]]] == start:
-                places[-1] += 1
-            if places[-1] == len(entries[row]):
-                for stack in (path, wanted, places):
-                    stack.pop()
-                continue
-            unknown = wanted[-1] = entries[row][places[-1]]
-            visited[unknown] = start
-            for stack, first in ((path, row_of[unknown]), (wanted, FREE), (places, 0)):
-                stack.append(first)
-        if not path:
-            asked = {row_of[unknown] for unknown in range(unknowns) if visited[unknown] == start}
-            return row_of, tuple(sorted({start, *asked}))
+        else:
+            return row_of, tuple(sorted(rows))
+        unknown = next(one for one in reversed(asking) if row_of[one] == FREE)
+        while unknown != FREE:
+            # Each row takes the unknown that it asked for, and gives up its own.
+            row = row_of[unknown] = asking[unknown]
+            unknown_of[row], unknown = unknown, unknown_of[row]
     return row_of, ()
 
 
 def _strong_components(successors: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Nodes on common cycles, as components; each component comes after all those that it has arrows to."""
-    count = len(successors)
-    number, low = [FREE] * count, [FREE] * count  # order of discovery, and the lowest number reached
-    open_nodes: list[int] = []
-    is_open = [False] * count
-    found: list[list[int]] = []
-    discovered = 0
-    for root in range(count):
-        if number[root] != FREE:
+    """Nodes on common cycles, as components; each component comes after all those that it has arrows to.
+
+    A search along the arrows finishes every node after all nodes that it found from there. Against the
+    arrows, the node that was finished last then reaches the nodes of its own component only, and so on.
+    """
+    predecessors: list[list[int]] = [[] for _ in successors]
+    finished, seen = list[int](), set[int]()
+    for root in range(len(successors)):
+        if root in seen:
             continue
-        path, places = [root], [0]
+        seen.add(root)
+        path = [(root, iter(successors[root]))]
         while path:
-            node = path[-1]
-            if places[-1] == 0:
-                number[node] = low[node] = discovered
-                discovered += 1
-                open_nodes.append(node)
-                is_open[node] = True
-            if places[-1] < len(successors[node]):
-                other = successors[node][places[-1]]
-                places[-1] += 1
-                if number[other] == FREE:
-                    path.append(other)
-                    places.append(0)
-                elif is_open[other]:
-                    low[node] = min(low[node], number[other])
+            node, others = path[-1]
+            other = next(others, None)
+            if other is None:
+                finished.append(node)
+                path.pop()
                 continue
-            path.pop()
-            places.pop()
-            if path:
-                low[path[-1]] = min(low[path[-1]], low[node])
-            if low[node] == number[node]:
-                component = [open_nodes.pop()]
-                while component[-1] != node:
-                    component.append(open_nodes.pop())
-                for one in component:
-                    is_open[one] = False
-                found.append(component)
-    return found
+            predecessors[other].append(node)
+            if other not in seen:
+                seen.add(other)
+                path.append((other, iter(successors[other])))
+    found, left = list[list[int]](), seen
+    for root in reversed(finished):
+        if root not in left:
+            continue
+        left.remove(root)
+        component = [root]
+        for node in component:
+            new = left.intersection(predecessors[node])
+            left -= new
+            component += new
+        found.append(component)
+    return found[::-1]
