@@ -21,6 +21,9 @@ AXES = np.eye(3)
 # (3, 9): from a vector v to the matrix [v] of the product v x.
 CROSSED = np.cross(AXES[:, None], AXES).swapaxes(1, 2).reshape(3, 9)
 
+# Instead of the number of a row or a column without a partner.
+NONE = -1
+
 
 class Choice(NamedTuple):
     """A choice of independent rows, as many as there are unknowns.
@@ -190,22 +193,47 @@ def groups_of(first: Places, second: Places, sizes: Places) -> list[tuple[Places
     Args:
         first, second: the two bodies of each row. sizes: freedoms of each body, zero for the first.
     """
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
-
     holder = np.repeat(np.arange(len(sizes)), sizes)
-    held = csr_array((first[:, None] == holder) | (second[:, None] == holder))
-    matched = maximum_bipartite_matching(held, perm_type="column")
-    if len(first) != len(holder) or (matched < 0).any():
+    taken = _matched((first[:, None] == holder) | (second[:, None] == holder))
+    if len(first) != len(holder) or taken is None:
         return [(np.arange(len(first)), np.arange(len(holder)))]
-    own = holder[matched]
-    waits = np.zeros((len(sizes), len(sizes)), dtype=np.bool_)
-    waits[own, first] = waits[own, second] = True
-    _, group = connected_components(csr_array(waits), connection="strong")
+    own = np.empty(len(first), dtype=np.intp)
+    own[taken] = holder
+    # Which bodies each body depends on: by its own rows, then through 1, 3, 7 .. other bodies.
+    depends = np.eye(len(sizes))
+    depends[own, first] = depends[own, second] = 1.0
+    for _ in range(len(sizes).bit_length()):
+        depends = np.minimum(depends @ depends, 1.0)
+    # The first body of each body's group.
+    group = (depends * depends.T).argmax(axis=1)
     return [
         (np.flatnonzero(group[own] == one), np.flatnonzero(group[holder] == one))
         for one in np.unique(group[1:])
     ]
+
+
+def _matched(suits: Array) -> Places | None:
+    """(columns,) a row for each column among those that suit it, (rows, columns), each row once.
+
+    A column asks the columns of the rows that suit it to take another row, and so on, until one finds a free
+    row. None if a column gets no row.
+    """
+    row_of, column_of = np.full(suits.shape[1], NONE), np.full(suits.shape[0], NONE)
+    for start in range(suits.shape[1]):
+        asked_by, asking = dict[int, int](), [start]
+        for column in asking:
+            new = [row for row in np.flatnonzero(suits[:, column]).tolist() if row not in asked_by]
+            asked_by |= dict.fromkeys(new, column)
+            asking += column_of[new].tolist()
+            if NONE in asking:
+                break
+        else:
+            return None
+        row = next(row for row in asked_by if column_of[row] == NONE)
+        while row != NONE:
+            column = column_of[row] = asked_by[row]
+            row, row_of[column] = row_of[column], row
+    return row_of
 
 
 def _largest(vanishing: Array) -> Places:
