@@ -9,10 +9,11 @@ with `chord`, with one X kept as long as it converges fast enough,
 
     u <- u - X C(u, w).
 
-Then each pose is proven to continue the pose before along a straight path (see `proven_step`). Where that
-fails, the path is followed in shorter proven steps. Where an angle changes by more than a radian, all inputs
-change in proportion along such a path. With `cold` each instant is reached from the drawing instead. In
-either case the rates are solved for many instants at once. The series are measured against this solver.
+Then each pose is proven to continue the pose before along a straight path, by the first terms of its series
+(see `proven_step`). Where that fails, the path is followed in shorter proven steps. Where an angle changes by
+more than a radian, all inputs change in proportion along such a path. With `cold` each instant is reached
+from the drawing instead. In either case the rates are solved for many instants at once. The series are
+measured against this solver.
 """
 
 from __future__ import annotations
@@ -230,17 +231,21 @@ def _ahead(
     else:
         reached = newton_refine(system, guess[:finite], tolerance=tolerance)
         y, found, left, work = reached.y, reached.converged, reached.left, reached.work
-    poses = np.concatenate([start[None], y])
-    here, following = poses[:-1], poses[1:]
+        factors = reached.factors
+    before = np.concatenate([start[None], y[:-1]])
     with np.errstate(all="ignore"):
-        series = _straight(system, factors, here, following[:, n:], 1)
-        rest = np.abs(system.residual(here)) + np.abs(2.0 * system.polar(here, series[:, 1]))
-        half = 0.5 * series[:, 1]
-        middle = here + half
-        defect = np.abs(np.eye(n) - inverse @ system.jacobian(middle))
-        sizes, about = np.abs(series[:, 1])[None], np.stack([middle, half])
-        proof = prove_box(system, inverse, middle, about, slice(None), sizes, rest, defect)
-        apart = np.abs(following - series.sum(axis=1))[:, :n] + left[:, None]
+        # Each pose is joined to the one before by the path back, for which it has its own factorisation. The
+        # pose before must be the end of this path: both are within the tolerance of their assemblies.
+        back = _straight(system, factors, y, before[:, n:], 2)
+        first, second = back[:, 1], back[:, 2]
+        rest = np.abs(system.residual(y)) + np.abs(2.0 * system.polar(y, first))
+        rest += np.abs(2.0 * system.polar(y, second) + system.residual(first))
+        about = np.stack([y + 0.5 * first + 0.25 * second, 0.5 * (first + second), 0.25 * second])
+        inverse = factors.preconditioner
+        defect = np.abs(np.eye(n) - inverse @ system.jacobian(about[0]))
+        sizes = np.abs(np.stack([first, second]))
+        proof = prove_box(system, inverse, about[0], about, slice(None), sizes, rest, defect)
+        apart = np.abs(before - back.sum(axis=1))[:, :n] + tolerance
         good = found & proof.holds & proof.within(apart)
     count = _first_false(np.asarray(good))
     return count, y[:count], left[:count], work + Work(residuals=3 * len(good))
