@@ -13,8 +13,9 @@ from validate.commands.usage import to_be_filled_in
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.contents import DIRECTIONS
 from validate.hardpoint_files.format import formats
+from validate.hardpoint_files.identified import PARTS, SIDES, Choices
 from validate.hardpoint_files.importing import Imported, import_hardpoints, names_of
-from validate.hardpoint_files.one_wheel import NAMED, PARTS, SIDES, Choices
+from validate.hardpoint_files.one_wheel import NAMED
 from validate.output.console import Console
 from validate.plain_text import shown, some_of, typed
 from validate.tables.units import LENGTHS
@@ -38,7 +39,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.say(f"{shown(options.output)} is written; try: pointcoord validate {typed(options.output)}")
     console.warn(*warnings_of(found.scene, found.stands.closing), of=name)
     if found.drawing.others:
-        others = some_of([shown(point.source) for point in found.drawing.others], NAMED)
+        others = some_of([*map(shown, found.drawing.others)], NAMED)
         console.note(f"points not recognised: {others}", of=name)
     wrong = [check for check in found.angles if check.verdict == "disagrees"]
     for check in wrong:
@@ -60,7 +61,7 @@ def _report(name: str, found: Imported) -> Iterator[str]:
     yield from (f"  {fact}" for fact in found.drawing.facts)
     for point in found.drawing.points:
         yield f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"
-    yield from (f"  point not recognised: {shown(point.source)}" for point in found.drawing.others)
+    yield from (f"  point not recognised: {shown(source)}" for source in found.drawing.others)
     for check in found.angles:
         there = f"the file prints {check.printed:g} deg, its points give {check.drawn:z.4f}"
         yield f"  {check.name}: {there}: {check.verdict}"

@@ -18,23 +18,16 @@ from pathlib import Path
 from typing import Any
 
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.contents import (
-    Axle,
-    Contents,
-    FilePoint,
-    Place,
-    SpinAxis,
-    number_of,
-    place_of,
-    short,
-)
+from validate.hardpoint_files.contents import Contents, Place, Point, number_of, place_of, short
 from validate.tables.errors import FileError
 
 CAMBER, TOE = "Camber Angle (deg)", "Toe Angle (deg)"
-FORM = "JSON of a Project Chrono suspension"
-KINDS = "Type Suspension with a Template, or Type Vehicle with Template WheeledVehicle"
+FORM = "a JSON object: a Project Chrono suspension or vehicle"
+KINDS = "Type Suspension with a Template, or Type Vehicle with Axles"
+CENTRE, INNER = "Spindle: COM", "Spindle: inner point"
+# Distance of the two, m. Coordinates are rounded so that the direction of the axis changes by 1e-14 rad.
+INWARD, DIGITS = 0.1, Decimal("1e-15")
 AXLES, SUSPENSION, PLACE = "Axles", "Suspension Input File", "Suspension Location"
-STEERED = "the steering is not read: the tie rod's inner end moves along a straight rack across the car"
 # A string, which is kept, or a comment.
 _COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*[\s\S]*?\*/')
 
@@ -48,21 +41,15 @@ def read(text: str, source: str) -> Contents:
         SceneError: a file that it names cannot be read.
     """
     data = _table(text, source)
-    if _is_suspension(data):
-        framed = "points are in the frame of the suspension; the vehicle's file, which is not read, places it"
-        points, axle = _suspension(data, source, framed)
-        return Contents(tuple(points), {"": axle})
-    if data.get("Type") == "Vehicle" and isinstance(data.get(AXLES), list):
-        return _vehicle(data[AXLES], source)
-    raise FileError(source, 0, _kind(data), KINDS)
+    axles = data.get(AXLES)
+    if data.get("Type") == "Vehicle" and isinstance(axles, list) and {*map(type, axles)} == {dict}:
+        return _vehicle(axles, source)
+    called, points = _suspension(data, source)
+    return Contents(points, called={"": called})
 
 
 def _table(text: str, source: str) -> Mapping[str, Any]:
-    """The JSON object of a text; numbers keep their digits.
-
-    Raises:
-        FileError: the text is not a JSON object.
-    """
+    """The JSON object of a text; numbers keep their digits."""
     # The line breaks of comments are kept, so that line numbers stay right.
     clean = _COMMENT.sub(lambda f: f[0] if f[0][0] == '"' else "\n" * f[0].count("\n") + " ", text)
     try:
@@ -75,78 +62,57 @@ def _table(text: str, source: str) -> Mapping[str, Any]:
     return data
 
 
-def _kind(data: Mapping[str, Any]) -> str:
-    """The type and template of a file, in words."""
-    kind, template = (short(str(data.get(key))) for key in ("Type", "Template"))
-    return f"is a Chrono file of Type {kind} and Template {template}"
-
-
-def _is_suspension(data: Mapping[str, Any]) -> bool:
-    return data.get("Type") == "Suspension" and bool(data.get("Template"))
-
-
-def _suspension(data: Mapping[str, Any], source: str, note: str) -> tuple[list[FilePoint], Axle]:
-    """The points of a suspension, and its spin axis."""
-    points = [
-        FilePoint(f"{part}: {key}", _place(value, source, f"{part}: {key}"), side="left")
+def _suspension(data: Mapping[str, Any], source: str) -> tuple[str, list[Point]]:
+    """The type of a suspension, and its points."""
+    kind, template = data.get("Type"), data.get("Template")
+    if kind != "Suspension" or not template:
+        problem = f"is a Chrono file of Type {short(str(kind))} and Template {short(str(template))}"
+        raise FileError(source, 0, problem, KINDS)
+    named = [
+        (f"{part}: {key}", value)
         for part, keys in data.items()
         if isinstance(keys, dict)
         for key, value in keys.items()
         if key == "COM" or key.startswith("Location")
     ]
-    angles = {key: number_of(data.get(key, 0), source, 0, key) for key in (CAMBER, TOE)}
-    for key, value in angles.items():
-        if not abs(value) < 90:
-            raise FileError(source, 0, f"{key} is {value}", "an angle below 90 deg")
-    camber, toe = (radians(float(value)) for value in angles.values())
+    points = [Point(name, place_of(value, source, 0, name), name, "left") for name, value in named]
+    camber, toe = (radians(number_of(data.get(key, 0), source, 0, key)) for key in (CAMBER, TOE))
     # The y axis of the left spindle: R_z(-toe) R_x(-camber) e_y in Chrono's axes (ChDoubleWishbone.cpp).
     axis = (sin(toe) * cos(camber), cos(toe) * cos(camber), -sin(camber))
-    taken = " and ".join(f"{key} {data.get(key, 'not given, which is 0')}" for key in angles)
-    return points, Axle(str(data["Template"]), {}, SpinAxis(axis, taken), (note, STEERED))
+    taken = " and ".join(f"{key} {data.get(key, 'not given, which is 0')}" for key in (CAMBER, TOE))
+    for centre in [point for point in points if point.name == CENTRE]:
+        steps = (Decimal(INWARD * part).quantize(DIGITS) for part in axis)
+        x, y, z = (at - step for at, step in zip(centre.place, steps, strict=True))
+        how = f"from {CENTRE}: {INWARD} m inboard on the spin axis, from {taken}"
+        points.append(Point(INNER, (x, y, z), how, "left"))
+    return str(template), points
 
 
-def _vehicle(axles: Sequence[Any], source: str) -> Contents:
+def _vehicle(axles: Sequence[Mapping[str, Any]], source: str) -> Contents:
     """The suspensions of a vehicle, each in the frame of its chassis, by axle."""
-    if not axles or not all(isinstance(axle, dict) for axle in axles):
-        raise FileError(source, 0, f"has no {AXLES}", f"one with {SUSPENSION} each")
-    places = [_place(axle.get(PLACE), source, f"{PLACE} of axle {i}") for i, axle in enumerate(axles, 1)]
-    points: list[FilePoint] = []
-    read: dict[str, Axle] = {}
+    places = [place_of(axle.get(PLACE), source, 0, f"{PLACE} of axle {i}") for i, axle in enumerate(axles, 1)]
+    points: list[Point] = []
+    called: dict[str, str] = {}
     for label, axle, place in zip(_labels(places), axles, places, strict=True):
-        if place[1]:
-            problem = f"{PLACE} of its {label} axle has y {place[1]}, which is not the middle of the car"
-            raise FileError(source, 0, problem, "y 0")
-        data, path = _named(axle.get(SUSPENSION), source)
-        into = f"moved by its {PLACE} {[float(n) for n in place]} m into the frame of the chassis"
-        theirs, read[label] = _suspension(data, path, f"points are those of {path}, {into}")
+        path = _path(axle.get(SUSPENSION), source)
+        text = read_file(path, f"the path of a file that {source} names").decode("utf-8-sig", "replace")
+        called[label], theirs = _suspension(_table(text, str(path)), str(path))
         for point in theirs:
             x, y, z = (a + b for a, b in zip(point.place, place, strict=True))
-            points.append(replace(point, part=label, place=(x, y, z)))
-    return Contents(tuple(points), read)
+            words = f"{point.source}, of {path.name}"
+            points.append(replace(point, part=label, place=(x, y, z), source=words))
+    return Contents(points, called=called)
 
 
-def _named(name: object, source: str) -> tuple[Mapping[str, Any], str]:
-    """The suspension file that a vehicle names, from the nearest folder above the vehicle that has it."""
-    if not isinstance(name, str):
-        raise FileError(source, 0, f"has no {SUSPENSION} of an axle", "the name of a file")
-    paths = (folder / name for folder in Path(source).absolute().parents)
+def _path(name: object, source: str) -> Path:
+    """The file that a vehicle names, in the nearest folder above the vehicle that has it."""
+    paths = (folder / str(name) for folder in Path(source).absolute().parents)
     path = next((path for path in paths if path.is_file()), None)
     if path is None:
-        problem = f"names {short(name)}, which is in none of the folders above it"
+        problem = f"names {short(str(name))}, which is in none of the folders above it"
         allowed = "a vehicle in Chrono's data folder with the files that it names"
         raise FileError(source, 0, problem, f"{allowed}, or the file of a suspension")
-    text = read_file(path, f"the path of a file that {source} names").decode("utf-8-sig", "replace")
-    data = _table(text, str(path))
-    if not _is_suspension(data):
-        raise FileError(str(path), 0, f"{_kind(data)}, but {source} names it as a suspension", KINDS)
-    return data, str(path)
-
-
-def _place(value: object, source: str, name: str) -> Place:
-    """Three coordinates."""
-    if not isinstance(value, list):
-        raise FileError(source, 0, f"{short(name)} has {short(str(value))}", "a list of three numbers")
-    return place_of(value, source, 0, name)
+    return path
 
 
 def _labels(places: Sequence[Place]) -> list[str]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.errors import UsageError
-from validate.plain_text import counted_as, shown
+from validate.plain_text import shown
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
 
@@ -37,13 +37,13 @@ ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".jo
 
 
 @dataclass(frozen=True)
-class FilePoint:
-    """A point as given in the file.
+class Point:
+    """A point of a file, or of the scene that is made of it.
 
     Attributes:
-        name: its name in the file.
-        place: its coordinates in the file's axes and unit.
-        line: its line, counted from 1; 0 if the format has no meaningful lines.
+        name: its name in the file; our name in a scene.
+        place: its coordinates in the file's axes and unit; in a scene x rearward, y right, z up, mm.
+        source: where it comes from, in words: for a point of a file its name and line.
         side: its wheel according to the file, left or right; empty if the file does not say.
         part: its axle according to the file, front or rear; empty if the file does not say.
         section: the heading above it; empty if there is none.
@@ -51,49 +51,15 @@ class FilePoint:
 
     name: str
     place: Place
-    line: int = 0
+    source: str
     side: str = ""
     part: str = ""
     section: str = ""
 
-    def of(self, part: str, side: str) -> bool:
-        """Whether it may belong to a wheel; an empty axle or side matches any."""
-        return all(mine in ("", its) or not its for mine, its in ((self.part, part), (self.side, side)))
-
     @property
-    def source(self) -> str:
-        """Its name and its line."""
-        return f"{self.name}, line {self.line}" if self.line else self.name
-
-    @property
-    def told(self) -> str:
-        """Its name and its line, for a sentence."""
-        return short(self.name) + (f" on line {self.line}" if self.line else "")
-
-
-@dataclass(frozen=True)
-class SpinAxis:
-    """The direction of a wheel's spin axis, (forward, outboard, up), and its source in words."""
-
-    direction: tuple[float, float, float]
-    words: str
-
-
-@dataclass(frozen=True)
-class Axle:
-    """Data of an axle in a file, in addition to its points.
-
-    Attributes:
-        called: the file's name of the suspension type; empty if the file does not say.
-        angles: printed static angles by their names in the file, deg, each with its line.
-        spin_axis: direction of the wheel's spin axis, if given without a point.
-        notes: remarks on its points for the user.
-    """
-
-    called: str = ""
-    angles: Mapping[str, tuple[Decimal, int]] = field(default_factory=dict)
-    spin_axis: SpinAxis | None = None
-    notes: tuple[str, ...] = ()
+    def written(self) -> str:
+        """The position as TOML, with its digits."""
+        return f"[{', '.join(f'{number.normalize() + 0:f}' for number in self.place)}]"
 
 
 @dataclass(frozen=True)
@@ -102,15 +68,18 @@ class Contents:
 
     Attributes:
         points: in the order of the file.
-        axles: data of the axles by part; data of the whole file under the empty name.
+        others: lines with a name and something else than three numbers, in words.
         unit: unit of lengths, if the file gives it.
-        lines: lines with a name that are not points, in words.
+        called: the file's name of the suspension type, by axle; here and below the empty name is for a file
+            that does not distinguish axles.
+        angles: printed static angles by axle and by their names in the file, deg, each with its line.
     """
 
-    points: tuple[FilePoint, ...]
-    axles: Mapping[str, Axle] = field(default_factory=dict)
+    points: Sequence[Point]
+    others: Sequence[str] = ()
     unit: str = ""
-    lines: tuple[str, ...] = ()
+    called: Mapping[str, str] = field(default_factory=dict)
+    angles: Mapping[str, Mapping[str, tuple[Decimal, int]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -138,16 +107,6 @@ class Axes:
         return ", ".join(f"{axis} {word}" for axis, word in zip("xyz", self.directions, strict=True))
 
     @property
-    def option(self) -> str:
-        """The axes as the value of --axes."""
-        return ",".join(self.directions)
-
-    @property
-    def right_handed(self) -> bool:
-        """Whether x, y and z are right-handed."""
-        return bool(np.linalg.det(self.matrix) > 0.0)
-
-    @property
     def matrix(self) -> NDArray[np.int_]:
         """The matrix from the file's coordinates to the scene's, (3, 3)."""
         return np.array([DIRECTIONS[word] for word in self.directions]).T
@@ -169,7 +128,7 @@ def number_of(value: object, source: str, line: int, what: str) -> Decimal:
         FileError: the text is not a number, or the number is too large.
     """
     try:
-        number = Decimal(value.strip() if isinstance(value, str) else str(value))
+        number = Decimal(str(value).strip())
     except InvalidOperation:
         number = Decimal("nan")
     # The exponent is limited too: 1e-999999999 is small but has a billion digits.
@@ -178,20 +137,16 @@ def number_of(value: object, source: str, line: int, what: str) -> Decimal:
     return number
 
 
-def place_of(numbers: Sequence[object], source: str, line: int, name: str) -> Place:
+def place_of(numbers: object, source: str, line: int, name: str) -> Place:
     """Three coordinates with the digits of their texts.
 
     Raises:
-        FileError: a text is not a number, or there are not three of them.
+        FileError: these are not three numbers.
     """
-    if len(numbers) != 3:
-        raise FileError(
-            source, line, f"has {counted_as(len(numbers), 'number')} for {short(name)}", "x, y and z"
-        )
-    x, y, z = (
-        number_of(number, source, line, f"{axis} of {short(name)}")
-        for axis, number in zip("xyz", numbers, strict=True)
-    )
+    if not isinstance(numbers, list) or len(numbers) != 3:
+        raise FileError(source, line, f"{short(name)} has {short(str(numbers))}", "three numbers: x, y and z")
+    named = zip("xyz", numbers, strict=True)
+    x, y, z = (number_of(value, source, line, f"{axis} of {short(name)}") for axis, value in named)
     return x, y, z
 
 

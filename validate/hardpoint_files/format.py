@@ -14,7 +14,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file
 from validate.hardpoint_files import chrono_json, lotus_report, table
-from validate.hardpoint_files.contents import Axes, Contents, plain
+from validate.hardpoint_files.contents import Axes, Contents
 from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
@@ -36,11 +36,11 @@ class Format(BaseModel):
         known_by: a pattern that the beginning of a file contains; the empty pattern fits every file.
         axes: axes by a pattern of point names that use them; the empty pattern fits every file.
         unit: unit of a file that does not give one.
-        angles: for each of our angles, a pattern of its name in the file.
-        names: names in the file of each of our points, in all suspensions.
-        suspensions: further names by our type of suspension.
+        suspensions: our types of suspension that a file may contain without saying which.
         called: our type of suspension by a pattern of its name in the file.
-        notes: remarks for the user on the points of each type.
+        names: names in the file of each of our points, for all suspensions.
+        notes: remarks for the user on the points of each type; under the empty name on those of all types.
+        angles: for each of our angles, a pattern of its name in the file.
         titles: for a table, the possible titles of each column.
         wheels: side and axle by the beginning or end of a name.
     """
@@ -52,35 +52,17 @@ class Format(BaseModel):
     known_by: str
     axes: dict[str, Annotated[Axes, BeforeValidator(Axes.of)]]
     unit: str
-    suspensions: dict[str, dict[str, tuple[str, ...]]] = {}
+    suspensions: tuple[str, ...] = ()
     called: dict[str, str] = {}
-    notes: dict[str, str] = {}
     names: dict[str, tuple[str, ...]] = {}
+    notes: dict[str, tuple[str, ...]] = {}
     angles: dict[str, str] = {}
     titles: dict[str, tuple[str, ...]] = {}
     wheels: dict[str, tuple[str, str]] = {}
 
     def names_of(self, kind: str) -> dict[str, tuple[str, ...]]:
-        """Names in the file of each point of a suspension; a table may also use our names."""
-        points = mechanism_file(kind).points
-        shared = {ours: self.names[ours] for ours in points if ours in self.names}
-        found = shared | self.suspensions.get(kind, {})
-        return {ours: (*found.get(ours, ()), ours) for ours in points} if self.name == TABLE else found
-
-    def ours(self, name: str, known: Mapping[str, str]) -> tuple[str, tuple[str, str]] | None:
-        """Our name of a point and its wheel, (side, axle); None if the name is not recognised.
-
-        Args:
-            known: our names by plain names of the file.
-        """
-        whole = plain(name)
-        if whole in known:
-            return known[whole], ("", "")
-        for words, wheel in self.wheels.items():
-            for base in (whole.removesuffix(f" {words}"), whole.removeprefix(f"{words} ")):
-                if base != whole and base in known:
-                    return known[base], wheel
-        return None
+        """Names in the file of each point of a suspension; our own names are among them."""
+        return {ours: (*self.names.get(ours, ()), ours) for ours in mechanism_file(kind).points}
 
     def read(self, text: str, source: str, said: Mapping[str, str | int]) -> Contents:
         """Read a file of this format.
@@ -100,10 +82,8 @@ class Format(BaseModel):
 @lru_cache
 def formats() -> Mapping[str, Format]:
     """All formats by name; the format that fits every file is last."""
-    found = [
-        Format.model_validate({"name": path.stem} | tomllib.loads(path.read_text("utf-8")))
-        for path in FORMATS.glob("*.toml")
-    ]
+    tables = {path.stem: tomllib.loads(path.read_text("utf-8")) for path in FORMATS.glob("*.toml")}
+    found = [Format.model_validate({"name": name, **content}) for name, content in tables.items()]
     return {one.name: one for one in sorted(found, key=lambda one: (not one.known_by, one.name))}
 
 

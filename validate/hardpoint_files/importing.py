@@ -10,15 +10,18 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pointcoord import Scene, standing
 from pointcoord.drawing_stands import Standing
 from pointcoord.toml_text import parsed, read_file
 from validate.hardpoint_files.contents import OUR_AXES, Axes, Contents
 from validate.hardpoint_files.format import MJCF, Format, format_of
-from validate.hardpoint_files.mjcf import drawing_of
+from validate.hardpoint_files.identified import Choices, HardpointFile, Wheel, missing
+from validate.hardpoint_files.mjcf import mechanism_of
 from validate.hardpoint_files.names_file import NO_NAMES, names_to_fill_in, read_names
-from validate.hardpoint_files.one_wheel import AngleCheck, Choices, OneWheel, missing
-from validate.hardpoint_files.written_scene import Drawing, scene_of, scene_text, travel_of
+from validate.hardpoint_files.one_wheel import AngleCheck, angle_checks, drawing_of
+from validate.hardpoint_files.written_scene import Drawing, scene_of, scene_text
 from validate.tables.cells import text_of
 from validate.tables.errors import FileError
 
@@ -40,7 +43,7 @@ class Imported:
     scene: Scene
     text: str
     stands: Standing
-    angles: tuple[AngleCheck, ...] = ()
+    angles: tuple[AngleCheck, ...]
 
 
 def import_hardpoints(path: str | Path, **said: Any) -> Imported:
@@ -49,18 +52,25 @@ def import_hardpoints(path: str | Path, **said: Any) -> Imported:
     Raises:
         SceneError: the file cannot be read.
         FileError: the file has a wrong format, or lacks something that is needed.
-        UnknownName: no such format, suspension, side, part, unit or point.
+        UnknownName: no such format, suspension or point.
         UsageError: `axes` are not valid.
         AssemblyError: the points cannot be assembled.
     """
     choices, source = Choices(**said), str(path)
     found, text = _opened(source, choices)
+    wheel = None
     if found.name == MJCF:
-        return _imported(found, _whole_mechanism(source, choices))
-    own = NO_NAMES if choices.names is None else read_names(choices.names)
-    wheel = OneWheel(source, choices, found, found.read(text, source, own.table), own)
-    imported = _imported(found, wheel.drawing())
-    return replace(imported, angles=tuple(wheel.checked(imported.stands.angles)))
+        drawing = _whole_mechanism(source, choices)
+    else:
+        own = NO_NAMES if choices.names is None else read_names(choices.names)
+        wheel = Wheel.of(HardpointFile(source, choices, found, found.read(text, source, own.table), own))
+        drawing = drawing_of(wheel)
+    drawn = scene_of(drawing)
+    stands = standing(drawn)
+    text = scene_text(drawing, drawn, stands, found.words)
+    scene = Scene.from_mapping(parsed(text.encode(), source), drawn.title)
+    angles = tuple(angle_checks(wheel, stands.angles)) if wheel else ()
+    return Imported(found, drawing, scene, text, stands, angles)
 
 
 def names_of(path: str | Path, format: str | None = None, suspension: str | None = None) -> str:
@@ -78,9 +88,9 @@ def names_of(path: str | Path, format: str | None = None, suspension: str | None
     except FileError:
         # Such as a table with unknown columns: the file of names can give them.
         contents = Contents(())
-    one = OneWheel(source, choices, found, contents, NO_NAMES)
-    kind = suspension or one.closest()[0]
-    known, others = one.named(kind)
+    file = HardpointFile(source, choices, found, contents, NO_NAMES)
+    kind = suspension or file.closest()[0]
+    known, others = file.named(kind)
     return names_to_fill_in(source, kind, missing(kind, ()), dict(known), others)
 
 
@@ -102,20 +112,10 @@ def _whole_mechanism(source: str, choices: Choices) -> Drawing:
     for one in fields(choices):
         if one.name not in ("format", "axes") and getattr(choices, one.name) != one.default:
             raise _takes_no(source, one.name)
-    axes, by = OUR_AXES, "the default of --axes"
-    if choices.axes is not None:
-        axes, by = Axes.of(choices.axes), "by --axes"
-    if not axes.right_handed:
+    axes = OUR_AXES if choices.axes is None else Axes.of(choices.axes)
+    if np.linalg.det(axes.matrix) < 0:
         raise FileError(source, 0, f"has left-handed axes {axes.words}", "right-handed ones")
-    drawing = drawing_of(source, axes)
+    by = "the default of --axes" if choices.axes is None else "by --axes"
     turned = f"the file's axes are {axes.words}, {by}, in m; here x rearward, y right, z up, in mm"
+    drawing = mechanism_of(source, axes)
     return replace(drawing, facts=(turned, *drawing.facts))
-
-
-def _imported(found: Format, drawing: Drawing) -> Imported:
-    """The scene of a drawing, and its file."""
-    drawn = scene_of(drawing)
-    stands = standing(drawn)
-    text = scene_text(drawing, drawn, travel_of(drawn, stands), found.words)
-    scene = Scene.from_mapping(parsed(text.encode(), drawing.source), drawn.title)
-    return Imported(found, drawing, scene, text, stands)

@@ -8,13 +8,13 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 
-from validate.hardpoint_files.contents import Axle, Contents, FilePoint, number_of, place_of
+from validate.hardpoint_files.contents import Contents, Point, number_of, place_of
 from validate.tables.errors import FileError
 
 _AXLE = re.compile(r"^\s*(FRONT|REAR)\s+SUSPENSION\b")
 _TYPE = re.compile(r"^\s*TYPE\s+\d+\s+(.*\S)")
 _UNIT = re.compile(r"^\s*\((\w+)\)\s+\(\1\)\s+\(\1\)\s*$")
-_POINT = re.compile(r"^(.*?)\bPOINT\s*\(\s*\d+\s*\)\s*=?(.*)$")
+_POINT = re.compile(r"^(.*?)\bPOINT\s*\(\s*\d+\s*\)\s*=?\s*(.*\S)")
 _ANGLE = re.compile(r"^\s*(.*ANGLE.*?)\s*\(deg\)\s*:\s*(\S+)\s*$")
 
 
@@ -24,7 +24,7 @@ def read(text: str, source: str) -> Contents:
     Raises:
         FileError: the line of a point is wrong, or there are no points.
     """
-    points: list[FilePoint] = []
+    points: list[Point] = []
     called: dict[str, str] = {}
     angles: dict[str, dict[str, tuple[Decimal, int]]] = {}
     part = unit = ""
@@ -36,15 +36,12 @@ def read(text: str, source: str) -> Contents:
         elif found := _UNIT.match(words):
             unit = unit or found[1]
         elif found := _POINT.match(words):
-            name = found[2].strip()
-            if not name:
-                raise FileError(source, line, "has a point without a name", "POINT ( number ) = name")
-            points.append(FilePoint(name, place_of(found[1].split(), source, line, name), line, part=part))
+            place = place_of(found[1].split(), source, line, found[2])
+            points.append(Point(found[2], place, f"{found[2]}, line {line}", part=part))
         elif found := _ANGLE.match(words):
-            value = number_of(found[2], source, line, found[1].strip())
-            angles.setdefault(part, {}).setdefault(found[1].strip(), (value, line))
+            value = number_of(found[2], source, line, found[1])
+            angles.setdefault(part, {}).setdefault(found[1], (value, line))
     if not points:
         like = "lines such as -110.00 257.00 69.00 POINT ( 1 ) = Lower wishbone front pivot"
         raise FileError(source, 0, "has no points", like)
-    axles = {part: Axle(called.get(part, ""), angles.get(part, {})) for part in (*called, *angles)}
-    return Contents(tuple(points), axles, unit)
+    return Contents(points, unit=unit, called=called, angles=angles)

@@ -1,93 +1,207 @@
-"""One wheel of a file of hardpoints: identifies its points, and converts them to the axes of the scene.
+"""One wheel in the axes and unit of a scene: converts its points, and finds those that follow from them.
 
-Static angles printed in the file are compared with those of the imported drawing: a misread name, a wrong
-side or a reversed axis shows as a difference.
+Choices of the user are used even if they look wrong; the scene then gives warnings. Static angles printed in
+the file are compared with those of the drawing: a misread name, a wrong side or a reversed axis shows as a
+difference.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from decimal import Decimal
-from functools import cached_property
 from math import degrees, dist, radians, tan
 
 import numpy as np
 
-from pointcoord.errors import UnknownName
-from pointcoord.mechanism import mechanism_file, shipped
-from pointcoord.mechanism.file import AS_DRAWN
-from pointcoord.mechanism.structure import Structure
-from validate.arrays import Array
-from validate.hardpoint_files.contents import (
-    ALLOWED,
-    DIRECTIONS,
-    OUR_AXES,
-    Axes,
-    Axle,
-    Contents,
-    FilePoint,
-    Place,
-    SpinAxis,
-    plain,
-    short,
-)
-from validate.hardpoint_files.format import TABLE, Format
-from validate.hardpoint_files.names_file import NamesFile
-from validate.hardpoint_files.written_scene import Drawing, ScenePoint
+from validate.hardpoint_files.contents import ALLOWED, DIRECTIONS, OUR_AXES, Axes, Point, plain, short
+from validate.hardpoint_files.identified import SIDES, Wheel, missing
+from validate.hardpoint_files.written_scene import Drawing
 from validate.plain_text import some_of
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
 
-SIDES = ("left", "right")
-PARTS = ("front", "rear")
 # Limits of the extent of one wheel's suspension, from model cars to lorries, mm.
 SMALLEST, LARGEST = Decimal(150), Decimal(4000)
 # Distance from the wheel centre of the inner point of a spin axis that is given by its direction, mm.
 INWARD = 100.0
 # A coordinate of this point is rounded to 1e-12 mm, which changes the direction of the axis by 1e-14 rad.
 DIGITS = Decimal("1e-12")
-# Largest number of points or lines named in a message.
+# Largest number of points named in a message.
 NAMED = 12
 
 
-@dataclass(frozen=True)
-class Choices:
-    """Choices of the user about a file; choices left out are read from the file or are the format's defaults.
+def drawing_of(wheel: Wheel) -> Drawing:
+    """The wheel's points in the order of its mechanism, and points that follow from them.
 
-    Attributes:
-        format: name of the format.
-        suspension: our type of suspension.
-        side: the wheel to import, left or right.
-        part: the axle to import, front or rear or a number, if the file has several.
-        names: path of a file of names (see `names_file`).
-        axes: directions of x, y and z, such as "forward,left,up".
-        unit: unit of lengths.
-        camber, toe: static angles, if the file does not give the spin axis; deg, projected, + leaning out at
-            the top and + toe in.
-        mirror: whether to mirror the wheel to the other side.
+    Raises:
+        FileError: the file lacks something that is needed, or its points contradict it.
+        UsageError: the axes of the user are not valid.
     """
+    file, structure = wheel.file, wheel.structure
+    if not (structure.role("wheel_axis") and structure.role("inboard")):
+        problem = f"is read as {wheel.kind}, whose mechanism file lacks the roles wheel_axis and inboard"
+        raise file.refuse(problem, "a suspension of one wheel; for others write a scene (pointcoord new)")
+    found = {name: replace(point, name=name) for name, point in wheel.ours.items()}
+    found |= _on_slides(wheel)
+    spin, (inner, centre) = _spin_axis(wheel), structure.role("wheel_axis")
+    if lost := missing(wheel.kind, {*found} | ({inner} if spin and centre in found else set())):
+        raise _lacks(wheel, lost)
+    (axes, axes_by), (unit, unit_by) = _axes(wheel), _unit(wheel)
+    found = {name: replace(point, place=axes.to_scene(point.place, unit)) for name, point in found.items()}
+    side = _side(wheel, axes, found)
+    if spin:
+        step = np.array([spin[0], -1.0 if side == "right" else 1.0, -spin[1]])
+        steps = zip(found[centre].place, (INWARD / np.linalg.norm(step) * step).tolist(), strict=True)
+        x, y, z = (at + Decimal(part).quantize(DIGITS) for at, part in steps)
+        angles = f"--camber {file.choices.camber:g} and --toe {file.choices.toe:g}"
+        how = f"from {centre}: {INWARD:g} mm inboard on the spin axis, by {angles}, deg"
+        found[inner] = Point(inner, (x, y, z), how)
+    facts = [
+        f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
+        "here x rearward, y right, z up, in mm",
+        *([] if np.linalg.det(axes.matrix) > 0 else ["these axes are left-handed: is one of them reversed?"]),
+        *file.format.notes.get("", ()),
+        *file.format.notes.get(wheel.kind, ()),
+    ]
+    points = [found[name] for name in structure.points if name in found]
+    if file.choices.mirror:
+        facts.append(f"the file has the {side} wheel; here it is mirrored to the other side of the car")
+        side = SIDES[side == "left"]
+        points = [replace(one, place=(one.place[0], -one.place[1] + 0, one.place[2])) for one in points]
+    for name, other in structure.stand_ins.items():
+        facts += [f"{name} is not in the file: {other} is used instead"] if name not in found else []
+    return Drawing(file.source, wheel.kind, side, tuple(points), tuple(facts), wheel.others)
 
-    format: str | None = None
-    suspension: str | None = None
-    side: str | None = None
-    part: str | None = None
-    names: str | None = None
-    axes: str | None = None
-    unit: str | None = None
-    camber: float | None = None
-    toe: float | None = None
-    mirror: bool = False
 
-    def __post_init__(self) -> None:
-        allowed: dict[str, Iterable[str]] = {"suspension": shipped(), "side": SIDES, "unit": LENGTHS}
-        if self.part is not None and not self.part.isdecimal():
-            allowed["part"] = (*PARTS, "1", "2", "3")
-        for kind, names in allowed.items():
-            chosen = getattr(self, kind)
-            if chosen is not None and chosen not in names:
-                raise UnknownName(kind, chosen, names)
+def _on_slides(wheel: Wheel) -> dict[str, Point]:
+    """Missing points that may be anywhere on a slide's line, which another of its points defines."""
+    found, there = dict[str, Point](), wheel.ours
+    for slide in wheel.structure.slides.values():
+        ends = slide.along, slide.through
+        if slide.along in slide.points and there.keys() >= {*ends}:
+            x, y, z = ((a + b) / 2 for a, b in zip(*(there[end].place for end in ends), strict=True))
+            how = f"from {' and '.join(ends)}: halfway between them, as only their line matters"
+            found |= {name: Point(name, (x, y, z), how) for name in slide.points if name not in there}
+    return found
+
+
+def _spin_axis(wheel: Wheel) -> tuple[float, float] | None:
+    """The spin axis by --camber and --toe: how far it goes forward and up per unit outboard."""
+    choices, inner = wheel.file.choices, wheel.structure.role("wheel_axis")[0]
+    camber, toe = choices.camber, choices.toe
+    if camber is None and toe is None:
+        return None
+    if inner in wheel.ours:
+        problem = f"gives the direction of its spin axis by {inner}"
+        raise wheel.file.refuse(problem, "neither --camber nor --toe")
+    if camber is None or toe is None or not max(abs(camber), abs(toe)) < 45.0:
+        allowed = "both --camber and --toe, each of less than 45 deg, or neither"
+        raise wheel.file.refuse(f"is given --camber {camber} and --toe {toe}", allowed)
+    return tan(radians(toe)), -tan(radians(camber))
+
+
+def _lacks(wheel: Wheel, lost: list[str]) -> FileError:
+    """The error of a file that lacks points that are needed and do not follow from others."""
+    names = wheel.file.format.names_of(wheel.kind)
+    looked = (f"{name} (looked for: {', '.join(map(short, names[name]))})" for name in lost)
+    problem = f"lacks {', '.join(looked)} of a {wheel.kind}"
+    if wheel.others:
+        problem += f"; not recognised: {some_of(wheel.others, NAMED)}"
+    advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
+    advice += f" or {lost[0]} = [x, y, z]"
+    if wheel.structure.role("wheel_axis")[0] in lost:
+        advice += "; for the spin axis you may give --camber and --toe, + leaning out at the top and + toe in"
+    return wheel.file.refuse(problem, advice)
+
+
+# Axes, unit and side, and checks of them.
+
+
+def _axes(wheel: Wheel) -> tuple[Axes, str]:
+    """The axes and their source: the user, the names of points or the format.
+
+    Refused if the points contradict them, unless the user gives them: from the roles of some pairs of points
+    it is known how they lie in the car. No point shows the direction to the left, which determines the
+    wheel's side.
+    """
+    file, structure = wheel.file, wheel.structure
+    if file.choices.axes is not None:
+        return Axes.of(file.choices.axes), "--axes"
+    lie: list[str] = []
+    seen: dict[str, tuple[int, int]] = {}
+    roles = {"forward": structure.role("front_and_rear"), "up": structure.role("steering_axis")[::-1]}
+    for way, (one, other) in ((way, ends) for way, ends in roles.items() if ends):
+        apart = [a - b for a, b in zip(wheel.ours[one].place, wheel.ours[other].place, strict=True)]
+        most = max(range(3), key=lambda axis: abs(apart[axis]))
+        seen[way] = most, 1 if apart[most] > 0 else -1
+        lie.append(f"{one} lies along {'-+'[apart[most] > 0]}{'xyz'[most]} from {other}")
+    names = {ours: point.name for ours, point in wheel.ours.items() if ours not in file.own.points}
+    found: list[tuple[Axes, str]] = []
+    for pattern, axes in file.format.axes.items():
+        telling = [name for name in names.values() if re.fullmatch(pattern or ".*", plain(name))]
+        if telling:
+            found.append((axes, f"names such as {short(telling[0])}" if pattern else "its format"))
+    if all(ours in theirs for ours, theirs in names.items()):
+        found.append((OUR_AXES, "its points' names, which are ours"))
+    if not found:
+        where = f", where {' and '.join(lie)}" if lie else ""
+        raise file.refuse("does not give the directions of x, y and z", f"--axes with {ALLOWED}{where}")
+    axes, by = found[0]
+    if any((axes.matrix[:, axis] * sign != DIRECTIONS[way]).any() for way, (axis, sign) in seen.items()):
+        right = f"--axes {','.join(axes.directions)} if they are right"
+        problem = f"has axes {axes.words} by {by}, but {' and '.join(lie)}"
+        raise file.refuse(problem, f"--axes with the right directions, or {right}")
+    return axes, by
+
+
+def _unit(wheel: Wheel) -> tuple[str, str]:
+    """The unit of lengths and its source; refused if the points do not have the size of a car in it."""
+    file, given, chosen = wheel.file, wheel.file.contents.unit, wheel.file.choices.unit
+    if given and chosen and given != chosen:
+        raise file.refuse(f"states that its lengths are in {given}", f"--unit {given}, or no --unit")
+    by = {"--unit": chosen, "the file": given, "its format": file.format.unit}
+    who, unit = next((who, unit) for who, unit in by.items() if unit)
+    if unit not in LENGTHS:
+        allowed = f"--unit with one of {', '.join(LENGTHS)}"
+        raise file.refuse(f"has lengths in {short(unit)}, by {who}", allowed)
+    columns = zip(*(point.place for point in wheel.ours.values()), strict=True)
+    span = max(max(column) - min(column) for column in columns)
+    fitting = {name: span * size for name, size in LENGTHS.items() if SMALLEST <= span * size <= LARGEST}
+    if unit not in fitting and chosen is None:
+        problem = f"spans {float(span * LENGTHS[unit]):.4g} mm if its lengths are in {unit}"
+        others = (f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
+        raise file.refuse(problem, "; ".join(others) or f"--unit {unit} if this is right")
+    return unit, who
+
+
+def _side(wheel: Wheel, axes: Axes, found: Mapping[str, Point]) -> str:
+    """The wheel's side, from its position; it must be the side that the file or the user gives."""
+    file, (_, centre), (inner,) = wheel.file, *map(wheel.structure.role, ("wheel_axis", "inboard"))
+    lies = found[centre].place[1]
+    out = lies - found[inner].place[1]
+    if not out:
+        raise file.refuse(f"has {centre} as far out as {inner}", "a wheel outboard of it; see --axes")
+    seen = SIDES[out > 0]
+    where = f"{centre} lies {abs(out):.6g} mm to the {seen} of {inner}"
+    said_by = {"--side": file.choices.side, "the file": wheel.side}
+    for by, said in said_by.items():
+        if said and said != seen:
+            allowed = (
+                f"--axes with left and right exchanged in {','.join(axes.directions)}, or the {seen} side"
+            )
+            # Not offered if the file has the requested wheel: the other wheel, mirrored, may differ.
+            if by == "--side" and wheel.side != said:
+                allowed += f"; or --side {seen} --mirror makes the {said} wheel of it"
+            raise file.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
+    if (lies > 0) != (out > 0) and not any(said_by.values()):
+        problem = f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car"
+        raise file.refuse(problem, f"--side {seen} if y is not counted from the middle, or other --axes")
+    return seen
+
+
+# Static angles.
 
 
 @dataclass(frozen=True)
@@ -114,378 +228,28 @@ class AngleCheck:
         return "agrees" if abs(self.printed - self.drawn) <= self.tolerance else "disagrees"
 
 
-@dataclass(frozen=True)
-class _Wheel:
-    """The points of one wheel.
+def angle_checks(wheel: Wheel, drawn: Mapping[str, float]) -> Iterator[AngleCheck]:
+    """Compare the static angles printed in the file with those of the drawing.
 
-    Attributes:
-        ours: recognised points, by our names. others: the other points of the file.
-        part, side: its axle and side according to the file; empty if the file does not say.
+    The digits of the points limit the accuracy of an axis. Half a digit h in both coordinates of both ends
+    moves them apart by 2 sqrt(2) h in the plane of an angle. An axis of length L within 45 deg of this plane
+    has a projected length of at least L / sqrt(2). So the angle changes by at most 4 h / L.
+
+    Args:
+        drawn: angles of the drawing by our names, rad.
     """
-
-    ours: Mapping[str, FilePoint]
-    others: tuple[FilePoint, ...]
-    part: str
-    side: str
-
-    @cached_property
-    def places(self) -> dict[str, Place]:
-        """The positions of its points, in the file's axes and unit."""
-        return {name: point.place for name, point in self.ours.items()}
-
-
-@dataclass(frozen=True)
-class OneWheel:
-    """The wheel of a file that the user asks for.
-
-    Choices of the user are used even if they look wrong; the scene then gives warnings.
-    """
-
-    source: str
-    choices: Choices
-    format: Format
-    contents: Contents
-    own: NamesFile
-
-    def refuse(self, problem: str, allowed: str, line: int = 0) -> FileError:
-        return FileError(self.source, line, problem, allowed)
-
-    def checked(self, drawn: Mapping[str, float]) -> Iterator[AngleCheck]:
-        """Compare the static angles printed in the file with those of the drawing.
-
-        The digits of the points limit the accuracy of an axis. Half a digit h in both coordinates of both
-        ends moves them apart by 2 sqrt(2) h in the plane of an angle. An axis of length L within 45 deg of
-        this plane has a projected length of at least L / sqrt(2). So the angle changes by at most 4 h / L.
-
-        Args:
-            drawn: angles of the drawing by our names, rad.
-        """
-        places, left_open = self.chosen.places, 0.0
-        for ends in map(self.structure.role, ("wheel_axis", "steering_axis")):
-            if ends and {*ends} <= places.keys():
-                one, other = (places[name] for name in ends)
-                half, length = max(map(_half_a_digit, (*one, *other))), dist(one, other)
-                left_open = max(left_open, 4.0 * half / length if length else 0.0)
-        for name, pattern in self.format.angles.items():
-            for words, (value, line) in self.axle.angles.items():
-                if name in drawn and re.match(pattern, words):
-                    off = _half_a_digit(value) + degrees(left_open)
-                    yield AngleCheck(name, words, line, float(value), degrees(drawn[name]), off)
-
-    def drawing(self) -> Drawing:
-        """The wheel's points in the order of its mechanism, and points that follow from them.
-
-        Raises:
-            FileError: the file lacks something that is needed, or its points contradict it.
-            UnknownName: a name in the user's file of names is not in this file.
-            UsageError: `axes` are not valid.
-        """
-        if not (self.structure.role("wheel_axis") and self.structure.role("inboard")):
-            raise self.refuse(
-                f"is read as {self.kind}, whose mechanism file lacks the roles wheel_axis and inboard",
-                "a suspension of one wheel; for others write a scene (pointcoord new)",
-            )
-        self.require_all()
-        (axes, axes_by), (unit, unit_by) = self.axes, self.unit
-        turned = {name: axes.to_scene(place, unit) for name, place in self.chosen.places.items()}
-        side = self.side(turned)
-        found = {n: ScenePoint(n, at, self.chosen.ours[n].source) for n, at in turned.items()}
-        found |= self.following(turned, 1 if side == "right" else -1)
-        points = [found[name] for name in self.structure.points if name in found]
-        lines = some_of(self.contents.lines, NAMED)
-        facts = [
-            f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
-            "here x rearward, y right, z up, in mm",
-            *([] if axes.right_handed else ["these axes are left-handed: is one of them reversed?"]),
-            *self.axle.notes,
-            *([self.format.notes[self.kind]] if self.kind in self.format.notes else []),
-            *([f"lines without a point: {lines}"] if lines else []),
-        ]
-        if self.choices.mirror:
-            facts.append(f"the file has the {side} wheel; here it is mirrored to the other side of the car")
-            side = SIDES[side == "left"]
-            points = [replace(one, place=(one.place[0], -one.place[1] + 0, one.place[2])) for one in points]
-        facts += [
-            f"{name} is not in the file: {other} is used instead"
-            for name, other in self.structure.stand_ins.items()
-            if name not in found
-        ]
-        return Drawing(self.source, self.kind, side, tuple(points), tuple(facts), self.chosen.others)
-
-    # The suspension type, and the identification of points.
-
-    @cached_property
-    def kind(self) -> str:
-        """Our type of suspension: from the user, from the file, or the type whose points the file has."""
-        if self.choices.suspension:
-            return self.choices.suspension
-        if called := self.called:
-            part = self.one_of("part", "axle", self.choices.part, {*called})
-            name = called.get(part) or next(iter(called.values()))
-            for pattern, kind in self.format.called.items():
-                if re.fullmatch(pattern, name, re.IGNORECASE):
-                    return kind
-            known = ", ".join(f"{theirs} ({ours})" for theirs, ours in self.format.called.items())
-            at = f" at its axle {part}" if part else ""
-            allowed = f"{known}; if it is one of these under another name, give --suspension"
-            raise self.refuse(f"has a suspension called {short(name)}{at}", allowed)
-        best = self.closest()
-        if len(best) > 1:
-            problem = f"could be a {' or a '.join(best)}"
-            raise self.refuse(problem, f"--suspension {' or --suspension '.join(best)}")
-        return best[0]
-
-    @cached_property
-    def structure(self) -> Structure:
-        """The structure of our type of suspension."""
-        return mechanism_file(self.kind).structures[AS_DRAWN]
-
-    @property
-    def called(self) -> dict[str, str]:
-        """The file's names of its suspensions, by part."""
-        return {part: axle.called for part, axle in self.contents.axles.items() if axle.called}
-
-    def closest(self) -> list[str]:
-        """The suspension types with the fewest missing points; among these, those with the most points."""
-        known = {kind: dict(self.named(kind)[0]) for kind in self.format.suspensions}
-        fits = {kind: (-len(missing(kind, there)), len(there)) for kind, there in known.items()}
-        return [kind for kind, fit in fits.items() if fit == max(fits.values())]
-
-    def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
-        """The recognised points with our names and their wheels, and the other points of the file.
-
-        Names from the user have precedence over names of the format.
-        """
-        known, others = [*self.own.points.items()], []
-        taken = self.own.names.keys() | self.own.points.keys()
-        every = {our: names for our, names in self.format.names_of(kind).items() if our not in taken}
-        ours = {plain(their): our for our, names in every.items() for their in names}
-        ours |= {plain(their): our for our, their in self.own.names.items()}
-        for point in self.contents.points:
-            found = self.format.ours(point.name, ours)
-            if point.section and (whole := self.format.ours(f"{point.section} {point.name}", ours)):
-                found, point = whole, replace(point, name=f"{point.section} {point.name}")
-            if found is None:
-                others.append(point)
-            else:
-                our, (side, part) = found
-                known.append((our, replace(point, side=side or point.side, part=part or point.part)))
-        return known, others
-
-    @cached_property
-    def chosen(self) -> _Wheel:
-        """The wheel that is asked for."""
-        known, others = self.named(self.kind)
-        theirs = {plain(point.name) for _, point in known}
-        for their in self.own.names.values():
-            if plain(their) not in theirs:
-                every = dict.fromkeys(point.name for point in self.contents.points)
-                raise UnknownName(f"point in {self.source}", their, every)
-        parts = {point.part for _, point in known}
-        part = self.one_of("part", "axle", self.choices.part, parts)
-        # If the file does not give axles, it is taken to be the requested one.
-        part = part if part in parts else ""
-        known = [(ours, point) for ours, point in known if point.of(part, "")]
-        sides = {point.side for _, point in known} - {""}
-        side = self.one_of("side", "side", self.choices.side if len(sides) > 1 else None, sides)
-        found: dict[str, FilePoint] = {}
-        for ours, point in known:
-            other = found.setdefault(ours, point) if point.of(part, side) else point
-            if other.place != point.place:
-                problem = f"has {ours} twice, {other.told} and {short(point.name)} at another position"
-                allowed = "one of them; the points of one wheel of one axle, or a file of names (--names)"
-                raise self.refuse(problem, allowed, point.line)
-        # All unrecognised points of a table are listed; of a file by axles only those of this wheel.
-        if self.contents.axles:
-            others = [point for point in others if point.of(part, side)]
-        return _Wheel(found, tuple(others), part, side)
-
-    def one_of(self, option: str, what: str, chosen: str | None, there: set[str]) -> str:
-        """The part or side to import, of a file that may have several."""
-        labels = sorted(there - {""})
-        every = " or ".join(f"--{option} {label}" for label in labels)
-        if chosen and labels and chosen not in labels:
-            raise self.refuse(f"has no points of {what} {chosen}", every)
-        if not chosen and len(labels) > 1:
-            called = self.called
-            names = [f"{label} ({called[label]})" if label in called else label for label in labels]
-            raise self.refuse(f"has points of more than one {what}: {', '.join(names)}", every)
-        return chosen or (labels[0] if labels else "")
-
-    # Missing points.
-
-    @property
-    def axle(self) -> Axle:
-        """The file's data of the wheel's axle, or else of the whole file."""
-        axles = self.contents.axles
-        return axles.get(self.chosen.part) or axles.get("", Axle())
-
-    @cached_property
-    def spin_axis(self) -> SpinAxis | None:
-        """The direction of the wheel's spin axis from the file, or from --camber and --toe."""
-        camber, toe, given = self.choices.camber, self.choices.toe, self.axle.spin_axis
-        if camber is None and toe is None:
-            return given
-        inner = self.structure.role("wheel_axis")[0]
-        if given is not None or inner in self.chosen.places:
-            by = f" by {inner}" if given is None else ""
-            raise self.refuse(f"gives the direction of its spin axis{by}", "neither --camber nor --toe")
-        if camber is None or toe is None or not max(abs(camber), abs(toe)) < 45.0:
-            allowed = "both --camber and --toe, each of less than 45 deg, or neither"
-            raise self.refuse(f"is given --camber {camber} and --toe {toe}", allowed)
-        # Projected angles: tan(toe) = forward / outboard, tan(camber) = -up / outboard.
-        direction = (tan(radians(toe)), 1.0, -tan(radians(camber)))
-        return SpinAxis(direction, f"--camber {camber:g} and --toe {toe:g}, deg")
-
-    def following(self, places: Mapping[str, Place], out: int) -> dict[str, ScenePoint]:
-        """Points that the file lacks and that follow from its points.
-
-        Args:
-            places: positions of the file's points, x rearward, y right, z up, mm.
-            out: 1 if outboard is to the right, -1 if it is to the left.
-        """
-        lost, axis, found = missing(self.kind, places), self.spin_axis, dict[str, ScenePoint]()
-        inner, centre = self.structure.role("wheel_axis")
-        if inner in lost and axis is not None and centre in places:
-            how = f"from {centre}: {INWARD:g} mm inboard on the spin axis, from {axis.words}"
-            found[inner] = ScenePoint(inner, _inboard(places[centre], out, axis), how)
-        for slide in mechanism_file(self.kind).structures[AS_DRAWN].slides.values():
-            # A sliding point that only defines the line together with another point may be anywhere on it.
-            ends = slide.along, slide.through
-            if slide.along in slide.points and places.keys() >= {*ends}:
-                x, y, z = ((a + b) / 2 for a, b in zip(*(places[end] for end in ends), strict=True))
-                how = (
-                    f"from {' and '.join(ends)}: halfway between them; the file does not give its position on"
-                    " this axis, and nothing else depends on it"
-                )
-                found |= {one: ScenePoint(one, (x, y, z), how) for one in slide.points if one in lost}
-        return found
-
-    def require_all(self) -> None:
-        """Refuse a file that lacks a point that is needed and does not follow from others."""
-        # Whether a point follows does not depend on axes, unit and side, so these are not applied yet.
-        there, names = self.chosen.places, self.format.names_of(self.kind)
-        lost = missing(self.kind, {**there, **self.following(there, 1)})
-        if not lost:
-            return
-        looked = (f"{n} (looked for: {', '.join(map(short, names[n]))})" if n in names else n for n in lost)
-        problem = f"lacks {', '.join(looked)} of a {self.kind}"
-        if others := [point.told for point in self.chosen.others]:
-            problem += f"; not recognised: {some_of(others, NAMED)}"
-        if lines := some_of(self.contents.lines, NAMED):
-            problem += f"; without three numbers: {lines}"
-        advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
-        advice += f" or {lost[0]} = [x, y, z]"
-        if self.structure.role("wheel_axis")[0] in lost:
-            advice += (
-                "; for the spin axis you may give --camber and --toe, + leaning out at the top and + toe in"
-            )
-        raise self.refuse(problem, advice)
-
-    # Axes, unit and side, and checks of them.
-
-    @cached_property
-    def axes(self) -> tuple[Axes, str]:
-        """The axes and their source: the user, the names of points or the format.
-
-        Refused if the points contradict them, unless the user gives them. No point shows the direction to the
-        left, which determines the wheel's side.
-        """
-        if self.choices.axes is not None:
-            return Axes.of(self.choices.axes), "--axes"
-        read = {ours: point.name for ours, point in self.chosen.ours.items() if ours not in self.own.points}
-        found: list[tuple[Axes, str]] = []
-        if self.format.name == TABLE and all(ours in theirs for ours, theirs in read.items()):
-            found.append((OUR_AXES, "its points' names, which are ours"))
-        for pattern, axes in self.format.axes.items():
-            telling = [name for name in read.values() if re.fullmatch(pattern or ".*", plain(name))]
-            if telling:
-                found.append((axes, f"names such as {short(telling[0])}" if pattern else "its format"))
-        lie = " and ".join(words for words, *_ in self.ways())
-        if not found:
-            allowed = f"--axes with {ALLOWED}{f', where {lie}' if lie else ''}"
-            raise self.refuse("does not give the directions of x, y and z", allowed)
-        axes, by = found[0]
-        if any((axes.matrix @ along != DIRECTIONS[way]).any() for _, along, way in self.ways()):
-            allowed = f"--axes with the right directions, or --axes {axes.option} if they are right"
-            raise self.refuse(f"has axes {axes.words} by {by}, but {lie}", allowed)
-        return axes, by
-
-    def ways(self) -> Iterator[tuple[str, Array, str]]:
-        """The directions in the file of pairs of points whose direction in the car is known from their roles.
-
-        Yields the direction in words, as a vector in the file's axes, (3,), and its direction in the car. If
-        the mechanism does not have these roles, nothing is yielded.
-        """
-        structure, places = self.structure, self.chosen.places
-        for way, ends in (
-            ("forward", structure.role("front_and_rear")),
-            ("up", structure.role("steering_axis")[::-1]),
-        ):
-            if ends:
-                one, other = ends
-                apart = [a - b for a, b in zip(places[one], places[other], strict=True)]
-                most = max(range(3), key=lambda axis: abs(apart[axis]))
-                sign = "-+"[apart[most] > 0]
-                along = float(f"{sign}1") * np.eye(3)[most]
-                yield f"{one} lies along {sign}{'xyz'[most]} from {other}", along, way
-
-    @cached_property
-    def unit(self) -> tuple[str, str]:
-        """The unit of lengths and its source; refused if the points do not have the size of a car in it."""
-        given, chosen = self.contents.unit, self.choices.unit
-        if given and given not in LENGTHS:
-            raise self.refuse(f"has lengths in {short(given)}", ", ".join(LENGTHS))
-        if given and chosen and given != chosen:
-            raise self.refuse(f"states that its lengths are in {given}", f"--unit {given}, or no --unit")
-        by = {"the file": given, "--unit": chosen, "its format": self.format.unit}
-        unit, who = next((unit, who) for who, unit in by.items() if unit)
-        columns = zip(*self.chosen.places.values(), strict=True)
-        span = max(max(column) - min(column) for column in columns)
-        fitting = {name: span * size for name, size in LENGTHS.items() if SMALLEST <= span * size <= LARGEST}
-        if unit not in fitting and chosen is None:
-            problem = f"spans {float(span * LENGTHS[unit]):.4g} mm if its lengths are in {unit}"
-            others = (f"--unit {other} makes {float(size):.4g} mm" for other, size in fitting.items())
-            raise self.refuse(problem, "; ".join(others) or f"--unit {unit} if this is right")
-        return unit, who
-
-    def side(self, turned: Mapping[str, Place]) -> str:
-        """The wheel's side, from its position; it must be the side that the file or the user gives."""
-        wheel, (inner,) = self.structure.role("wheel_axis")[1], self.structure.role("inboard")
-        lies, out = turned[wheel][1], turned[wheel][1] - turned[inner][1]
-        if not out:
-            raise self.refuse(f"has {wheel} as far out as {inner}", "a wheel outboard of it; see --axes")
-        seen = SIDES[out > 0]
-        where = f"{wheel} lies {abs(out):.6g} mm to the {seen} of {inner}"
-        by_whom = {"--side": self.choices.side, "the file": self.chosen.side}
-        for by, said in by_whom.items():
-            if said and said != seen:
-                axes = self.axes[0].option
-                allowed = f"--axes with left and right exchanged in {axes}, or the {seen} side"
-                # Not offered if the file has the requested wheel: the other wheel, mirrored, may differ.
-                if by == "--side" and self.chosen.side != said:
-                    allowed += f"; or --side {seen} --mirror makes the {said} wheel of it"
-                raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
-        if (lies > 0) != (out > 0) and not any(by_whom.values()):
-            problem = f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car"
-            raise self.refuse(problem, f"--side {seen} if y is not counted from the middle, or other --axes")
-        return seen
-
-
-def missing(kind: str, known: Iterable[str]) -> list[str]:
-    """The required points that are missing; points of the spin axis are required too, without defaults."""
-    structure, there = mechanism_file(kind).structures[AS_DRAWN], {*known}
-    needed = dict.fromkeys((*structure.required_points, *structure.role("wheel_axis")))
-    return [name for name in needed if name not in there]
-
-
-def _inboard(centre: Place, out: int, axis: SpinAxis) -> Place:
-    """A point inboard on the spin axis; its distance from the centre does not affect any angle."""
-    forward, outboard, up = axis.direction
-    step = INWARD / sum(part * part for part in axis.direction) ** 0.5
-    steps = (Decimal(step * part).quantize(DIGITS) for part in (forward, -out * outboard, -up))
-    x, y, z = (at + step for at, step in zip(centre, steps, strict=True))
-    return x, y, z
+    left_open = 0.0
+    for ends in map(wheel.structure.role, ("wheel_axis", "steering_axis")):
+        if ends and {*ends} <= wheel.ours.keys():
+            one, other = (wheel.ours[name].place for name in ends)
+            half, length = max(map(_half_a_digit, (*one, *other))), dist(one, other)
+            left_open = max(left_open, 4.0 * half / length if length else 0.0)
+    angles = wheel.file.contents.angles
+    for name, pattern in wheel.file.format.angles.items():
+        for words, (value, line) in angles.get(wheel.part, angles.get("", {})).items():
+            if name in drawn and re.match(pattern, words):
+                off = _half_a_digit(value) + degrees(left_open)
+                yield AngleCheck(name, words, line, float(value), degrees(drawn[name]), off)
 
 
 def _half_a_digit(number: Decimal) -> float:

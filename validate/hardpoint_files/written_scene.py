@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import floor, isinf
 from pathlib import Path
@@ -17,7 +17,7 @@ from pointcoord.mechanism import mechanism_file
 from pointcoord.mechanism.faults import TableFault
 from pointcoord.mechanism.file import AS_DRAWN, MechanismFile
 from pointcoord.mechanism.inputs import Height
-from validate.hardpoint_files.contents import FilePoint, Place
+from validate.hardpoint_files.contents import Point
 from validate.plain_text import shown
 from validate.toml_written import key_of, value_of
 
@@ -30,31 +30,6 @@ TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
-class ScenePoint:
-    """A point of the scene.
-
-    Attributes:
-        name: our name. place: x rearward, y right, z up, mm. source: its source in words.
-    """
-
-    name: str
-    place: Place
-    source: str
-
-    @property
-    def coordinates(self) -> tuple[float, float, float]:
-        """The position as floats."""
-        x, y, z = map(float, self.place)
-        return x, y, z
-
-    @property
-    def written(self) -> str:
-        """The position as TOML, with its digits."""
-        numbers = (f"{number.normalize() + 0:f}" for number in self.place)
-        return f"[{', '.join(numbers)}]"
-
-
-@dataclass(frozen=True)
 class Drawing:
     """The drawing in a file.
 
@@ -64,21 +39,17 @@ class Drawing:
         side: side of the wheel.
         points: points of the scene.
         facts: assumptions made, in words.
-        others: points of the file that are not recognised.
+        others: points of the file that are not recognised, in words.
         tables: tables of a mechanism file, if the mechanism is not a shipped one.
     """
 
     source: str
     kind: str
     side: str
-    points: tuple[ScenePoint, ...]
+    points: tuple[Point, ...]
     facts: tuple[str, ...]
-    others: tuple[FilePoint, ...] = ()
+    others: tuple[str, ...] = ()
     tables: Mapping[str, Any] | None = None
-
-
-Laws = Mapping[str, tuple[Mapping[str, Any], str]]
-"""For each input its law as in a scene, and a comment on it."""
 
 
 def scene_of(drawing: Drawing) -> Scene:
@@ -87,10 +58,11 @@ def scene_of(drawing: Drawing) -> Scene:
     Raises:
         SceneError: the points make no car, or the tables make no mechanism.
     """
-    kind, places = drawing.kind, {point.name: point.coordinates for point in drawing.points}
+    kind = drawing.kind
+    places: dict[str, Any] = {point.name: tuple(map(float, point.place)) for point in drawing.points}
     try:
         file = mechanism_file(kind) if drawing.tables is None else MechanismFile.of(drawing.tables, kind)
-        driven = driven_inputs(file, file.topology(places))
+        driven = _driven_inputs(file, file.topology(places))
     except TableFault as fault:
         raise fault.of_file(drawing.source) from None
     content = {
@@ -111,7 +83,7 @@ def scene_of(drawing: Drawing) -> Scene:
     return scene.model_copy(update={"effects": [e.name for e in plain if e.name not in parts]})
 
 
-def driven_inputs(file: MechanismFile, topology: Topology) -> tuple[str, ...]:
+def _driven_inputs(file: MechanismFile, topology: Topology) -> tuple[str, ...]:
     """Inputs for all degrees of freedom, with wheel travel instead of the input that moves the wheel."""
     drawn, moving = file.structures[AS_DRAWN].inputs, topology.driven_along(BY_TRAVEL)
     travel = {one.height: name for name, one in drawn.items() if isinstance(one, Height)}
@@ -120,33 +92,10 @@ def driven_inputs(file: MechanismFile, topology: Topology) -> tuple[str, ...]:
     return tuple(travel[topology.wheel_centre] if n in moving else n for n in topology.required_inputs)
 
 
-def travel_of(drawn: Scene, stands: Standing) -> Laws:
-    """Laws of wheel travel about the drawing, well within its range; other inputs are held as drawn.
-
-    The wheel moves from 30 mm below to 30 mm above. If it can move less than 40 mm, or if its input is not a
-    travel, the input moves a quarter of the way to the nearer end on either side.
-    """
-    laws: dict[str, tuple[Mapping[str, Any], str]] = {}
-    drives = drawn.mechanism.topology.drives
-    for drive in drives:
-        name, unit, here = drive.input, drive.unit, stands.inputs[drive.input]
-        # The travel of a slide is taken as steering; other inputs move the wheel up and down.
-        if drive.of_slide and not all(other.of_slide for other in drives):
-            laws[name] = {"constant": here}, f"{unit}, as drawn"
-            continue
-        low, high = (end.value for end in stands.reach[name])
-        nearer, words = min(here - low, high - here), f"{unit}; it reaches {low:.4f} to {high:.4f}"
-        if isinf(nearer):
-            nearer, words = TURN, f"{unit}; it goes all the way round"
-        way = TRAVEL if unit == "mm" and nearer >= FAR_ENOUGH else floor(1e4 * PART * nearer) / 1e4
-        laws[name] = {"sweep": [here - way, here + way]}, words
-    return laws
-
-
-def scene_text(drawing: Drawing, drawn: Scene, laws: Laws, format_words: str) -> str:
+def scene_text(drawing: Drawing, drawn: Scene, stands: Standing, format_words: str) -> str:
     """The text of the scene file, with the tables of a mechanism that is not shipped."""
     tables = drawing.tables or {}
-    rows = [(key_of(point.name), point.written, point.source) for point in drawing.points]
+    rows = [(key_of(point.name), point.written, shown(point.source)) for point in drawing.points]
     first, second = (max(len(row[i]) for row in rows) for i in (0, 1))
     lines = [
         f"# Imported from {shown(Path(drawing.source).name)}, a {format_words}.",
@@ -158,13 +107,32 @@ def scene_text(drawing: Drawing, drawn: Scene, laws: Laws, format_words: str) ->
         *([] if tables else [f"type = {value_of(drawing.kind)}"]),
         f"side = {value_of(drawing.side)}",
         *("", "[mechanism.points]    # mm"),
-        *(f"{name.ljust(first)} = {place.ljust(second)}    # {shown(words)}" for name, place, words in rows),
-        *(f"# not used: {shown(point.source)}" for point in drawing.others),
+        *(f"{name.ljust(first)} = {place.ljust(second)}    # {source}" for name, place, source in rows),
+        *(f"# not used: {shown(source)}" for source in drawing.others),
     ]
     for name, table in tables.items():
         if table:
             lines += ["", f"[mechanism.{name}]"]
             lines += [f"{key_of(key)} = {value_of(one)}" for key, one in table.items()]
-    lines += ["", "[inputs]"]
-    lines += [f"{key_of(name)} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()]
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, "", "[inputs]", *_laws(drawn, stands)]) + "\n"
+
+
+def _laws(drawn: Scene, stands: Standing) -> Iterator[str]:
+    """Lines with the laws of wheel travel about the drawing; other inputs are held as drawn.
+
+    The wheel moves from 30 mm below to 30 mm above. If it can move less than 40 mm, or if its input is not a
+    travel, the input moves a quarter of the way to the nearer end on either side.
+    """
+    drives = drawn.mechanism.topology.drives
+    for drive in {drive.input: drive for drive in drives}.values():
+        name, unit, here = drive.input, drive.unit, stands.inputs[drive.input]
+        # The travel of a slide is taken as steering; other inputs move the wheel up and down.
+        if drive.of_slide and not all(other.of_slide for other in drives):
+            yield f"{key_of(name)} = {value_of({'constant': here})}    # {unit}, as drawn"
+            continue
+        low, high = (end.value for end in stands.reach[name])
+        nearer, words = min(here - low, high - here), f"{unit}; it reaches {low:.4f} to {high:.4f}"
+        if isinf(nearer):
+            nearer, words = TURN, f"{unit}; it goes all the way round"
+        way = TRAVEL if unit == "mm" and nearer >= FAR_ENOUGH else floor(1e4 * PART * nearer) / 1e4
+        yield f"{key_of(name)} = {value_of({'sweep': [here - way, here + way]})}    # {words}"

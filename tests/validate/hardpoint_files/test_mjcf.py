@@ -21,7 +21,7 @@ from validate.cli import main
 from validate.closed_drawing import closed_drawing
 from validate.hardpoint_files.contents import OUR_AXES
 from validate.hardpoint_files.importing import import_hardpoints
-from validate.hardpoint_files.mjcf import drawing_of
+from validate.hardpoint_files.mjcf import mechanism_of
 from validate.hardpoint_files.written_scene import Drawing
 from validate.peers.mjcf import mjcf_of
 
@@ -153,7 +153,7 @@ def made(text: str, folder: Path) -> Drawing:
     """The mechanism of a model."""
     path = folder / "model.xml"
     path.write_text(text, encoding="utf-8")
-    return drawing_of(str(path), OUR_AXES)
+    return mechanism_of(str(path), OUR_AXES)
 
 
 @pytest.mark.parametrize("text", [FOUR_BAR, WELDED], ids=["connect", "weld"])
@@ -200,7 +200,7 @@ def test_a_body_has_the_freedoms_that_mujoco_counts(joints: str, tmp_path: Path)
     text = f"<mujoco><worldbody>{body}</worldbody></mujoco>"
     model = mujoco.MjModel.from_xml_string(text)
     found = made(text, tmp_path)
-    points = {point.name: point.coordinates for point in found.points}
+    points = {point.name: tuple(map(float, point.place)) for point in found.points}
     assert MechanismFile.of(found.tables or {}, "b").freedoms(points=points) == model.nv
 
 
