@@ -41,7 +41,7 @@ def compared(text: str, content: Mapping[str, Any], scene: Scene, **more: Any) -
 def disagreeing(text: str, content: Mapping[str, Any], scene: Scene) -> list[str]:
     """What a column that disagrees is, before anything is judged or explained."""
     data = understood(columns_of_text(text, "mine.csv"), content, scene, "map.toml")
-    held = held_of(data, Driven.of(scene, data), None)[0]
+    held, _ = held_of(Driven.of(scene, data).at(), None)
     return [h.series.meaning.words for h in held if np.nanmax(h.share) > 1.0]
 
 

@@ -13,9 +13,8 @@ from validate.commands.usage import load_scene, name_of, named_scene, to_be_fill
 from validate.comparison.examined import Examined
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.measured.comparing import compare_results
+from validate.measured.comparing import OURS, compare_results
 from validate.measured.mapping import FARTHEST, map_to_fill_in, read_results
-from validate.measured.tolerances import OURS
 from validate.output import report
 from validate.output.console import Console
 from validate.plain_text import shown

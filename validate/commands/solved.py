@@ -19,7 +19,6 @@ from validate.curves.numbers import (
     Curves,
     angles_of,
     asking_for,
-    numbers_called,
     numbers_chosen,
     usual,
 )
@@ -63,7 +62,7 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     if Path(options.scene).suffix in ENDINGS:
         return _plot_sweep(options, target, console)
     with named_scene(options.scene) as (scene, name):
-        angles = tuple(n for one in angles_of(scene) for n in numbers_called(one.path[1], scene))
+        angles = numbers_chosen([one.path[1] for one in angles_of(scene)], scene, name)
         chosen = _curves(options, scene, name)
         scene = asking_for(scene, (*chosen.across, *chosen.up) if chosen else angles)
 

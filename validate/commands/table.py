@@ -57,7 +57,7 @@ def _of_scene(scene: Scene, name: str, options: argparse.Namespace, console: Con
     axes = _axes(scene, options.grid)
     read = numbers_asked(scene, name, options.number, None if options.all else READ_FIRST)
     if not options.number:
-        read += tuple(one for one in numbers_of(scene) if one.is_force and one.missing is None)
+        read += tuple(one for one in numbers_of(scene) if one.is_force and not one.effect)
     scene = asking_for(scene, read)
     inputs = {number.path[0]: number for number in numbers_of(scene) if number.path[0] in scene.functions}
     if axes:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
 
-from pointcoord import Motion, NotComputed, Samples, Scene
-from pointcoord.effects.effect import Effect, Quantity
+from pointcoord import Motion, Samples, Scene
 from pointcoord.effects.numbers import meant_by
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES, number_called, words_of
 from pointcoord.wording import meant as hint
@@ -28,7 +27,7 @@ Sampled = Samples | Solution
 TIME, TRAVEL = "time", "travel"
 COMPONENTS = "xyz"
 NAMED = 12  # largest number of names listed in a message
-PLACE = ALWAYS[0].quantities[0]
+PLACE = ALWAYS[0].quantities[0].name
 
 
 @dataclass(frozen=True)
@@ -40,7 +39,7 @@ class Number:
         words: its name in words.
         unit: unit of the values from `read`.
         sign: the positive direction of its value before `minus`, in words; empty if it needs no statement.
-        missing: why the scene does not give it; None if the scene asks for it.
+        effect: the effect that gives it; empty if the scene asks for it.
         minus: whether it is shown with the opposite sign of pointcoord's number with this path.
     """
 
@@ -49,22 +48,13 @@ class Number:
     unit: str
     sign: str
     scene: Scene = field(repr=False, compare=False)
-    missing: NotComputed | None = None
+    effect: str = ""
     minus: bool = False
 
     @property
     def of_the_car(self) -> bool:
         """Whether it is a number of the whole car, such as an angle, and not of a point or a body."""
         return len(self.path) == 2
-
-    @property
-    def panel(self) -> tuple[str, ...]:
-        """The panel in which it is drawn: numbers with an equal value here share an axis."""
-        if len(self.path) < 3:
-            # The wheels of an axle share an axis.
-            return (*self.path[:-1], self.path[-1].rpartition(".")[2])
-        # The components of a position differ much: on one axis their changes would not be visible.
-        return (PLACE.name, self.path[2]) if self.path[0] == PLACE.name else self.path[:1]
 
     @property
     def is_force(self) -> bool:
@@ -81,9 +71,23 @@ class Number:
         return f"{'-' if self.minus else ''}{name or self.called} [{self.unit_shown}{per}]"
 
     @property
-    def short(self) -> str:
-        """Its short name: without the quantity for numbers of the car and for positions."""
-        return ".".join(self.path[1:] if self.of_the_car or self.path[0] == PLACE.name else self.path)
+    def unit_shown(self) -> str:
+        """The shown unit: degrees for an angle."""
+        return degrees_of(self.unit)[1]
+
+    @property
+    def mark(self) -> str:
+        """The sign of a shown value where `sign` holds: + or -."""
+        return "-" if self.minus else "+"
+
+    @property
+    def factor(self) -> float:
+        """The factor from its values to those shown: from rad to degrees, with the shown sign."""
+        return (-1.0 if self.minus else 1.0) * degrees_of(self.unit)[0]
+
+    def shown(self, motion: Motion | None, samples: Sampled) -> Array:
+        """Its values as shown, (N,); see `read`."""
+        return self.factor * self.read(motion, samples)
 
     def read(self, motion: Motion | None, samples: Sampled) -> Array:
         """Its values at the N instants of samples, (N,).
@@ -104,45 +108,68 @@ class Number:
         assert motion is not None  # poses without a motion are not asked for the travel
         return np.asarray(movement(self.scene, motion, samples) @ np.array(self.scene.mechanism.up))
 
-    def shown(self, motion: Motion | None, samples: Sampled) -> Array:
-        """Its values as shown, (N,); see `read`."""
-        return self.factor * self.read(motion, samples)
 
-    @property
-    def factor(self) -> float:
-        """The factor from its values to those shown: from rad to degrees, with the shown sign."""
-        return (-1.0 if self.minus else 1.0) * degrees_of(self.unit)[0]
-
-    @property
-    def mark(self) -> str:
-        """The sign of a shown value where `sign` holds: + or -."""
-        return "-" if self.minus else "+"
-
-    @property
-    def unit_shown(self) -> str:
-        """The shown unit: degrees for an angle."""
-        return degrees_of(self.unit)[1]
-
-    def negative(self) -> Number:
-        """This number, shown with the opposite sign."""
-        return replace(self, words=f"minus {self.words}", minus=True)
+def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
+    """Displacement of the wheel centre from the closed drawing, relative to the chassis, (N, 3), mm."""
+    centre = scene.mechanism.topology.wheel_centre
+    readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
+    local = samples.numbers[PLACE][centre] - readout.mechanism.origin
+    return readout.chassis.taken_back(samples.times, local) - (drawn - readout.mechanism.origin)
 
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:
-    """Time, wheel travel and inputs of a scene, and every number that the scene can ask for."""
-    topology, centre = scene.mechanism.topology, scene.mechanism.topology.wheel_centre
-    time = Number((TIME,), TIME, "s", "", scene)
-    missing = _missing(ALWAYS, PLACE, centre, scene)
-    travel = Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", scene, missing)
+    """Time, wheel travel and inputs of a scene, and every number that its car has."""
+    part, topology = scene.mechanism, scene.mechanism.topology
+    found = [Number((TIME,), TIME, "s", "", scene)]
+    if topology.wheel_centre:
+        found.append(Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", scene))
+    signs = {drive.input: drive.sign for drive in topology.drives}
+    for name, (along, about) in topology.chassis_inputs.items():
+        signs[name] = f"right-handed about {along} through {about}" if about else f"{along}ward"
+    for name, unit in topology.input_units.items():
+        if name in scene.functions:
+            found.append(Number((name,), name.replace("_", " "), unit, signs.get(name, ""), scene))
     givers = gathered(
         ((quantity, name), effect)
-        for effect in (*ALWAYS, *EFFECTS.values())
+        for effect in (*ALWAYS, *(EFFECTS[name] for name in part.effects))
         for quantity, names in names_of([effect], topology, tuple(topology.points)).items()
         for name in names
     )
-    had = scene.mechanism.effects
-    others = (number for path, effects in givers.items() for number in _called(*path, effects, scene, had))
-    return (time, *([travel] if centre else []), *_inputs(scene), *others)
+    directions = _directions(scene)
+    for path, effects in givers.items():
+        quantity, name = QUANTITIES[path[0]], path[1]
+        asked = any(effect in ALWAYS or effect.name in scene.effects for effect in effects)
+        more = scene, "" if asked else effects[0].name
+        if quantity.of == "car":
+            known = number_called(name)
+            found.append(Number(path, words_of(name), quantity.unit, known.sign if known else "", *more))
+            continue
+        for axis, along in zip(COMPONENTS, directions, strict=True):
+            words = f"{quantity.words} of {name.replace('_', ' ')}, {axis}"
+            sign = f"about {along}" if along and quantity.of == "body" else along
+            found.append(Number((*path, axis), words, quantity.unit, sign, *more))
+    return tuple(found)
+
+
+def _directions(scene: Scene) -> list[str]:
+    """The direction of each axis in the car, such as up, rearward or left; empty for an oblique axis."""
+    up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
+    found = ["", "", ""]
+    for positive, negative, along in (
+        ("up", "down", up),
+        ("right", "left", right),
+        ("rearward", "forward", np.cross(right, up)),
+    ):
+        i = int(np.argmax(np.abs(along)))
+        if abs(along[i]) > 1.0 - 1e-9:  # the axes of a scene are orthonormal to rounding
+            found[i] = positive if along[i] > 0.0 else negative
+    return found
+
+
+def asking_for(scene: Scene, numbers: Iterable[Number]) -> Scene:
+    """The scene with all points, and with the effects added that give some numbers."""
+    effects = dict.fromkeys((*scene.effects, *(number.effect for number in numbers if number.effect)))
+    return scene.model_copy(update={"effects": tuple(effects), "points": None})
 
 
 def numbers_asked(
@@ -152,16 +179,13 @@ def numbers_asked(
 
     Args:
         name: name of the scene, for messages.
-        named: names of numbers, see `numbers_called`.
+        named: names of numbers, see `numbers_chosen`.
         first: used if `named` is empty: the numbers to take if the car has them. None: every number of the
             car, by pointcoord's names, that does not depend on the speed of the motion.
     Raises:
         UsageError: the car has no such number, or no numbers at all.
     """
-    part, numbers = scene.mechanism, numbers_of(scene)
-    had = {number for effect in part.effects for number in EFFECTS[effect].names(part.topology)}
-    every = [n for n in numbers if n.of_the_car and not n.is_force and n.path[1] in had]
-    every = [n for n in every if number_called(n.path[1])]
+    every = [n for n in numbers_of(scene) if n.of_the_car and not n.is_force and number_called(n.path[1])]
     if not every:
         raise UsageError(
             f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles]; "
@@ -172,126 +196,38 @@ def numbers_asked(
     if first is None:
         return tuple(number for number in every if not per_second(number.path[0]))
     found = {}
-    for own in first:
-        called, sign = meant_by(own, scene.convention)
+    for called, sign in (meant_by(own, scene.convention) for own in first):
         for number in every:
             if number.path[1].rpartition(".")[2] == called:
-                found[number.path] = number if sign > 0 else number.negative()
+                found[number.path] = _signed(number, sign)
     return tuple(found.values())
 
 
 def numbers_chosen(named: Iterable[str], scene: Scene, where: str) -> tuple[Number, ...]:
-    """The numbers with some names, each once, see `numbers_called`.
+    """The numbers with some names in the scene's convention, each once, see `found`.
 
     Args:
         where: the scene and the option that names them, for messages.
     Raises:
         UsageError: a name fits no number, or numbers with different names.
     """
-    try:
-        found = [number for words in named for number in numbers_called(words, scene)]
-    except UsageError as error:
-        raise UsageError(f"{where} {error}") from None
-    return tuple({number.path: number for number in found}.values())
+    every, chosen = numbers_of(scene), dict[tuple[str, ...], Number]()
+    for words in named:
+        called, sign = meant_by(words, scene.convention)
+        try:
+            chosen |= {number.path: _signed(number, sign) for number in found(called, every)}
+        except UsageError as error:
+            own = called.rpartition(".")[2]
+            givers = [effect for effect in EFFECTS.values() if own in effect.own_names]
+            lacks = [reason for effect in givers if (reason := scene.mechanism.refusal(effect))]
+            why = f"{shown(words)}: {lacks[0]}" if lacks else error
+            raise UsageError(f"{where} {why}") from None
+    return tuple(chosen.values())
 
 
-def numbers_called(words: str, scene: Scene) -> tuple[Number, ...]:
-    """The numbers with a given name in the scene's convention, see `found`.
-
-    Raises:
-        UsageError: the name fits no number, or numbers with different names.
-    """
-    called, sign = meant_by(words, scene.convention)
-    own = called.rpartition(".")[2]
-    try:
-        numbers = found(called, numbers_of(scene))
-    except UsageError:
-        givers = [effect for effect in EFFECTS.values() if own in effect.own_names]
-        if why := [reason for effect in givers if (reason := scene.mechanism.refusal(effect))]:
-            raise UsageError(f"{shown(words)}: {why[0]}") from None
-        raise
-    return numbers if sign > 0 else tuple(number.negative() for number in numbers)
-
-
-def asking_for(scene: Scene, numbers: Iterable[Number]) -> Scene:
-    """The scene with the effects added that give some numbers.
-
-    Raises:
-        NotComputed: the scene does not report the point of a number.
-    """
-    wanted = []
-    for number in numbers:
-        if number.missing is not None and not number.missing.effect:
-            raise number.missing
-        wanted += [number.missing.effect] if number.missing else []
-    return scene.model_copy(update={"effects": tuple(dict.fromkeys((*scene.effects, *wanted)))})
-
-
-def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
-    """Displacement of the wheel centre from the closed drawing, relative to the chassis, (N, 3), mm."""
-    centre = scene.mechanism.topology.wheel_centre
-    readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
-    local = samples.numbers[PLACE.name][centre] - readout.mechanism.origin
-    return readout.chassis.taken_back(samples.times, local) - (drawn - readout.mechanism.origin)
-
-
-def _inputs(scene: Scene) -> list[Number]:
-    topology = scene.mechanism.topology
-    signs = {drive.input: drive.sign for drive in topology.drives}
-    signs |= {
-        name: f"right-handed about {along} through {about}" if about else f"{along}ward"
-        for name, (along, about) in topology.chassis_inputs.items()
-    }
-    return [
-        Number((name,), name.replace("_", " "), unit, signs.get(name, ""), scene)
-        for name, unit in topology.input_units.items()
-        if name in scene.functions
-    ]
-
-
-def _called(
-    name_of_quantity: str, name: str, effects: Sequence[Effect], scene: Scene, had: Collection[str]
-) -> Iterator[Number]:
-    """A number of the car, or the three components of a vector, that some effects give.
-
-    Args:
-        had: names of the effects that the car has.
-    """
-    quantity = QUANTITIES[name_of_quantity]
-    path, missing = (quantity.name, name), _missing(effects, quantity, name, scene, had)
-    if quantity.of == "car":
-        known = number_called(name)
-        sign = known.sign if known else ""
-        yield Number(path, words_of(name), quantity.unit, sign, scene, missing)
-        return
-    for i, axis in enumerate(COMPONENTS):
-        along = _along(scene, i)
-        sign = f"about {along}" if along and quantity.of == "body" else along
-        words = f"{quantity.words} of {name.replace('_', ' ')}, {axis}"
-        yield Number((*path, axis), words, quantity.unit, sign, scene, missing)
-
-
-def _missing(
-    effects: Sequence[Effect], quantity: Quantity, name: str, scene: Scene, had: Collection[str] = ()
-) -> NotComputed | None:
-    """Why a scene does not give a number that any of some effects gives; None if the scene gives it."""
-    what = f"{quantity.words} of {name}"
-    asked = [effect for effect in effects if effect in ALWAYS or effect.name in scene.effects]
-    if not asked:
-        return NotComputed(what, next((one for one in effects if one.name in had), effects[-1]).name)
-    if asked[0].reports_states and name in scene.unreported_points:
-        return NotComputed(what, "", f"add {name!r} to the scene's points")
-    return None
-
-
-def _along(scene: Scene, i: int) -> str:
-    """The direction of an axis in the car, such as up, rearward or left; empty for an oblique axis."""
-    up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
-    named = (("up", "down", up), ("right", "left", right), ("rearward", "forward", np.cross(right, up)))
-    for positive, negative, direction in named:
-        if abs(direction[i]) > 1.0 - 1e-9:  # the axes of a scene are orthonormal to rounding
-            return positive if direction[i] > 0.0 else negative
-    return ""
+def _signed(number: Number, sign: int) -> Number:
+    """A number, or the same shown with the opposite sign."""
+    return number if sign > 0 else replace(number, words=f"minus {number.words}", minus=True)
 
 
 def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
@@ -303,23 +239,33 @@ def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
     Raises:
         UsageError: `words` fits no number, or numbers with different names.
     """
-    # A number and a quantity may have the same name; the number is taken.
-    fitting = [n for n in numbers if f".{'.'.join(n.path)}".endswith(f".{words}")]
-    fitting = fitting or [n for n in numbers if f".{words}." in f".{'.'.join(n.path)}."]
-    fitting = [n for n in fitting if n.path[0] == fitting[0].path[0]]
-    if not fitting:
-        known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
-        own = dict.fromkeys(n.short.rpartition(".")[2] for n in numbers if len(n.path) < 3)
+    names = fitting(words, [".".join(number.path) for number in numbers])
+    fits = [number for number in numbers if ".".join(number.path) in names]
+    if not fits:
+        known = dict.fromkeys(name for n in numbers for name in (n.called, ".".join(n.path), *n.path[:2]))
+        own = dict.fromkeys(n.path[-1].rpartition(".")[2] for n in numbers if len(n.path) < 3)
         there = f"there are: {some_of([*own], NAMED)}, and for points POINT.z or QUANTITY.POINT.z"
         raise UsageError(
             f"{shown(words)!r} names no number of this scene{hint(words, [*own, *known])}; {there}"
         )
-    names = dict.fromkeys(n.path[:2] for n in fitting)
-    own_names = {name[-1].rpartition(".")[2] for name in names} if fitting[0].of_the_car else names
-    if len(own_names) > 1:
-        some = ", ".join(".".join(name) for name in names)
+    fits = [number for number in fits if number.path[0] == fits[0].path[0]]
+    paths = dict.fromkeys(number.path[:2] for number in fits)
+    # The wheels of an axle have the same number.
+    if len({path[-1].rpartition(".")[2] for path in paths} if fits[0].of_the_car else paths) > 1:
+        some = ", ".join(map(".".join, paths))
         raise UsageError(f"{shown(words)!r} names more than one number; give one of: {some}")
-    return tuple(fitting)
+    return tuple(fits)
+
+
+def fitting(words: str, names: Iterable[str]) -> list[str]:
+    """The names, of parts between dots, that end with the parts in `words`, or else contain them.
+
+    >>> fitting("toe", ["wheel.toe", "toe.x"]), fitting("toe", ["toe.x", "toe.y"])
+    (['wheel.toe'], ['toe.x', 'toe.y'])
+    """
+    every = [*names]
+    ends = [name for name in every if f".{name}".endswith(f".{words}")]
+    return ends or [name for name in every if f".{words}." in f".{name}."]
 
 
 @dataclass(frozen=True)
@@ -337,7 +283,7 @@ class Curves:
 
 def angles_of(scene: Scene) -> tuple[Number, ...]:
     """The angles of its wheels that a scene asks for."""
-    return tuple(n for n in numbers_of(scene) if n.missing is None and n.of_the_car and n.unit == "rad")
+    return tuple(n for n in numbers_of(scene) if not n.effect and n.of_the_car and n.unit == "rad")
 
 
 def usual(scene: Scene, motion: Motion, angles: Sequence[Number]) -> Curves:
@@ -347,20 +293,18 @@ def usual(scene: Scene, motion: Motion, angles: Sequence[Number]) -> Curves:
     axis; otherwise the angles over the one input that moves, or over time. Without angles, the position of
     the wheel centre over time; without a wheel, the position of the first point that moves.
     """
-    there = [n for n in numbers_of(scene) if n.missing is None]
-    one: Mapping[str, Number] = {n.path[0]: n for n in there if len(n.path) == 1}
+    numbers, centre = numbers_of(scene), scene.mechanism.topology.wheel_centre
+    one, reported = {n.path[0]: n for n in numbers if len(n.path) == 1}, scene.reported_points
     if not angles:
-        points = [n for n in there if len(n.path) == 3]
-        name = scene.mechanism.topology.wheel_centre
-        place = [n for n in points if n.path[1] == name]
-        place = place or [n for n in points if np.ptp(n.read(motion, motion)) > 0.0] or points
-        place = [n for n in points if n.path[:2] == place[0].path[:2]]
-        return Curves((one[TIME],), tuple(place))
-    if TRAVEL in one:
-        moved = movement(scene, motion, motion)
-        up = np.array(scene.mechanism.up)
+        places = [n for n in numbers if n.path[0] == PLACE and n.path[1] in reported]
+        moving = [n.path[1] for n in places if np.ptp(n.read(motion, motion)) > 0.0]
+        point = centre if centre in reported else [*moving, reported[0]][0]
+        return Curves((one[TIME],), tuple(n for n in places if n.path[1] == point))
+    if centre in reported:
+        moved, up = movement(scene, motion, motion), np.array(scene.mechanism.up)
         level = moved - (moved @ up)[:, None] * up
         if np.ptp(moved @ up) > np.ptp(level, axis=0).max():
             return Curves(tuple(angles), (one[TRAVEL],))
-    moving = [n for n in there if n.path[0] in scene.functions and np.ptp(n.read(motion, motion)) > 0.0]
-    return Curves((moving[0] if len(moving) == 1 else one[TIME],), tuple(angles))
+    driven = [n for name, n in one.items() if name in scene.functions]
+    moved_by = [n for n in driven if np.ptp(n.read(motion, motion)) > 0.0]
+    return Curves((moved_by[0] if len(moved_by) == 1 else one[TIME],), tuple(angles))

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from validate.curves.numbers import fitting
 from validate.errors import UsageError
 from validate.plain_text import shown, some_of
 
@@ -22,12 +23,11 @@ def read_sweep(path: str) -> pd.DataFrame:
     """
     read = {".csv": pd.read_csv, ".parquet": pd.read_parquet, ".npz": _of_npz}[Path(path).suffix]
     try:
-        table = read(path)
+        return read(path).select_dtypes("number")
     # For damaged files numpy, pandas and zipfile raise many kinds of errors.
     except Exception as error:
         allowed = "a file that pointcoord sweep or simulate wrote"
         raise UsageError(f"{shown(path)} is not a table ({shown(str(error))}); allowed: {allowed}") from None
-    return table.select_dtypes("number")
 
 
 def _of_npz(path: str) -> pd.DataFrame:
@@ -36,17 +36,16 @@ def _of_npz(path: str) -> pd.DataFrame:
 
 
 def columns_called(table: pd.DataFrame, words: Sequence[str]) -> list[str]:
-    """The columns with given names. A name is compared without the unit; it may be a part between dots.
+    """The columns with given names, each once, see `fitting`; a name may lack the unit.
 
     Raises:
         UsageError: a name fits no column.
     """
-    found, plain_names = [], {str(name): str(name).partition(" [")[0] for name in table}
+    found, plain = list[str](), {str(name): str(name).partition(" [")[0] for name in table}
     for word in words:
-        whole = [name for name, own in plain_names.items() if word in (name, own)]
-        part = [n for n, own in plain_names.items() if f".{word}." in f".{own}."]
-        if not (whole or part):
-            there = some_of([*plain_names.values()], NAMED)
+        names = fitting(word.partition(" [")[0], plain.values())
+        if not names:
+            there = some_of([*plain.values()], NAMED)
             raise UsageError(f"{shown(word)} names no column of the file; allowed: {there}")
-        found += whole or part
+        found += [name for name, own in plain.items() if own in names]
     return list(dict.fromkeys(found))

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from validate.arrays import Array
-from validate.curves.numbers import TRAVEL, Curves, Number
+from validate.curves.numbers import PLACE, TRAVEL, Curves, Number
 from validate.output.columns import DESIGN
-from validate.output.figure import BLUE, FAINT, GREEN, GREY, LOOK, ORANGE, PINK, RED, SHADES, SKY, panels
+from validate.output.figure import BLUE, FAINT, GREEN, LOOK, ORANGE, PINK, RED, SHADES, SKY, panels
 from validate.plain_text import gathered, shown
 
 if TYPE_CHECKING:
@@ -69,7 +69,15 @@ def figure_of(table: pd.DataFrame, across: str, up: Sequence[str], title: str) -
 
 def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
     """Groups of numbers that are drawn on the same axis."""
-    return [*gathered(((*number.panel, number.unit), number) for number in numbers).values()]
+
+    def kind(path: tuple[str, ...]) -> tuple[str, ...]:
+        if len(path) < 3:
+            # The wheels of an axle share an axis.
+            return (*path[:-1], path[-1].rpartition(".")[2])
+        # The components of a position differ much: on one axis their changes would not be visible.
+        return (path[0], path[2]) if path[0] == PLACE else path[:1]
+
+    return [*gathered(((*kind(number.path), number.unit), number) for number in numbers).values()]
 
 
 def _draw(axes: Axes, curves: Curves, values: Values, size: tuple[float, float]) -> None:
@@ -88,11 +96,8 @@ def _draw(axes: Axes, curves: Curves, values: Values, size: tuple[float, float])
             color=COLOURS[i % len(COLOURS)],
             linestyle=STYLES[i % len(STYLES)] if several else "-",
             linewidth=1.4,
-            label=(across if len(curves.across) > 1 else up).short,
+            label=(across if len(curves.across) > 1 else up).called,
         )
-    for line, (low, high) in ((axes.axvline, axes.get_xlim()), (axes.axhline, axes.get_ylim())):
-        if low < 0.0 < high:
-            line(0.0, color=GREY, linewidth=0.6, zorder=1.0)
     axes.ticklabel_format(useOffset=False)
     axes.locator_params(nbins=6)
     wide, high = (int(side / LETTER) for side in size)

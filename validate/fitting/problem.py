@@ -25,8 +25,7 @@ from pointcoord.sweeping.designs import coordinates_of
 from validate.arrays import Array, Flags
 from validate.errors import UsageError
 from validate.measured.mapping import Measured
-from validate.measured.poses import Driven, Found, columns_of, swings
-from validate.measured.tolerances import out_of_reach
+from validate.measured.poses import Driven, Found
 from validate.tables.errors import FileError
 
 BOUNDS = 25.0  # mm: no hardpoint in a drawing of this car has a larger error
@@ -93,15 +92,14 @@ class Problem:
         twice = next((name for name in coordinates if coordinates.count(name) > 1), "")
         if twice:
             raise UsageError(f"--free: {twice} is given twice; allowed: each coordinate once")
-        start = driven.at([s.values for s in measured.independent], TIGHT, bounded=False)
-        first = columns_of(measured.numbers, start.numbers, len(measured.rows))
+        start = driven.at(tolerance=TIGHT)
+        first = start.columns(start.numbers)
         used: Flags = np.isfinite(first) & np.isfinite([s.values for s in measured.numbers])
         if not used.any():
             why = next(iter(start.reasons.values()), "no number is both in the file and computed")
             allowed = "rows that the scene's car can reach"
             raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
-        offs = [s.off for s in measured.independent]
-        swing = swings(driven, measured, offs, first, TIGHT).sum(axis=0)
+        swing = driven.swings(first, [s.off for s in measured.independent], TIGHT).sum(axis=0)
         off = [s.off + s.accuracy_or(accuracy) for s in measured.numbers]
         least = [[LEAST.get(s.meaning.unit.partition("/")[0], OTHERS)] for s in measured.numbers]
         spread = np.maximum((off + swing) / math.sqrt(3.0), least)[used]
@@ -110,7 +108,7 @@ class Problem:
     @property
     def notes(self) -> tuple[str, ...]:
         """What was assumed because it is not given, and rows that were left out."""
-        return (*self.start.driven.notes, *out_of_reach(self.measured, self.start))
+        return (*self.start.driven.notes, *self.start.left_out)
 
     def corrected(self, amounts: Array) -> Scene:
         """The scene with its free coordinates moved by amounts, (free,), mm.
@@ -126,12 +124,11 @@ class Problem:
         Raises:
             PointcoordError: the car cannot be solved.
         """
-        driven = self.start.driven.redrawn(self._offsets(amounts))
-        return driven.at([s.values for s in self.measured.independent], TIGHT, bounded=False)
+        return self.start.driven.redrawn(self._offsets(amounts)).at(tolerance=TIGHT)
 
     def numbers(self, car: Found) -> Array:
         """A car's numbers, (columns, rows); NaN at rows without a pose."""
-        return columns_of(self.measured.numbers, car.numbers, len(self.measured.rows))
+        return car.columns(car.numbers)
 
     def _offsets(self, amounts: Array) -> dict[str, float]:
         return dict(zip(self.free, amounts.tolist(), strict=True))
@@ -149,11 +146,12 @@ class Problem:
             FileError: a number of the car has no derivative.
             AssemblyError: a pose cannot be reached on a straight path (see `slopes_of_poses`).
         """
-        slopes, rows = car.driven.slopes(car, self.free), self.measured.rows
-        found = columns_of(self.measured.numbers, slopes, len(self.free), len(rows))
+        found = car.columns(car.driven.slopes(car, self.free), len(self.free))
         found = np.moveaxis(found, 1, -1)[self.used]
         if not np.isfinite(found).all():
             _, row = np.argwhere(self.used)[np.argmin(np.isfinite(found).all(axis=1))]
             problem = "the car's numbers have no derivative there: its pose is almost singular"
-            raise FileError(self.measured.source, rows[row], problem, "rows away from where the car jams")
+            raise FileError(
+                self.measured.source, self.measured.rows[row], problem, "rows away from where the car jams"
+            )
         return found / self.spread[:, None]

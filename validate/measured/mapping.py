@@ -24,7 +24,7 @@ travel and inputs; other columns of these kinds are ignored.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from textwrap import fill
 from typing import Annotated, Any, Literal
@@ -43,29 +43,24 @@ from validate.measured.meanings import (
     IGNORE,
     INPUT,
     NUMBER,
-    PLACES,
     TIME,
     TRAVEL,
     Meaning,
-    first_numbers,
     meanings_of,
     named,
-    poses_of,
+    some_meanings,
 )
 from validate.measured.reading import Columns, read_columns
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown
 from validate.tables.errors import FileError
 from validate.tables.units import allowed_units, factor_of
 from validate.toml_written import key_of, value_of
 
+# Upper limit of numbers in our units: squares and cubes of larger ones might overflow.
+FARTHEST = 1e100
 # Least number of values to decide that a column is in even steps: two values always are.
 FEWEST = 3
 BY_CHANCE = 1e-3  # steps that are equal to this share of a step or a last digit are not so by chance
-# Upper limit of lengths, times, angles and rates in our units: squares of larger numbers might overflow. For
-# a higher derivative the limit is raised to the power of half its order.
-FARTHEST = 1e12
-NAMED = 5  # largest number of names listed in a message
-
 
 Number = Annotated[float, Field(strict=True, ge=-FARTHEST, le=FARTHEST)]
 Size = Annotated[Number, Field(ge=0.0)]
@@ -94,23 +89,10 @@ class ColumnSaid(_Said):
 class MapSaid(_Said):
     """The content of a map, see the top of this file."""
 
-    rolling_radius: Number = math.nan
+    rolling_radius: Annotated[Number, Field(gt=0.0)] | None = None
     convention: ConventionName | None = None
-    held: dict[str, Number] = {}
+    held: dict[str, Number] = {}  # inputs and travels with one value in every row, in our units
     columns: dict[str, ColumnSaid] = {}
-
-    @classmethod
-    def of(cls, content: Mapping[str, Any], where: str) -> MapSaid:
-        """A map from plain data.
-
-        Raises:
-            FileError: the map is wrong; the first fault.
-        """
-        try:
-            return cls.model_validate(content)
-        except ValidationError as error:
-            fault = faults_of(error)[0]
-            raise FileError(where, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
 
 
 @dataclass(frozen=True)
@@ -121,24 +103,22 @@ class Series:
         column: its name in the file. meaning: its meaning.
         values: (N,), NaN for no number.
         off: rounding error of the values, half a unit of the last digit, (N,).
-        factor: its unit in our unit. unit: its unit in the file.
-        accuracy: accuracy from the map, in its unit; None if not given.
-        said: whether the map gives the unit of its last digit.
+        unit: its unit in the file. factor: this unit in our unit.
+        said: its entry in the map.
     """
 
     column: str
     meaning: Meaning
     values: Array
     off: Array
-    factor: float = 1.0
-    accuracy: float | None = None
-    said: bool = False
-    unit: str = ""
+    unit: str
+    factor: float
+    said: ColumnSaid
 
     @property
     def rounded_unasked(self) -> bool:
         """Whether it is taken as rounded although the map does not say so."""
-        return not self.said and bool(self.off.any())
+        return self.said.printed is None and bool(self.off.any())
 
     @property
     def set_exactly(self) -> bool:
@@ -161,7 +141,7 @@ class Series:
 
     def accuracy_or(self, accuracy: float) -> float:
         """The error of its numbers in addition to rounding, in our unit: from the map, or else `accuracy`."""
-        return self.factor * (accuracy if self.accuracy is None else self.accuracy)
+        return self.factor * (accuracy if self.said.accuracy is None else self.said.accuracy)
 
 
 @dataclass(frozen=True)
@@ -172,8 +152,7 @@ class Measured:
         source: the file.
         independent: the independent columns: time, a travel and inputs, or inputs.
         numbers: the columns to compare.
-        held: inputs and travels with one value in every row, in our units.
-        rolling_radius: mm; NaN if not given.
+        said: the map.
         rows: name of each row.
         notes: remarks on columns and rows that were left out.
     """
@@ -181,8 +160,7 @@ class Measured:
     source: str
     independent: tuple[Series, ...]
     numbers: tuple[Series, ...]
-    held: Mapping[str, float]
-    rolling_radius: float
+    said: MapSaid
     rows: tuple[str, ...]
     notes: tuple[str, ...]
 
@@ -220,65 +198,57 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     Raises:
         FileError: see `read_results`.
     """
-    said, meanings = MapSaid.of(content, where), meanings_of(scene.mechanism.topology)
-    travels = [words for words, one in meanings.items() if one.kind == TRAVEL]
-    _require(where, "columns", said.columns, columns.names, f"column of {columns.source}")
-    _require(where, "held", said.held, (*scene.mechanism.topology.inputs, *travels), "input or travel")
+    source, topology = columns.source, scene.mechanism.topology
+    said = _map_said(content, columns, scene, where)
     meant_as = _meant_as(columns, said, scene, where)
+    found = [
+        _series(columns, i, *one, said.columns.get(name, ColumnSaid()), where)
+        for i, (name, one) in enumerate(meant_as.items())
+        if one is not None
+    ]
+    for words, some in gathered((s.meaning.words, s.column) for s in found).items():
+        if some[1:]:
+            raise FileError(where, "columns", f"{listed(some)} are each {words}", "one column for each")
     out = [name for name, one in meant_as.items() if one is None]
     ignored = f"; ignored: {listed(out)}" if out else ""
-    found = _series(columns, said, meant_as, where)
-    if not found:
-        known = first_numbers(meanings)
-        near = next((hint for name in columns.names if (hint := meant(name, known))), "")
-        problem = f"none of {listed(columns.names)} is recognised{near}"
-        allowed = f"names such as time, {', '.join(known[:NAMED])}, or a map of them (--map)"
-        raise FileError(columns.source, "names of the columns", problem, allowed)
     times, heights, inputs, numbers = (
         [s for s in found if s.meaning.kind == kind] for kind in (TIME, TRAVEL, INPUT, NUMBER)
     )
     over = times or [*heights, *inputs]
-    if len(heights) > 1 and not times:
-        problem = f"each of {listed(s.column for s in heights)} could give the pose of a row"
+    travels = [*(s.column for s in heights), *(name for name in said.held if name not in topology.inputs)]
+    if travels[1:] and not times:
+        problem = f"each of {listed(travels)} could give the pose of a row"
         raise FileError(where, "columns", problem, f'is = "{IGNORE}" for all but one')
-    if not over:
-        problem = f"no column gives the pose of a row{ignored}"
-        allowed = f"a column of {poses_of(scene.mechanism.topology)} (in a map)"
-        raise FileError(columns.source, "names of the columns", problem, allowed)
-    if not numbers:
-        allowed = f"columns such as {', '.join(first_numbers(meanings)[:NAMED])}"
-        raise FileError(columns.source, "", f"has no numbers to compare{ignored}", allowed)
+    if not (over and numbers):
+        problem = "has no numbers to compare" if over else "no column gives the pose of a row"
+        allowed = f"columns called {some_meanings(topology)}, or a map of them (--map)"
+        raise FileError(source, "names of the columns", problem + ignored, allowed)
     there: Flags = np.asarray(np.isfinite([s.values for s in over]).all(axis=0))
     if not there.any():
-        raise FileError(columns.source, "", "no row gives its pose", "at least one row with its pose")
+        raise FileError(source, "", "no row gives its pose", "at least one row with its pose")
     notes = list[str]()
     if out:
         notes.append(f"ignored: {listed(out)} (name not recognised, without a unit, or as the map says)")
     if even := [s.column for s in over if s.set_exactly]:
         steps = "in even steps, taken as exact; if rounded, give its printed = STEP in a map"
-        notes.append(f"{listed(even, ' and ')}: {steps}")
-    if unused := [s.column for s in (*heights, *inputs) if times]:
-        notes.append(
-            f"{listed(unused)} not used: the pose of a row is given by {listed(s.column for s in over)}"
-        )
+        notes.append(f"{listed(even)}: {steps}")
+    if times and (unused := [s.column for s in (*heights, *inputs)]):
+        notes.append(f"{listed(unused)} not used: the pose of a row is given by {shown(times[0].column)}")
     for s in numbers:
         if lacking := int(np.isnan(s.values).sum()):
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
-    if not there.all():
-        first = columns.rows[int(np.argmin(there))]
-        lost = len(there) - int(there.sum())
-        notes.append(f"{lost} rows do not give their pose and are left out, the first: {first}")
+    if lost := [row for row, is_there in zip(columns.rows, there, strict=True) if not is_there]:
+        notes.append(f"{len(lost)} rows do not give their pose and are left out, the first: {lost[0]}")
 
     def kept(s: Series) -> Series:
         return replace(s, values=s.values[there], off=s.off[there] * (s.column not in even))
 
     return Measured(
-        source=columns.source,
+        source=source,
         independent=tuple(map(kept, over)),
         numbers=tuple(map(kept, numbers)),
-        held=said.held,
-        rolling_radius=said.rolling_radius,
-        rows=tuple(row for row, is_there in zip(columns.rows, there, strict=True) if is_there),
+        said=said,
+        rows=tuple(np.array(columns.rows)[there].tolist()),
         notes=tuple(notes),
     )
 
@@ -290,10 +260,10 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
         FileError: the file cannot be read.
         MissingLibrary: Parquet needs pyarrow.
     """
-    columns = read_columns(file)
+    columns, meanings = read_columns(file), f"is: {some_meanings(scene.mechanism.topology)}"
     lines = [
         f"# The columns of {columns.source}. Fill in what is missing, and remove the #.",
-        fill(f"is: {_there_is(scene)}", 100, initial_indent="# ", subsequent_indent="#     "),
+        fill(meanings, 100, initial_indent="# ", subsequent_indent="#     "),
         "# unit: mm, deg, rad, s and so on. Further keys: sign = -1, offset = 0.5, accuracy = 0.001,",
         "#     printed = 0.01 (the unit of the last digit; 0: exact as written)",
         f"# rolling_radius = 300.0    # mm, of travel.{CONTACT}",
@@ -307,24 +277,29 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
     return "\n".join(lines) + "\n"
 
 
-def listed(names: Iterable[str], by: str = ", ") -> str:
+def listed(names: Iterable[str]) -> str:
     """Names from a file for a message, long ones shortened."""
-    return by.join(shown(shown_key(name)) for name in names)
+    return ", ".join(shown(shown_key(name)) for name in names)
 
 
-def _require(where: str, place: str, names: Iterable[str], known: Sequence[str], what: str) -> None:
-    for name in names:
-        if name not in known:
-            problem = f"no {what} is called {shown(name)!r}{meant(name, known)}"
-            raise FileError(where, place, problem, ", ".join(known))
-
-
-def _there_is(scene: Scene) -> str:
-    """The possible meanings of a column of a car, in words."""
+def _map_said(content: Mapping[str, Any], columns: Columns, scene: Scene, where: str) -> MapSaid:
+    """A map from plain data, checked to name only columns of the file, and inputs and travels of the car."""
+    try:
+        said = MapSaid.model_validate(content)
+    except ValidationError as error:
+        fault = faults_of(error)[0]
+        raise FileError(where, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
     topology = scene.mechanism.topology
-    centre = [f"{PLACES}.{topology.wheel_centre}.z"] if topology.wheel_centre else []
-    some = ", ".join((*centre, *first_numbers(meanings_of(topology))[:NAMED]))
-    return f"{poses_of(topology)}, QUANTITY.NAME[.AXIS] such as {some}, or {IGNORE}"
+    travels = [words for words, one in meanings_of(topology).items() if one.kind == TRAVEL]
+    for place, given, known in (
+        ("columns", said.columns, columns.names),
+        ("held", said.held, (*topology.inputs, *travels)),
+    ):
+        for name in given:
+            if name not in known:
+                problem = f"{shown(name)!r} does not exist{meant(name, known)}"
+                raise FileError(where, place, problem, ", ".join(known))
+    return said
 
 
 def _meant_as(
@@ -337,67 +312,60 @@ def _meant_as(
     Raises:
         FileError: the map gives an unknown meaning.
     """
-    meanings, convention = meanings_of(scene.mechanism.topology), said.convention or scene.convention
+    topology, convention = scene.mechanism.topology, said.convention or scene.convention
+    meanings = meanings_of(topology)
 
-    def lookup(name: str) -> tuple[Meaning | None, int]:
-        """The meaning and sign of a name; names other than our full names are read by the convention."""
-        one = named(name, meanings)
-        if one is None or one.kind != NUMBER or name in meanings:
-            return one, 1
-        ours, sign = meant_by(one.name, convention)
-        return (one if ours == one.name else named(ours, meanings)), sign
-
-    taken = [lookup(part.is_ or name)[0] for name, part in said.columns.items()]
-    found: dict[str, tuple[Meaning, int] | None] = {}
-    for name, unit in zip(columns.names, columns.units, strict=True):
+    def meant_by_column(name: str) -> tuple[Meaning, int] | None:
         part = said.columns.get(name, ColumnSaid())
-        one, sign = lookup(name.removeprefix("-") if part.is_ is None else part.is_)
-        if part.is_ is None:
-            sign = -1 if name.startswith("-") else sign
-        elif one is None and part.is_ != IGNORE:
-            known = (*meanings, IGNORE)
-            near = meant(part.is_, (*known, *(n.partition(".")[2] for n in known if "." in n)))
-            problem = f"nothing is called {shown(part.is_)!r}{near}"
-            raise FileError(where, f"columns.{name}.is", problem, _there_is(scene))
+        words = name.removeprefix("-") if part.is_ is None else part.is_
+        one, sign = named(words, meanings), 1
+        # Names other than our full names are read by the convention.
+        if one is not None and one.kind == NUMBER and words not in meanings:
+            ours, sign = meant_by(one.name, convention)
+            one = one if ours == one.name else named(ours, meanings)
+        if one is None:
+            if part.is_ in (None, IGNORE):
+                return None
+            near = meant(words, (*meanings, *(full.partition(".")[2] for full in meanings)))
+            problem = f"nothing is called {shown(words)!r}{near}"
+            raise FileError(where, f"columns.{name}.is", problem, some_meanings(topology))
+        if part.is_ is None and name.startswith("-"):
+            sign = -1
+        return one, part.sign or sign
+
+    found = {name: meant_by_column(name) for name in columns.names}
+    taken = [one[0] for name in said.columns if (one := found[name])]
+    for name, unit in zip(columns.names, columns.units, strict=True):
         # Next to a map, a column that it does not name needs a unit and a meaning that no other column has.
-        left_out = said.columns and name not in said.columns and (not unit or one in taken)
-        found[name] = None if one is None or left_out else (one, part.sign or sign)
+        if said.columns and name not in said.columns and (one := found[name]):
+            found[name] = one if unit and one[0] not in taken else None
     return found
 
 
-def _series(
-    columns: Columns, said: MapSaid, meant_as: Mapping[str, tuple[Meaning, int] | None], where: str
-) -> list[Series]:
-    """All columns with a meaning, in our units."""
-    found: dict[str, Series] = {}
-    for at, (name, one) in enumerate(meant_as.items()):
-        if one is None:
-            continue
-        meaning, sign = one
-        if (words := meaning.words) in found:
-            both = f"columns {shown(found[words].column)!r} and {shown(name)!r}"
-            raise FileError(where, "columns", f"{both} are both {words}", "one column for each")
-        column, part = f"column {shown(name)!r}", said.columns.get(name, ColumnSaid())
-        if holds := columns.words.get(name):
-            allowed = f'columns of numbers, or is = "{IGNORE}" in a map'
-            raise FileError(columns.source, column, f"contains {holds}", allowed)
-        unit = columns.units[at] if part.unit is None else part.unit
-        factor = factor_of(unit, meaning.unit) if unit else None
-        if factor is None:
-            problem = "its unit is not given, neither after its name nor in a map"
-            problem = f"{shown(unit)!r} is not a unit of {words}" if unit else problem
-            wrong = (columns.source, column) if part.unit is None else (where, f"columns.{name}.unit")
-            raise FileError(*wrong, problem, allowed_units(meaning.unit))
-        with np.errstate(over="ignore"):
-            values = factor * (sign * columns.values[at] + part.offset)
-        farthest = FARTHEST ** max(1.0, meaning.per_second / 2.0)
-        for row in np.flatnonzero(np.abs(values) > farthest)[:1].tolist():
-            problem = f"is {columns.values[at, row]:.6g}, which is too large for {words} of a car"
-            allowed = f"at most {farthest:g} {meaning.unit}, or an empty cell or nan for no number"
-            raise FileError(columns.source, f"{columns.rows[row]}, {column}", problem, allowed)
-        is_said = part.printed is not None
-        last = np.full(len(values), part.printed) if is_said else columns.steps[at]
-        found[words] = Series(
-            name, meaning, values, 0.5 * factor * last, factor, part.accuracy, is_said, unit
+def _series(columns: Columns, at: int, meaning: Meaning, sign: int, part: ColumnSaid, where: str) -> Series:
+    """A column in our units.
+
+    Args:
+        at: its number in the file. part: its entry in the map.
+    """
+    name, source, words = columns.names[at], columns.source, meaning.words
+    column = f"column {shown(name)!r}"
+    if holds := columns.words.get(name):
+        raise FileError(
+            source, column, f"contains {holds}", f'columns of numbers, or is = "{IGNORE}" in a map'
         )
-    return [*found.values()]
+    unit = columns.units[at] if part.unit is None else part.unit
+    factor = factor_of(unit, meaning.unit) if unit else None
+    if factor is None:
+        problem = "its unit is not given, neither after its name nor in a map"
+        problem = f"{shown(unit)!r} is not a unit of {words}" if unit else problem
+        wrong = (source, column) if part.unit is None else (where, f"columns.{name}.unit")
+        raise FileError(*wrong, problem, allowed_units(meaning.unit))
+    with np.errstate(over="ignore"):
+        values = factor * (sign * columns.values[at] + part.offset)
+    for row in np.flatnonzero(np.abs(values) > FARTHEST)[:1].tolist():
+        problem = f"is {columns.values[at, row]:.6g}, which is too large for {words} of a car"
+        allowed = f"at most {FARTHEST:g} {meaning.unit}, or an empty cell or nan for no number"
+        raise FileError(source, f"{columns.rows[row]}, {column}", problem, allowed)
+    steps = columns.steps[at] if part.printed is None else np.full(len(values), part.printed)
+    return Series(name, meaning, values, 0.5 * factor * steps, unit, factor, part)

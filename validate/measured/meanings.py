@@ -16,11 +16,12 @@ from typing import Literal
 
 from pointcoord.effects.registry import QUANTITIES, number_called
 from pointcoord.linkage.topology import Topology
-from validate.formulations.asked_numbers import known_names, per_second
+from validate.formulations.asked_numbers import known_names
 
 AXES = "xyz"
 PLACES = next(q for q, of in QUANTITIES.items() if of.of == "point" and of.unit == "mm")
 TIME, INPUT, TRAVEL, NUMBER, IGNORE, CONTACT = "time", "input", "travel", "number", "ignore", "contact"
+NAMED = 5  # largest number of names in a message
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Meaning:
     @property
     def words(self) -> str:
         """Its full name, as in a map."""
-        if self.kind == "number":
+        if self.kind == NUMBER:
             end = () if self.axis is None else (AXES[self.axis],)
             return ".".join((self.quantity, self.name, *end))
         return TIME if self.kind == TIME else f"{self.kind}.{self.name}"
@@ -58,11 +59,6 @@ class Meaning:
     def drives(self) -> str:
         """The name of the input that it gives; for a travel its full name."""
         return self.words if self.kind == TRAVEL else self.name
-
-    @property
-    def per_second(self) -> int:
-        """The order of its time derivative."""
-        return per_second(self.quantity) if self.quantity else 0
 
 
 def meanings_of(topology: Topology) -> dict[str, Meaning]:
@@ -78,17 +74,17 @@ def meanings_of(topology: Topology) -> dict[str, Meaning]:
     return {one.words: one for one in every}
 
 
-def first_numbers(meanings: Mapping[str, Meaning]) -> list[str]:
-    """The full names of numbers that can be compared, numbers of the car first."""
-    numbers = (one for one in meanings.values() if one.kind == NUMBER)
-    return [one.words for one in sorted(numbers, key=lambda one: one.axis is not None)]
-
-
-def poses_of(topology: Topology) -> str:
-    """The columns that can give the pose of a row, in words."""
+def some_meanings(topology: Topology) -> str:
+    """The possible meanings of a column in words: all that give the pose of a row, and some numbers."""
     inputs = [f"{INPUT}.{name}" for name in topology.inputs]
-    centre = f" such as {TRAVEL}.{topology.wheel_centre}" if topology.wheel_centre else ""
-    return ", ".join((TIME, *inputs, f"{TRAVEL}.POINT{centre}", f"{TRAVEL}.{CONTACT}"))
+    numbers = [one for one in meanings_of(topology).values() if one.kind == NUMBER]
+    some = [one.words for one in sorted(numbers, key=lambda one: one.axis is not None)[:NAMED]]
+    centre, travel = topology.wheel_centre, f"{TRAVEL}.POINT"
+    if centre:
+        some.insert(0, f"{PLACES}.{centre}.z")
+        travel = f"{travel} such as {TRAVEL}.{centre}, {TRAVEL}.{CONTACT}"
+    such = f"QUANTITY.NAME[.AXIS] such as {', '.join(some)}"
+    return f"{', '.join((TIME, *inputs, travel, such))}, or {IGNORE}"
 
 
 def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
@@ -97,13 +93,13 @@ def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
     POINT.AXIS is a position. If there is none, the name is read in small letters, with _ for spaces and
     hyphens.
     """
-    for full in (name, f"{PLACES}.{name}"):
-        if full in meanings:
-            return meanings[full]
-    short = [one for one in meanings.values() if one.name == name and one.axis is None and one.kind != TRAVEL]
-    # The force of a rod may have the name of a wheel angle; the angle is taken.
-    number = number_called(name)
-    short = [one for one in short if number and one.quantity == number.quantity.name] or short
-    if not short and name != (plain := re.sub(r"[\s-]+", "_", name.lower())):
-        return named(plain, meanings)
-    return short[0] if len(short) == 1 else None
+    for one in (name, re.sub(r"[\s-]+", "_", name.lower())):
+        if whole := meanings.get(one) or meanings.get(f"{PLACES}.{one}"):
+            return whole
+        short = [m for m in meanings.values() if m.name == one and m.axis is None and m.kind != TRAVEL]
+        # The force of a rod may have the name of a wheel angle; the angle is taken.
+        number = number_called(one)
+        short = [m for m in short if number and m.quantity == number.quantity.name] or short
+        if len(short) == 1:
+            return short[0]
+    return None

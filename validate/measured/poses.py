@@ -21,40 +21,59 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.numerics.infinitesimal import slope_of
 from pointcoord.poses import PoseSolver
-from pointcoord.scene.mechanism_part import MechanismPart
 from pointcoord.simulation import scene_mechanism
 from pointcoord.sweeping.hardpoint_slopes import ByHardpoints, moves_of, slopes_of_motion, slopes_of_poses
-from validate.arrays import Array, Flags
-from validate.measured.mapping import Measured, Series
+from validate.arrays import Array, Indices
+from validate.formulations.protocol import Numbers, numbers_at
+from validate.measured.mapping import Measured
 from validate.measured.meanings import CONTACT, PLACES, TIME, TRAVEL
+from validate.plain_text import some_of
 from validate.tables.errors import FileError
-
-Numbers = dict[str, dict[str, Array]]
 
 # Largest range of an input to either side of the drawing: an angle, and a length relative to the car's size.
 # No suspension moves farther, and a mistyped row must not cause a long search.
 FARTHEST = {"rad": 1.2, "mm": 0.5}
+NAMED = 3  # largest number of rows or columns named in a note
 
 
 @dataclass(frozen=True)
 class Found:
-    """A car at the rows of a file.
+    """A car at the rows of a file; of N rows R have a pose, and only these have numbers here.
 
     Attributes:
         driven: the car.
-        numbers, bounds: numbers and their error bounds, by quantity and name, (N, 3) or (N,); NaN at rows
-            without a pose.
-        reached: which rows have a pose, (N,).
+        rows: the rows that have a pose, (R,).
         reasons: why a row has no pose, by row.
-        inputs: values of the inputs at each row, (N,); over time, only the time.
+        inputs: values of the inputs, (R,); over time, only the time.
+        numbers: by quantity and name, (R, 3) or (R,).
+        off: error bound of the poses that are solved one by one, (R,), mm.
     """
 
     driven: Driven
-    numbers: Numbers
-    bounds: Numbers
-    reached: Flags
+    rows: Indices
     reasons: Mapping[int, str]
     inputs: Mapping[str, Array]
+    numbers: Numbers
+    off: Array
+
+    def columns(self, numbers: Numbers, *shape: int) -> Array:
+        """Numbers, bounds or slopes, (*shape, R, ...), by the columns of the file, (columns, *shape, N).
+
+        NaN where there are none.
+        """
+        measured = self.driven.measured
+        found = np.full((len(measured.numbers), *shape, len(measured.rows)), np.nan)
+        for column, meaning in zip(found, (s.meaning for s in measured.numbers), strict=True):
+            if (value := numbers.get(meaning.quantity, {}).get(meaning.name)) is not None:
+                column[..., self.rows] = value if meaning.axis is None else value[..., meaning.axis]
+        return found
+
+    @property
+    def left_out(self) -> list[str]:
+        """A note on the rows without a pose, with the reasons of the first few; empty if there are none."""
+        rows = self.driven.measured.rows
+        lost = [f"{rows[i]} ({why})" for i, why in sorted(self.reasons.items())]
+        return [f"rows without a pose are left out: {some_of(lost, NAMED)}"] if lost else []
 
 
 @dataclass(frozen=True)
@@ -62,18 +81,20 @@ class Driven:
     """The car of a scene, driven by the independent columns of a file.
 
     Attributes:
+        measured: the file.
         scene: the scene, asked for all points and for the effects that the file's columns need.
         columns: the input of each independent column, or the time.
         travel: the input that is a travel; empty if there is none.
-        own: if a travel drives the car: the same scene with its own inputs, with which its drawing closes.
+        own: the same scene with its own inputs, with which its drawing closes.
         held: inputs that are fixed by the map, or by the scene at another value than drawn.
         notes: the inputs that the file does not give, in words.
     """
 
+    measured: Measured
     scene: Scene
     columns: tuple[str, ...]
-    travel: str = ""
-    own: Scene | None = None
+    travel: str
+    own: Scene
     held: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
@@ -85,30 +106,25 @@ class Driven:
             FileError: data for a travel are missing, or no input is left to reach it.
             PointcoordError: the hardpoints do not form a mechanism, or the drawing cannot be closed.
         """
-        scene = _asked(scene, measured)
+        own = _asked(scene, measured)
         columns = tuple(s.meaning.drives for s in measured.independent)
         if columns == (TIME,):
-            return cls(scene, columns)
-        given = (*columns, *measured.held)
-        travels = [name for name in given if name.startswith(f"{TRAVEL}.")]
-        if len(travels) > 1:
-            problem = f"{' and '.join(travels)} are several travels in the same rows"
-            raise FileError(measured.source, "", problem, "one travel, given or held")
-        car = cls(scene, columns, held=measured.held)
-        for travel in travels:
-            car = replace(car, scene=_driven_by(scene, travel, given, measured), travel=travel, own=scene)
-        held, notes, topology = dict(measured.held), list[str](), car.scene.mechanism.topology
+            return cls(measured, own, columns, "", own)
+        given = (*columns, *measured.said.held)
+        travel = next((name for name in given if name.startswith(f"{TRAVEL}.")), "")
+        scene = _driven_by(own, travel, given, measured) if travel else own
+        car = cls(measured, scene, columns, travel, own)
+        held, notes, topology = dict(measured.said.held), list[str](), car.scene.mechanism.topology
         for name in topology.required_inputs:
             if name in given:
                 continue
+            value, how, law = car.drawn[name], "as drawn", car.scene.functions[name]
+            constant = float(law.series(car.scene.instants[:1], 0)[0, 0])
+            if law.still and constant != value:
+                held[name] = value = constant
+                how = "as in the scene"
             unit = topology.input_units[name]
-            law = car.scene.functions[name].series(car.scene.instants, 0)[:, 0]
-            if (law == law[0]).all() and law[0] != car.drawn[name]:
-                held[name] = float(law[0])
-                how = f"at {law[0]:.6g} {unit}: as in the scene, because"
-            else:
-                how = f"as drawn, {car.drawn[name]:.6g} {unit}:"
-            notes.append(f"{name} is held {how} the file does not give it")
+            notes.append(f"{name} is held at {value:.6g} {unit}: {how}, because the file does not give it")
         return replace(car, held=held, notes=tuple(notes))
 
     @property
@@ -124,8 +140,7 @@ class Driven:
         Raises:
             SceneError: the hardpoints do not form a mechanism.
         """
-        scene = designs_of(self.scene, offsets=offsets).design(0)
-        own = None if self.own is None else designs_of(self.own, offsets=offsets).design(0)
+        scene, own = (designs_of(one, offsets=offsets).design(0) for one in (self.scene, self.own))
         return replace(self, scene=scene, own=own)
 
     @cached_property
@@ -136,7 +151,7 @@ class Driven:
     @cached_property
     def closing(self) -> PoseSolver:
         """The solver of the poses with the scene's own inputs."""
-        return self.solver if self.own is None else PoseSolver(self.own, scene_mechanism(self.own))
+        return PoseSolver(self.own, scene_mechanism(self.own))
 
     @cached_property
     def drawn(self) -> Mapping[str, float]:
@@ -146,109 +161,104 @@ class Driven:
             found[self.travel] = float(self._risen(self.closing.mechanism, self.closing.closed.y))
         return found
 
-    def _risen(self, mechanism: Mechanism, y: Array) -> Array:
-        """Height of the point of a travel in a pose, y (..., size), above its drawn height, (...), mm."""
-        # As an input a travel counts from the drawing before it is closed.
-        part, point = self.scene.mechanism, self.travel.partition(".")[2]
-        there = {name: place * mechanism.unit[..., None] for name, place in mechanism.places(y).items()}
-        return _height(part, point, there) - _height(part, point, mechanism.drawn_places)
-
     def level(self, name: str) -> float:
         """The input at the zero of its column: for a travel that of the closed drawing, otherwise 0."""
         return self.drawn[name] if name == self.travel else 0.0
 
+    def _risen(self, mechanism: Mechanism, y: Array) -> Array:
+        """Height of the point of the travel in a pose, y (..., size), above its drawn height, (...), mm."""
+        # As an input a travel counts from the drawing before it is closed.
+        there = {name: place * mechanism.unit[..., None] for name, place in mechanism.places(y).items()}
+        return self._height(there) - self._height(mechanism.drawn_places)
+
+    def _height(self, places: Mapping[str, Array]) -> Array:
+        """Height of the travel's point, mm; of a contact: of the lowest point of a thin disc on the wheel."""
+        part, point = self.scene.mechanism, self.travel.partition(".")[2]
+        up = np.array(part.up)
+        if point != CONTACT:
+            return np.asarray(places[point] @ up)
+        inner, outer = part.topology.wheel_axis
+        spin = places[outer] - places[inner]
+        square, lean = np.sum(spin**2, axis=-1), spin @ up
+        radius = part.wheel_radius or 0.0
+        return np.asarray(places[part.topology.wheel_centre] @ up - radius * np.sqrt(1.0 - lean**2 / square))
+
     def inputs(self, values: Sequence[Array]) -> tuple[dict[str, Array], dict[int, str]]:
         """Every input at values of the independent columns, each (N,), and why a row is refused.
 
-        A row is refused, and has the drawn value, where an input is farther from the drawing than FARTHEST,
-        or outside the values that it can have at all.
+        A row is refused where an input is farther from the drawing than FARTHEST, or outside the values that
+        it can have at all.
         """
+        rows, reasons = np.zeros(len(values[0])), dict[int, str]()
         given = {**self.held, **dict(zip(self.columns, values, strict=True))}
-        found = {name: np.full(len(values[0]), value) for name, value in self.drawn.items()}
-        found |= {name: np.full(len(values[0]), value) + self.level(name) for name, value in given.items()}
-        mechanism, reasons = self.solver.mechanism, dict[int, str]()
-        for name, drive in {drive.input: drive for drive in mechanism.topology.drives}.items():
-            drawn = self.drawn[name]
-            wide = FARTHEST[drive.unit] * (float(mechanism.unit) if drive.unit == "mm" else 1.0)
-            beyond = drive.extremes(mechanism.drawing)
-            ends = sorted(float(np.ravel(drive.input_value(end, mechanism.drawing))[0]) for end in beyond)
-            low, high = ends if np.isfinite(ends).all() else (-np.inf, np.inf)
-            low, high = max(low, drawn - wide), min(high, drawn + wide)
-            inside = (found[name] >= low) & (found[name] <= high)
+        found = {name: rows + value for name, value in self.drawn.items()}
+        found |= {name: rows + np.asarray(value) + self.level(name) for name, value in given.items()}
+        for drive in self.solver.mechanism.topology.drives:
+            name, drawn = drive.input, self.drawn[drive.input]
+            wide = FARTHEST[drive.unit] * (float(self.solver.mechanism.unit) if drive.unit == "mm" else 1.0)
+            low, high = max(drive.limits[0], drawn - wide), min(drive.limits[1], drawn + wide)
             why = f"is out of reach; searched from {low:.6g} to {high:.6g}"
-            reasons |= {i: f"{name} = {found[name][i]:.10g} {why}" for i in np.flatnonzero(~inside).tolist()}
-            found[name] = np.where(inside, found[name], drawn)
+            for i in np.flatnonzero((found[name] < low) | (found[name] > high)).tolist():
+                reasons[i] = f"{name} = {found[name][i]:.10g} {why}"
         return found, reasons
-
-    # Our numbers.
 
     @cached_property
     def motion(self) -> Motion:
         """The motion of the scene."""
         return simulate(self.scene)
 
-    def at(self, values: Sequence[Array], tolerance: float | None = None, bounded: bool = True) -> Found:
-        """Our numbers at values of the independent columns, each (N,).
+    def at(self, values: Sequence[Array] = (), tolerance: float | None = None) -> Found:
+        """Our numbers at the rows of the file.
 
         Args:
+            values: values of the independent columns, each (N,); the file's if not given.
             tolerance: tolerance of poses, mm; the scene's own if not given.
-            bounded: whether to compute the error bounds of the numbers.
         """
+        values = values or [s.values for s in self.measured.independent]
         if self.over_time:
-            return self._over_time(values[0], bounded)
-        inputs, refused = self.inputs(values)
-        poses = self.solver.solve(inputs, tolerance)
-        failed = {row: f"is out of reach: {error}" for row, error in poses.failures.items()}
-        reached = poses.solved
-        reached[[*refused]] = False
-        computed = {quantity: channel for quantity, channel in poses.numbers.items() if channel.computed}
-        numbers = spread(computed, reached, reached)
-        found = Found(self, numbers, {}, reached, {**failed, **refused}, inputs)
-        if not (bounded and reached.any()):
-            return found
-        off = np.maximum(poses.bound, poses.carried_bound)
-        return replace(found, bounds=self.within(found, np.where(reached, off, 0.0)))
+            return self._over_time(values[0])
+        inputs, reasons = self.inputs(values)
+        rows = np.setdiff1d(np.arange(len(values[0])), [*reasons])
+        poses = self.solver.solve({name: value[rows] for name, value in inputs.items()}, tolerance)
+        reasons |= {int(rows[i]): f"is out of reach: {error}" for i, error in poses.failures.items()}
+        there = poses.solved
+        rows, off = rows[there], np.maximum(poses.bound, poses.carried_bound)[there]
+        inputs = {name: value[rows] for name, value in inputs.items()}
+        return Found(self, rows, reasons, inputs, numbers_at(poses.numbers, there), off)
 
-    def _over_time(self, times: Array, bounded: bool) -> Found:
+    def _over_time(self, times: Array) -> Found:
         start, stop = self.scene.time.start, self.scene.time.stop
-        reached: Flags = (times >= start) & (times <= stop)
+        there = (times >= start) & (times <= stop)
         why = f"is outside the scene's time, {start:.10g} to {stop:.10g} s"
-        reasons = {int(i): f"t = {times[i]:.10g} s {why}" for i in np.flatnonzero(~reached)}
-        found = Found(self, {}, {}, reached, reasons, {TIME: times})
-        if not reached.any():
-            return found
-        # Samples need instants in ascending order, each once.
-        instants, rows = np.unique(times[reached], return_inverse=True)
-        samples = self.motion.at(instants)
-        proven = self.motion.proof_of(samples, rates=True).proven if bounded else {}
-        bounds = spread({q: proven[q] for q in samples.numbers if q in proven}, reached, rows)
-        return replace(found, numbers=spread(samples.numbers, reached, rows), bounds=bounds)
+        reasons = {i: f"t = {times[i]:.10g} s {why}" for i in np.flatnonzero(~there).tolist()}
+        rows, times = np.flatnonzero(there), times[there]
+        return Found(self, rows, reasons, {TIME: times}, self.motion.at(times).numbers, 0.0 * times)
 
-    def slopes(self, found: Found, coordinates: Sequence[str]) -> Numbers:
-        """Derivatives of our numbers by drawn coordinates, (coordinates, N, 3) or (coordinates, N), per mm.
+    def swings(self, ours: Array, offs: Sequence[Array], tolerance: float | None = None) -> Array:
+        """Largest change of our numbers at either end of the rounding of each independent column.
 
-        An input that the file gives has the same value in every design, but a travel counts from the drawing
-        of the design. An input that is neither given nor held is as drawn. NaN at rows without a pose.
-
-        Raises:
-            AssemblyError: see `slopes_of_poses`.
+        Args:
+            ours: our numbers, (columns, N).
+            offs: rounding error of each independent column, (N,).
+        Returns:
+            Changes, (independent columns, columns, N).
         """
-        inputs = {name: value[found.reached] for name, value in found.inputs.items()}
-        if self.over_time:
-            slopes = slopes_of_motion(self.scene, self.motion.solved, inputs[TIME], coordinates)
-            return spread(slopes.numbers, found.reached, axis=1)
-        levels = {}
-        if self.travel:
-            # The level of a travel changes with the drawing, mm per mm.
-            moved = ByHardpoints(self.closing.readout, moves_of(self.closing.scene, coordinates))
-            closed = moved.at(self.closing.closed.y[None], moved.drawn_inputs, {})
-            levels[self.travel] = slope_of(self._risen(moved.moved, closed.states[0]))[:, 0]
-        drawn = [name for name in self.drawn if name not in (*self.columns, *self.held)]
-        slopes = slopes_of_poses(self.solver, inputs, coordinates, drawn, levels)
-        return spread(slopes.numbers, found.reached, axis=1)
+        values, changes = [s.values for s in self.measured.independent], np.zeros((len(offs), *ours.shape))
+        for i, off in enumerate(offs):
+            for end in (-off, off) if off.any() else ():
+                there = self.at([*values[:i], values[i] + end, *values[i + 1 :]], tolerance)
+                moved = zip(self.measured.numbers, there.columns(there.numbers), ours, strict=True)
+                changes[i] = np.fmax(changes[i], [np.abs(s.apart(new, old)) for s, new, old in moved])
+        return changes
+
+    def bounds(self, found: Found) -> Numbers:
+        """Our error bounds of numbers, in their shapes: over time those that are proven."""
+        if not self.over_time:
+            return self.within(found, found.off)
+        return self.motion.proof_of(self.motion.at(found.inputs[TIME]), rates=True).proven
 
     def within(self, found: Found, off: Array) -> Numbers:
-        """Error bounds of numbers whose points are off by up to `off`, (N,), mm.
+        """Error bounds of numbers whose points are off by up to `off`, (R,), mm.
 
         NaN where points this far off may belong to another pose.
         """
@@ -256,108 +266,61 @@ class Driven:
         from validate.formulations.input_rates import laws_of
         from validate.formulations.stated_accuracy import accuracy_at
 
-        rows, scene = found.reached, self.scene
-        places = {name: place[rows] for name, place in found.numbers[PLACES].items()}
-        inputs = {name: value[rows] for name, value in found.inputs.items()}
+        scene, inputs = self.scene, found.inputs
         if self.over_time:
             laws = laws_of(scene, inputs[TIME])
         else:
             scene = row_by_row(scene, inputs)
-            still = np.zeros((int(rows.sum()), 2))
-            laws = {name: np.column_stack([value, still]) for name, value in inputs.items()}
-        stated = accuracy_at(scene, off[rows], places, laws)
-        bounded = np.ones(int(rows.sum()), dtype=bool) if stated.blind is None else ~stated.blind
-        seen = rows.copy()
-        seen[rows] = bounded
-        return spread(stated.claims, seen, bounded)
+            laws = {name: np.outer(value, [1.0, 0.0, 0.0]) for name, value in inputs.items()}
+        stated = accuracy_at(scene, off, found.numbers[PLACES], laws)
+        seen = np.where(np.asarray(stated.blind, dtype=bool), np.nan, 1.0)
+        return {q: {n: (seen * bound.T).T for n, bound in of.items()} for q, of in stated.claims.items()}
+
+    def slopes(self, found: Found, coordinates: Sequence[str]) -> Numbers:
+        """Derivatives of our numbers by drawn coordinates, (coordinates, R, 3) or (coordinates, R), per mm.
+
+        An input that the file gives has the same value in every design, but a travel counts from the drawing
+        of the design. An input that is neither given nor held is as drawn.
+
+        Raises:
+            AssemblyError: see `slopes_of_poses`.
+        """
+        if self.over_time:
+            return slopes_of_motion(self.scene, self.motion.solved, found.inputs[TIME], coordinates).numbers
+        levels = {}
+        if self.travel:
+            # The level of a travel changes with the drawing, mm per mm.
+            moved = ByHardpoints(self.closing.readout, moves_of(self.closing.scene, coordinates))
+            closed = moved.at(self.closing.closed.y[None], moved.drawn_inputs, {})
+            levels[self.travel] = slope_of(self._risen(moved.moved, closed.states[0]))[:, 0]
+        drawn = [name for name in self.drawn if name not in (*self.columns, *self.held)]
+        return slopes_of_poses(self.solver, found.inputs, coordinates, drawn, levels).numbers
 
 
 def row_by_row(scene: Scene, inputs: Mapping[str, Array]) -> Scene:
     """A scene that passes through values of inputs, each (N,), one row per second."""
-    content = scene.model_dump(exclude_none=True, exclude={"points"})
     count = len(next(iter(inputs.values())))
-    times, laws = np.arange(float(count)), dict[str, Any]()
-    for name, values in inputs.items():
-        # A table needs four values.
-        if count < 4:
-            laws[name] = {"polynomial": np.polynomial.polynomial.polyfit(times, values, count - 1).tolist()}
-        else:
-            laws[name] = {"table": {"times": times.tolist(), "values": values.tolist()}}
-    content["inputs"] = laws
+    # A table needs four values.
+    times = np.arange(float(max(count, 4)))
+    tables = {name: np.resize(values, len(times)).tolist() for name, values in inputs.items()}
+    content = scene.model_dump(exclude_none=True, exclude={"points"})
+    content["inputs"] = {n: {"table": {"times": times.tolist(), "values": v}} for n, v in tables.items()}
     content["time"] = {"start": 0.0, "stop": count - 1.0, "samples": count}
     return Scene.from_mapping(content, scene.title or "scene")
 
 
-def columns_of(
-    series: Sequence[Series], numbers: Mapping[str, Mapping[str, Array]], *shape: int, absent: float = np.nan
-) -> Array:
-    """Our numbers, bounds or slopes for columns of a file, (columns, *shape); `absent` if not computed."""
-    found = np.full((len(series), *shape), absent)
-    for i, meaning in enumerate(s.meaning for s in series):
-        value = numbers.get(meaning.quantity, {}).get(meaning.name)
-        if value is not None:
-            found[i] = value if meaning.axis is None else value[..., meaning.axis]
-    return found
-
-
-def swings(
-    driven: Driven, measured: Measured, offs: Sequence[Array], ours: Array, tolerance: float | None = None
-) -> Array:
-    """Largest change of our numbers at either end of the rounding of each independent column.
-
-    Args:
-        offs: rounding error of each independent column, (N,).
-        ours: our numbers, (columns, N).
-    Returns:
-        Changes, (independent columns, columns, N).
-    """
-    values, changes = [s.values for s in measured.independent], np.zeros((len(offs), *ours.shape))
-    for i, off in enumerate(offs):
-        for end in (-off, off) if off.any() else ():
-            there = driven.at([*values[:i], values[i] + end, *values[i + 1 :]], tolerance, bounded=False)
-            moved = columns_of(measured.numbers, there.numbers, len(off))
-            gaps = [s.apart(*pair) for s, *pair in zip(measured.numbers, moved, ours, strict=True)]
-            changes[i] = np.fmax(changes[i], np.abs(gaps))
-    return changes
-
-
-def spread(
-    numbers: Mapping[str, Mapping[str, Any]], reached: Flags, rows: Any = slice(None), axis: int = 0
-) -> Numbers:
-    """Numbers of some rows as arrays of all rows, NaN elsewhere.
-
-    Args:
-        reached: the rows that have numbers, (N,).
-        rows: which number each of them has; in order if not given.
-        axis: the axis of the rows.
-    """
-
-    def all_rows(array: Any) -> Array:
-        some = np.moveaxis(np.asarray(array), axis, 0)[rows]
-        found = np.full((len(reached), *some.shape[1:]), np.nan)
-        found[reached] = some
-        return np.moveaxis(found, 0, axis)
-
-    return {quantity: {name: all_rows(one) for name, one in of.items()} for quantity, of in numbers.items()}
-
-
 def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measured) -> Scene:
     """A scene that drives a travel instead of the input that moves its wheel up and down."""
-    part, point = scene.mechanism, travel.partition(".")[2]
-    topology, radius = part.topology, part.wheel_radius
+    point, topology, radius = travel.partition(".")[2], scene.mechanism.topology, scene.mechanism.wheel_radius
     table: dict[str, Any] = {"height": point}
     if point == CONTACT:
-        if not topology.wheel_axis:
-            problem = f"{travel} needs the role wheel_axis, which {topology.name!r} does not have"
-            allowed = f"{TRAVEL}.POINT, or wheel_axis under [roles] of the mechanism"
-            raise FileError(measured.source, "", problem, allowed)
         table = {"contact": list(topology.wheel_axis)}
-        radius = measured.rolling_radius if measured.rolling_radius > 0.0 else radius
+        point = topology.wheel_centre
+        radius = measured.said.rolling_radius or radius
         if radius is None:
             problem = f"{travel} needs the wheel's rolling radius"
             raise FileError(measured.source, "", problem, "rolling_radius = MM in a map, above 0")
-    corner = (topology.wheel_centre if point == CONTACT else point).rpartition(".")[0]
-    moving = (*topology.driven_along(BY_TRAVEL, corner), *topology.required_inputs)
+    moving = (*topology.driven_along(BY_TRAVEL, point.rpartition(".")[0]), *topology.required_inputs)
     solved = next((name for name in moving if name not in given), "")
     if not solved:
         problem = f"{travel} needs an input that is not given, and all inputs are given"
@@ -369,27 +332,15 @@ def _driven_by(scene: Scene, travel: str, given: Sequence[str], measured: Measur
     own["inputs"] = own.get("inputs", {}) | {travel: table}
     if radius is not None:
         own["wheel_radius"] = radius
-    content["inputs"] = {n: law for n, law in content["inputs"].items() if n != solved}
+    content["inputs"] = {name: law for name, law in content["inputs"].items() if name != solved}
     content["inputs"][travel] = {"constant": 0.0}
     return Scene.from_mapping(content, scene.title or "scene")
 
 
-def _height(part: MechanismPart, point: str, places: Mapping[str, Array]) -> Array:
-    """Height of a point, mm, or of the contact: the lowest point of a thin disc about the wheel's centre."""
-    up = np.array(part.up)
-    if point != CONTACT:
-        return np.asarray(places[point] @ up)
-    inner, outer = part.topology.wheel_axis
-    spin = places[outer] - places[inner]
-    square, lean = np.sum(spin**2, axis=-1), spin @ up
-    radius = part.wheel_radius or 0.0
-    return np.asarray(places[part.topology.wheel_centre] @ up - radius * np.sqrt(1.0 - lean**2 / square))
-
-
 def _asked(scene: Scene, measured: Measured) -> Scene:
     """The scene with the effects that a file's columns need, and with all points."""
-    gives = {name: effect.gives_numbers(scene.mechanism.topology) for name, effect in EFFECTS.items()}
-    effects, had = dict.fromkeys(scene.effects), scene.mechanism.effects
+    topology, had, effects = scene.mechanism.topology, scene.mechanism.effects, dict.fromkeys(scene.effects)
+    gives = {name: effect.gives_numbers(topology) for name, effect in EFFECTS.items()}
     for quantity, name in dict.fromkeys(s.meaning.row for s in measured.numbers):
         names = {effect: numbers.get(quantity, ()) for effect, numbers in gives.items()}
         giving = [effect for effect, some in names.items() if some is None or name in some]

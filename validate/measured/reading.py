@@ -45,7 +45,7 @@ class Columns:
         values: (columns, rows), NaN for no number.
         steps: unit of the last digit of each number, likewise; 0 for a number written in full.
         rows: name of each row, such as "line 7".
-        words: columns without numbers, with their content in words.
+        words: by name, the columns that are not numbers, with their content in words.
     """
 
     source: str
@@ -74,19 +74,14 @@ def read_columns(path: str) -> Columns:
     try:
         data = b"PAR1" if path.endswith(".parquet") else read_file(path, "the path of a table")
     except SceneError as error:
-        raise FileError(
-            source, "", error.problem, error.allowed or "a table; larger ones as Parquet"
-        ) from None
+        allowed = error.allowed or "a table; larger ones as Parquet"
+        raise FileError(source, "", error.problem, allowed) from None
     if data[:4] == b"PAR1":
         return _parquet(path, source)
     text = text_of(data)
     if text is None:
-        raise FileError(
-            source,
-            "",
-            "contains bytes that are not text",
-            "text, or Parquet; for a workbook, save one sheet as CSV",
-        )
+        allowed = "text, or Parquet; for a workbook, save one sheet as CSV"
+        raise FileError(source, "", "contains bytes that are not text", allowed)
     return columns_of_text(text, source)
 
 
@@ -94,26 +89,24 @@ def _parquet(path: str, source: str) -> Columns:
     parquet = needed(".parquet", "pyarrow.parquet")
     try:
         table = parquet.read_table(path)
-        found = {name_and_unit(name): table.column(i).to_numpy() for i, name in enumerate(table.column_names)}
+        arrays = [column.to_numpy() for column in table.columns]
     # pyarrow's errors have no common base class.
     except Exception as error:
         problem = f"is not a Parquet file that can be read ({' '.join(str(error).split())})"
         raise FileError(source, "", problem, "Parquet, or text") from None
-    words = {name: str(column.dtype) for (name, _), column in found.items() if column.dtype.kind not in "iuf"}
-    if len(words) == len(found) or not table.num_rows:
-        problem = (
-            f"has {table.num_rows} rows, and no numbers in {', '.join(map(shown, words)) or 'no column'}"
-        )
-        raise FileError(source, "", problem, "a column of numbers for each quantity, and at least one row")
-    values, steps = np.full((len(found), table.num_rows), np.nan), np.zeros((len(found), table.num_rows))
-    for i, ((name, _), column) in enumerate(found.items()):
-        if name in words:
+    if not table.num_columns * table.num_rows:
+        raise FileError(source, "", "is empty", "a column for each quantity, and a row for each pose")
+    names, units = zip(*map(name_and_unit, table.column_names), strict=True)
+    values, words = np.full((len(names), table.num_rows), np.nan), dict[str, str]()
+    steps = np.zeros_like(values)
+    for i, (name, array) in enumerate(zip(names, arrays, strict=True)):
+        if array.dtype.kind not in "iuf":
+            words[name] = str(array.dtype)
             continue
-        values[i] = column
-        if column.dtype.kind == "f" and column.dtype.itemsize < 8:
-            # The last digit of single precision is the distance to the next number.
-            steps[i] = np.spacing(np.abs(column))
-    names, units = zip(*found, strict=True)
+        values[i] = array
+        if array.dtype.kind == "f" and array.dtype.itemsize < 8:
+            # The last digit in single precision is the distance to the next number.
+            steps[i] = np.spacing(np.abs(array))
     rows = tuple(f"row {i + 1}" for i in range(table.num_rows))
     return Columns(source, names, units, values, steps, rows, words)
 
@@ -125,35 +118,32 @@ def columns_of_text(text: str, source: str) -> Columns:
         FileError: see `read_columns`.
     """
     lines = lines_of(text)
-    cells = lines.rows
-    if not cells:
-        raise FileError(source, "", "is empty", "a line of names, and a line of numbers for each pose")
+    first = next((i for i, (_, row) in enumerate(lines.rows) if _is_of_numbers(row)), None)
+    if first is None:
+        problem = "has no line of numbers" if lines.rows else "is empty"
+        raise FileError(source, "", problem, "a line of names, and a line of numbers for each pose")
     if lines.mixed:
         problem = "has a decimal comma, and other numbers have decimal points"
         raise FileError(source, f"line {lines.mixed}", problem, "one sign before the decimals")
-    first = next((i for i, (_, row) in enumerate(cells) if _numeric(row)), None)
-    if first is None:
-        raise FileError(source, "", "has no line of numbers", "a line of numbers for each pose")
-    head, rows = [row for _, row in cells[:first]], cells[first:]
+    head, rows = [row for _, row in lines.rows[:first]], lines.rows[first:]
     # Without empty columns after a delimiter at the end of every line.
     width = len(rows[0][1])
     count = 1 + max(i for line in (rows[0][1], *head) for i, cell in enumerate(line[:width]) if cell)
     if not head:
         # numpy and gnuplot write names in the last comment before the numbers.
-        before = [row for number, row in lines.comments if number < rows[0][0]]
-        head = [row for row in before[-1:] if len(joined(row)) == count]
+        before = [joined(row) for number, row in lines.comments if number < rows[0][0]]
+        head = [row for row in before[-1:] if len(row) == count]
     names, units = _names(head, count, source)
-    names = tuple(name or f"column {i + 1}" for i, name in enumerate(names))
     for line, row in rows:
         if len(row) < count or any(row[count:]):
             allowed = f"{count}, one for each of {', '.join(names)}"
             raise FileError(source, f"line {line}", f"has {counted_as(len(row), 'cell')}", allowed)
     words: dict[str, str] = {}
-    read = np.zeros((count, len(rows), 3))
+    read = np.full((count, len(rows), 3), [math.nan, 0.0, 0.0])
     for j, name in enumerate(names):
         some = [row[j] for _, row in rows if row[j].lower() not in NOTHING]
         if some and not any(map(is_number, some)):
-            words[name], read[j, :, 0] = f"{shown(some[0])!r} and the like", np.nan
+            words[name] = f"{shown(some[0])!r} and the like"
         else:
             read[j] = [_number(row[j], source, line, name) for line, row in rows]
     values, decimals, digits = np.moveaxis(read, -1, 0)
@@ -162,53 +152,45 @@ def columns_of_text(text: str, source: str) -> Columns:
     return Columns(source, names, units, values, steps, tuple(f"line {line}" for line, _ in rows), words)
 
 
-def _numeric(row: Sequence[str]) -> bool:
-    """Whether a line is a line of numbers: at least half of its cells are numbers."""
+def _is_of_numbers(row: Sequence[str]) -> bool:
+    """Whether at least half of the cells of a line are numbers."""
     filled = [cell for cell in row if cell.lower() not in NOTHING]
     return bool(filled) and sum(map(is_number, filled)) * 2 >= len(filled)
 
 
 def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines above the numbers; lines with another number of cells are skipped."""
-    short = [row if any(row[count:]) else row[:count] for row in head]
-    wide = [row if len(row) == count else joined(row) for row in short]
-    wide = [row for row in wide if len(row) == count]
+    cut = [row if any(row[count:]) else row[:count] for row in head]
+    wide = [row for row in (row if len(row) == count else joined(row) for row in cut) if len(row) == count]
+    if head and not wide:
+        problem = f"has {count} columns of numbers under {len(joined(head[-1]))} names"
+        raise FileError(source, "names of the columns", problem, "a name for each column")
     if not wide:
-        if head:
-            problem = f"has {count} columns of numbers under {len(joined(head[-1]))} names"
-            raise FileError(source, "names of the columns", problem, "a name for each column")
         return tuple(str(i + 1) for i in range(count)), ("",) * count
+    bare = [[cell.strip("[]() ") for cell in row] for row in wide]
+    of_units = [all(cell in NO_UNIT or is_unit(cell) for cell in row) for row in bare]
     # A spreadsheet pads lines above the names with empty cells: the names are the first of the fullest lines.
-    filled = [0 if _units(row) else sum(map(bool, row)) for row in wide]
+    filled = [0 if units else sum(map(bool, row)) for row, units in zip(wide, of_units, strict=True)]
     first = filled.index(max(filled))
     names, units = (list(part) for part in zip(*map(name_and_unit, wide[first]), strict=True))
-    for row in wide[first + 1 :]:
-        bare = [_bare(cell) for cell in row]
-        wrong = [cell for cell in bare if cell not in NO_UNIT and not is_unit(cell)]
+    for row in bare[first + 1 :]:
+        wrong = [cell for cell in row if cell not in NO_UNIT and not is_unit(cell)]
         if wrong:
             problem = f"contains {shown(wrong[0])!r}, which is not a unit"
             raise FileError(source, "line of units", problem, "mm, deg, rad, s and so on")
-        units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, bare, strict=True)]
-    return tuple(names), tuple(units)
-
-
-def _units(row: Sequence[str]) -> bool:
-    """Whether every cell of a line can be a unit."""
-    return all(cell in NO_UNIT or is_unit(cell) for cell in map(_bare, row))
-
-
-def _bare(cell: str) -> str:
-    return cell.strip("[]() ")
+        units = [unit or (cell if is_unit(cell) else "") for unit, cell in zip(units, row, strict=True)]
+    return tuple(name or f"column {i}" for i, name in enumerate(names, 1)), tuple(units)
 
 
 def name_and_unit(cell: str) -> tuple[str, str]:
     """A name and the unit after it; text in round brackets that is not a unit stays in the name."""
     found = _UNIT_BEHIND.fullmatch(cell.strip())
-    if found is not None and found.group(2) is not None:
-        return found.group(1), found.group(2).strip()
-    if found is not None and is_unit(found.group(3)):
-        return found.group(1), found.group(3).strip()
-    return cell.strip(), ""
+    if found is None:
+        return cell.strip(), ""
+    name, square, round_ = found.groups()
+    if square is None and not is_unit(round_):
+        return cell.strip(), ""
+    return name, (square or round_ or "").strip()
 
 
 def _number(cell: str, source: str, line: int, name: str) -> tuple[float, int, int]:

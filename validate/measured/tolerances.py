@@ -8,8 +8,7 @@ A number q of a file at an independent value x agrees with ours if they differ b
 - S: the effect of the rounding of x, from both ends of the interval of x. To first order it is |q'| h_x, and
   q is monotonic over such a width.
 - a: the accuracy of the file that the user states.
-- b: our error bound. Over time it is proven; over inputs it follows from the proven bound of the pose, and
-  forces have none.
+- b: our error bound. Over time it is proven; over inputs it follows from the proven bound of the pose.
 - 4 eps Q: at most four roundings by reading, unit and sign. Q is the largest number of the quantity, since a
   component is no more accurate than the largest one from which it is computed.
 
@@ -30,170 +29,111 @@ the file can be compared.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from pointcoord.numerics.rounding import EPS
 from validate.arrays import Array
 from validate.comparison.pair import SMALLEST
-from validate.formulations.asked_numbers import is_force
-from validate.formulations.protocol import Accuracy, Solution
-from validate.measured.mapping import Measured, Series
+from validate.measured.mapping import Series
 from validate.measured.meanings import TRAVEL
-from validate.measured.poses import Driven, Found, columns_of, swings
-from validate.plain_text import counted_as, gathered, shown, some_of
+from validate.measured.poses import Found
+from validate.plain_text import gathered
 from validate.tables.errors import FileError
-from validate.toml_written import key_of
 
-OURS = "pointcoord"
-NO_NUMBERS = "no row has a number of it that can be compared"
-NOT_OVER_INPUTS = "rates need a column of time"
-NO_WAY = "forces need a motion through the rows in their order, and there is none"
 # A verdict may not depend on a rounding that is not stated and widens the tolerance by more than this factor.
 WIDER = 10.0
-# Largest number of rows or columns named in a note.
-NAMED = 3
 
 
 @dataclass(frozen=True)
 class Held:
-    """A column of a file with our numbers and tolerances.
+    """A column of a file with our numbers and the parts of their tolerances, each (N,), NaN for no number.
 
     Attributes:
-        ours, tolerance: (N,), NaN where there is nothing to compare.
-        swing: the part S of the tolerance, from the rounding of the independent columns, (N,).
-        supposed: the part of `swing` from columns whose rounding is not stated, (N,).
-        bound: the part b, our error bound, (N,).
-        unknown: why we have no numbers, in words.
+        ours: our numbers.
+        own: the part of the file's numbers, h_q + a + 4 eps Q.
+        swing: the part S, from the rounding of the independent columns.
+        supposed: the part of `swing` from columns whose rounding is not stated.
+        bound: the part b, our error bound.
     """
 
     series: Series
     ours: Array
-    tolerance: Array
+    own: Array
     swing: Array
     supposed: Array
     bound: Array
-    unknown: str = ""
 
     @property
-    def close(self) -> Array:
-        """The tolerance, limited to WIDER times the tolerance without `supposed`, (N,)."""
-        return np.asarray(np.minimum(self.tolerance, WIDER * (self.tolerance - self.supposed)))
+    def tolerance(self) -> Array:
+        """The tolerance of every number, (N,)."""
+        return np.asarray(self.own + self.swing + self.bound)
 
     @property
     def gap(self) -> Array:
-        """The difference of every number, (N,), NaN where there is none."""
+        """The difference of every number, (N,)."""
         return np.abs(self.series.apart(self.ours, self.series.values))
 
     @property
     def share(self) -> Array:
-        """The difference of every number over its tolerance, likewise."""
+        """The difference of every number over its tolerance, (N,)."""
         return np.asarray(self.gap / (self.tolerance + SMALLEST))
 
     @property
-    def counts(self) -> tuple[int, int]:
-        """The number of its values that are compared, and the number of its values."""
+    def compared(self) -> tuple[int, int]:
+        """How many of its values are compared, and how many it has."""
         return int(np.isfinite(self.share).sum()), int(np.isfinite(self.series.values).sum())
 
     @property
-    def few(self) -> bool:
-        """Whether most of its values cannot be compared."""
-        compared, there = self.counts
-        return 2 * compared < there
-
-    @property
     def blind(self) -> bool:
-        """Whether the independent column is too coarse to test it."""
-        ours, swing = (part[np.isfinite(part)] for part in (self.ours, self.swing))
+        """Whether the independent columns are too coarse to test it."""
+        ours, swing = (part[np.isfinite(self.share)] for part in (self.ours, self.swing))
         wide = float(np.ptp(ours)) if len(ours) else 0.0
-        return bool(wide > 0.0 and len(swing) and (swing >= 0.5 * wide).all())
+        return wide > 0.0 and bool((swing >= 0.5 * wide).all())
+
+    def supposes(self, factor: float) -> bool:
+        """Whether a number is within `factor` times its tolerance only because of `supposed`."""
+        close = np.minimum(self.tolerance, WIDER * (self.tolerance - self.supposed))
+        return bool((self.gap > factor * close).any())
 
 
-def held_of(
-    measured: Measured, driven: Driven, accuracy: float | None
-) -> tuple[list[Held], Solution, tuple[str, ...]]:
-    """Every column with our numbers and tolerances, our solution, and notes.
+def held_of(here: Found, accuracy: float | None) -> tuple[list[Held], list[str]]:
+    """Every column of a file with our numbers and tolerances, and a note on an accuracy that is assumed.
 
+    Args:
+        accuracy: error of the file's numbers in addition to their rounding, in the unit of each; None: not
+            stated.
     Raises:
         FileError: no row can be reached.
         MissingLibrary: full digits and numbers over inputs need the extra `validate`.
         PointcoordError: the scene cannot be solved.
     """
-    values, least = [s.values for s in measured.independent], driven.scene.tolerance
-    count = len(measured.rows)
-    here = driven.at(values)
-    notes = [*measured.notes, *driven.notes, *out_of_reach(measured, here)]
-    if not here.reached.any():
+    driven = here.driven
+    measured, e, notes = driven.measured, driven.scene.tolerance, list[str]()
+    if not len(here.rows):
         row = min(here.reasons)
-        problem = f"none of its {counted_as(count, 'row')} can be reached ({here.reasons[row]})"
+        problem = f"none of its rows can be reached ({here.reasons[row]})"
         raise FileError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
-    unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
-    granted, reached_to = here, [s.off for s in measured.independent]
-    if unsaid:
-        granted = replace(here, bounds=driven.within(here, np.full(count, least)))
-        notes.append(_granted(unsaid, measured, least))
-        reached_to = [
-            s.off + least if s.meaning.kind == TRAVEL and not s.off.any() else s.off
-            for s in measured.independent
-        ]
-    ours, bounds = (columns_of(measured.numbers, of, count) for of in (here.numbers, here.bounds))
-    stated = columns_of(measured.numbers, granted.bounds, count, absent=0.0)
-    changes = swings(driven, measured, reached_to, ours)
-    swing = changes.sum(axis=0)
-    supposed = changes[[s.rounded_unasked for s in measured.independent]].sum(axis=0)
-    largest: dict[str, float] = {}
-    for s in measured.numbers:
-        size = float(np.nanmax(np.abs(s.values), initial=0.0))
-        largest[s.meaning.quantity] = max(largest.get(s.meaning.quantity, 0.0), size)
-    found = list[Held]()
-    for i, s in enumerate(measured.numbers):
-        quantity, name = s.meaning.row
-        own = stated[i] if s in unsaid else s.accuracy_or(accuracy or 0.0)
-        allowed = s.off + swing[i] + 4.0 * EPS * largest[quantity] + own + bounds[i]
-        tolerance = np.where(np.isfinite(ours[i]), allowed, np.nan)
-        computed = all(name in of.get(quantity, {}) for of in (here.numbers, here.bounds))
-        unknown = "" if computed else NO_NUMBERS
-        if not (computed or driven.over_time):
-            unknown = NOT_OVER_INPUTS if s.meaning.per_second else NO_WAY if is_force(quantity) else unknown
-        found.append(Held(s, ours[i], tolerance, swing[i], supposed[i], bounds[i], unknown))
-    reasons = gathered((h.unknown, shown(h.series.column)) for h in found if h.unknown)
-    notes += [f"{', '.join(names)} is not tested: {why}" for why, names in reasons.items()]
-    # The columns whose tolerance is larger by the rounding of an independent column than by their own digits.
-    wide = [h for h in found if np.nanmax(h.supposed, initial=0.0) > np.nanmax(h.series.off, initial=0.0)]
-    if wide:
-        names = some_of([shown(h.series.column) for h in wide], NAMED)
-        notes.append(f"{names}: tolerance widened because {rounded(measured)}")
-    claims = {
-        quantity: {name: np.nan_to_num(bound) for name, bound in here.bounds[quantity].items()}
-        for quantity in here.bounds.keys() & here.numbers.keys()
-    }
-    instants = measured.instants
-    own_accuracy = Accuracy(np.ones(len(instants)), claims, proven=True)
-    return found, Solution(OURS, instants, here.numbers, own_accuracy), tuple(notes)
-
-
-def rounded(measured: Measured) -> str:
-    """The independent columns taken as rounded although this is not stated, and the line for a map."""
-    some = [s for s in measured.independent if s.rounded_unasked]
-    given = (f"{shown(s.column)} is given to +-{np.max(s.off) / s.factor:.3g}" for s in some)
-    lines = ", ".join(f"columns.{key_of(shown(s.column))}.printed = 0" for s in some)
-    return f"{' and '.join(given)}; if it is exact as written, add this line to a map: {lines}"
-
-
-def _granted(unsaid: Sequence[Series], measured: Measured, tolerance: float) -> str:
-    names = some_of([shown(s.column) for s in unsaid], NAMED)
-    who = f"{names} {'are' if unsaid[1:] else 'is'}" if len(unsaid) < len(measured.numbers) else "the file is"
-    return (
-        f"tolerances are for points within {tolerance:g} mm, the scene's tolerance, because {who} in full "
-        "digits and no --accuracy is given"
-    )
-
-
-def out_of_reach(measured: Measured, found: Found) -> list[str]:
-    """Notes on rows that are left out, with the reasons of the first few."""
-    lost = sorted(found.reasons)
-    notes = [f"{measured.rows[i]} is left out: {found.reasons[i]}" for i in lost[:NAMED]]
-    others = [measured.rows[i] for i in lost[NAMED:]]
-    return [*notes, f"likewise left out: {some_of(others, NAMED)}"] if others else notes
+    unsaid = [accuracy is None and s.said.accuracy is None and not s.off.any() for s in measured.numbers]
+    offs = [s.off for s in measured.independent]
+    stated = np.array([0.0 * s.values + s.accuracy_or(accuracy or 0.0) for s in measured.numbers])
+    if any(unsaid):
+        of_points = here.columns(driven.within(here, np.full(len(here.rows), e)))
+        stated[unsaid] = of_points[unsaid]
+        for i, s in enumerate(measured.independent):
+            offs[i] = s.off + e * (s.meaning.kind == TRAVEL and not s.off.any())
+        notes.append(
+            f"numbers in full digits are compared as if their points were within {e:g} mm, the scene's "
+            "tolerance, because they are in full digits and no --accuracy is given"
+        )
+    ours, bounds = here.columns(here.numbers), here.columns(driven.bounds(here))
+    changes, supposed = driven.swings(ours, offs), [s.rounded_unasked for s in measured.independent]
+    sizes = gathered((s.meaning.quantity, np.abs(s.values)) for s in measured.numbers)
+    largest = {quantity: float(np.nanmax(np.array(some), initial=0.0)) for quantity, some in sizes.items()}
+    found = [
+        Held(s, ours[i], s.off + own + 4.0 * EPS * largest[s.meaning.quantity], *swings, bounds[i])
+        for i, (s, own) in enumerate(zip(measured.numbers, stated, strict=True))
+        for swings in [(changes[:, i].sum(axis=0), changes[supposed, i].sum(axis=0))]
+    ]
+    return found, notes

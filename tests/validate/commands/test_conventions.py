@@ -11,7 +11,7 @@ from curve_files import compared, verdicts
 from pointcoord import Scene, simulate
 from pointcoord.scene.scene_file import SCENES
 from validate.cli import main
-from validate.curves.numbers import asking_for, numbers_called
+from validate.curves.numbers import asking_for, numbers_chosen
 
 TEXT = (SCENES / "double-wishbone.toml").read_text("utf-8").replace("samples = 101", "samples = 11")
 CAR = Scene.from_mapping(tomllib.loads(TEXT))
@@ -91,6 +91,6 @@ def test_a_scene_says_what_names_mean_in_its_sensitivities_and_pictures(tmp_path
     file, picture = str(tmp_path / "optimumk.toml"), tmp_path / "car.svg"
     assert main(["plot", file, "-o", str(picture), "--quiet"]) == 0
     assert "minus toe by arcsine" in picture.read_text()
-    (toe,) = numbers_called("toe", Scene.load(file))
+    (toe,) = numbers_chosen(["toe"], Scene.load(file), "")
     motion = simulate(asking_for(Scene.load(file), [toe]))
     np.testing.assert_allclose(toe.shown(motion, motion), TOE_OF_OPTIMUMK, rtol=0, atol=1e-12)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from program import short_scene
 
-from pointcoord import NotComputed, Scene, simulate
+from pointcoord import Scene, simulate
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
 from validate.cli import main
 from validate.curves import picture
@@ -39,7 +39,7 @@ def test_few_words_name_the_number_that_the_motion_has() -> None:
     [
         ("double-wishbone", {}, (["camber", "kingpin", "toe", "caster"], ["travel"])),
         ("steer", {}, (["rack"], ["camber", "kingpin"])),
-        ("steer", {"effects": ()}, (["time"], ["wheel_centre.x", "wheel_centre.y", "wheel_centre.z"])),
+        ("steer", {"effects": ()}, (["time"], [f"position.wheel_centre.{axis}" for axis in "xyz"])),
     ],
 )
 def test_without_a_word_the_curves_are_those_of_an_engineer(
@@ -47,7 +47,7 @@ def test_without_a_word_the_curves_are_those_of_an_engineer(
 ) -> None:
     scene = Scene.load(name).model_copy(update=changes)
     curves = usual(scene, simulate(scene), angles_of(scene))
-    assert ([n.short for n in curves.across], [n.short for n in curves.up]) == expected
+    assert ([n.called for n in curves.across], [n.called for n in curves.up]) == expected
 
 
 def test_angles_are_in_degrees_and_each_axis_says_its_sign() -> None:
@@ -61,7 +61,7 @@ def test_angles_are_in_degrees_and_each_axis_says_its_sign() -> None:
 
 
 def test_no_label_of_a_picture_reaches_over_its_edge_or_another_panel() -> None:
-    every = tuple(n for n in NUMBERS if n.of_the_car and n.missing is None)
+    every = tuple(n for n in NUMBERS if n.of_the_car and not n.effect)
     travel, time = found("travel", NUMBERS), found("time", NUMBERS)
     for curves in (Curves(every, travel), Curves(time, every + found("velocity.wheel_centre", NUMBERS))):
         page = picture.figure(curves, lambda n: n.shown(MOTION, MOTION), WISHBONE.title)
@@ -92,10 +92,11 @@ def test_the_same_scene_gives_the_same_bytes_and_titles_files_and_columns_are_te
     assert main(["plot", str(file), "--y", "$\\frac{2$", "-o", str(tmp_path / "a.png")]) == 0
 
 
-def test_what_is_named_is_computed_and_a_point_that_is_not_reported_is_said_how_to_have() -> None:
+def test_what_is_named_is_computed_though_the_scene_does_not_ask_for_it() -> None:
     bounce = Scene.load("bounce")
     assert "toe" in asking_for(bounce, found("toe", numbers_of(bounce))).effects
-    scene = WISHBONE.model_copy(update={"points": ("tie_rod_outer",)})
+    few = WISHBONE.model_copy(update={"points": ("tie_rod_outer",)})
     for words in ("wheel_centre.z", "travel"):
-        with pytest.raises(NotComputed, match="add 'wheel_centre' to the scene's points"):
-            asking_for(scene, found(words, numbers_of(scene)))
+        named = found(words, numbers_of(few))
+        motion = simulate(asking_for(few, named))
+        assert [n.read(motion, motion).tolist() for n in named] == [one.tolist() for one in read(words)]

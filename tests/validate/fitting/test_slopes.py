@@ -44,14 +44,14 @@ def hold_to_cars_drawn_anew(driven: Driven, values: Sequence[Array]) -> None:
     """Slopes along a direction in which all coordinates move, but those that lock the mechanism."""
     scene = driven.scene
     coordinates, size = coordinates_of(scene), size_of(scene)
-    found = driven.at(values, 1e-12, bounded=False)
-    assert found.reached.all(), found.reasons
+    found = driven.at(values, 1e-12)
+    assert not found.reasons, found.reasons
     slopes = driven.slopes(found, coordinates)
     kept = np.isfinite([*slopes["position"].values()]).all(axis=(0, 2, 3))
     assert kept.any()
     along = kept * np.random.default_rng(2).uniform(-1.0, 1.0, len(coordinates))
     offsets = (dict(zip(coordinates, size * STEP * at * along, strict=True)) for at in PLACES)
-    designs = [driven.redrawn(offset).at(values, 1e-12, bounded=False).numbers for offset in offsets]
+    designs = [driven.redrawn(offset).at(values, 1e-12).numbers for offset in offsets]
     numbers, ours, others = ({quantity: dict[str, Array]() for quantity in slopes} for _ in range(3))
     for quantity, of in slopes.items():
         for name, slope in of.items():
