@@ -12,7 +12,7 @@ from pointcoord import Scene
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.hard.answer import Answer
-from validate.hard.case import RIGHT, Case, Expected
+from validate.hard.case import RIGHT, Case, Expected, Setup
 from validate.hard.catalogue import chosen
 
 
@@ -24,15 +24,15 @@ def made_case(
 ) -> Case:
     """A case of one formulation that has these answers by value, or is ended by one."""
 
-    def judge(_: object, value: float, *__: object) -> Answer:
+    def scene(_: object, value: float) -> Setup:
         found = answers[value]
         if isinstance(found, BaseException):
             raise found
-        return found
+        return Setup({}, judge=lambda *_: found)
 
     (one,) = chosen(["arm-hardly-moves"])
     more: dict[str, Any] = {"expected": {of: expected}, "values": tuple(answers), "group": "0. Made"}
-    return replace(one, name=name, scene=lambda *_: {}, judge=judge, **more)
+    return replace(one, name=name, scene=scene, **more)
 
 
 def stand_in(monkeypatch: pytest.MonkeyPatch, solve: Callable[[Scene], Solution], *names: str) -> None:

@@ -14,15 +14,14 @@ further assemblies: the paths are followed from other starts until two runs have
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from validate.arrays import Array
-from validate.assemblies.homotopy import solve_quadratic
+from validate.assemblies.homotopy import Complex, solve_quadratic
 from validate.assemblies.legs import forms
 from validate.extras import needing
 
@@ -32,8 +31,6 @@ with needing("validate.assemblies"):
     from validate.reference import krawczyk
     from validate.reference.errors import NotDecidedError
     from validate.reference.vectors import Scalar
-
-Complex = NDArray[np.complex128]
 
 BITS = 300
 # Radii of discs. Newton's method with BITS bits ends far inside the narrow one. The wide one also contains
@@ -59,67 +56,57 @@ class Assembly:
     real: bool
     drawn: bool
 
-
-@dataclass
-class Counted:
-    """The assemblies found in several runs.
-
-    Attributes:
-        paths: number of paths of each run.
-        candidates: of each run, the number of paths that end at a regular solution that is a pose.
-        certified: of each run, the number of candidates that are proven.
-        assemblies: the distinct assemblies of all runs.
-    """
-
-    paths: int
-    candidates: list[int] = field(default_factory=list)
-    certified: list[int] = field(default_factory=list)
-    assemblies: list[Assembly] = field(default_factory=list)
-
-    @property
-    def real(self) -> int:
-        """The number of assemblies that are proven to be real."""
-        return sum(one.real for one in self.assemblies)
-
-    @property
-    def agreed(self) -> bool:
-        """Whether two runs have each found every known assembly, and certified every candidate."""
-        runs = zip(self.candidates, self.certified, strict=True)
-        return sum(found == proven == len(self.assemblies) for found, proven in runs) >= RUNS
-
-    @property
-    def drawn(self) -> bool:
-        """Whether the drawn assembly was found."""
-        return any(one.drawn for one in self.assemblies)
+    def differs(self, other: Assembly) -> bool:
+        """Whether the two boxes of homogeneous coordinates have no common point."""
+        x, y = self.box, other.box
+        return any(not (x[i] * y[j] - x[j] * y[i]).contains(0) for i, j in combinations(range(len(x)), 2))
 
 
-def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) -> Counted:
+def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) -> dict[str, Any]:
     """Count the assemblies of a mechanism's knuckle with its inputs held.
 
     Args:
         mechanism: as plain data.
         places: position of every point at an assembled pose, mm.
+    Returns:
+        paths: number of paths of each run.
+        candidates: of each run, the number of paths that end at a regular solution that is a pose.
+        certified: of each run, the number of candidates that are proven.
+        distinct, real: number of different assemblies of all runs; of those that are proven to be real.
+        drawn: whether the drawn assembly was found.
+        agreed: whether two runs have each found every known assembly, and certified every candidate.
     Raises:
         NoAnswer: the knuckle is not held by six conditions of the known kinds.
     """
     quadratic = forms(mechanism, places)
-    found = Counted(2 ** len(quadratic))
+    candidates, certified = list[int](), list[int]()
+    known, agreed = list[Assembly](), False
     with ctx.workprec(BITS):
         matrices = [acb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
-        while not found.agreed and len(found.candidates) < MOST_RUNS:
-            ends = solve_quadratic(quadratic, len(found.candidates))
+        while not agreed and len(candidates) < MOST_RUNS:
+            ends = solve_quadratic(quadratic, seed=len(candidates))
             ends = ends[np.abs((ends[:, :4] ** 2).sum(axis=1)) > NO_TURN]
-            proven = [one for one in (_certified(matrices, end) for end in ends) if one is not None]
-            found.candidates.append(len(ends))
-            found.certified.append(len(proven))
+            proven = [one for end in ends if (one := certify(matrices, end)) is not None]
             for one in proven:
-                if all(_apart(one.box, other.box) for other in found.assemblies):
-                    found.assemblies.append(one)
-    return found
+                if all(one.differs(other) for other in known):
+                    known.append(one)
+            candidates.append(len(ends))
+            certified.append(len(proven))
+            runs = zip(candidates, certified, strict=True)
+            agreed = sum(found == right == len(known) for found, right in runs) >= RUNS
+    return {
+        "paths": 2 ** len(quadratic),
+        "candidates": candidates,
+        "certified": certified,
+        "distinct": len(known),
+        "real": sum(one.real for one in known),
+        "drawn": any(one.drawn for one in known),
+        "agreed": agreed,
+    }
 
 
 @dataclass(frozen=True)
-class _Forms(krawczyk.Curve):
+class Forms(krawczyk.Curve):
     """The forms as functions of x, the homogeneous coordinates without the one that is 1. There is no t."""
 
     matrices: Sequence[acb_mat]
@@ -148,10 +135,10 @@ class _Forms(krawczyk.Curve):
         return krawczyk.less(krawczyk.Contraction.at(self, centre, 0, inverse).image(width), width)
 
 
-def _certified(matrices: Sequence[acb_mat], end: Complex) -> Assembly | None:
+def certify(matrices: Sequence[acb_mat], end: Complex) -> Assembly | None:
     """The assembly near the end of a path; None if nothing can be proven."""
     chart = int(np.argmax(np.abs(end)))
-    forms, near = _Forms(matrices, chart), np.delete(end / end[chart], chart)
+    forms, near = Forms(matrices, chart), np.delete(end / end[chart], chart)
     narrow, wide = ([arb(radius)] * len(near) for radius in (NARROW, WIDE))
     try:
         centre, _ = krawczyk.newton(forms, [acb(complex(number)) for number in near], 0)
@@ -166,10 +153,3 @@ def _certified(matrices: Sequence[acb_mat], end: Complex) -> Assembly | None:
         return None
     ball = arb(0, arb(NARROW))
     return Assembly(tuple(forms.whole([x + acb(ball, ball) for x in centre])), real, drawn)
-
-
-def _apart(one: Sequence[acb], other: Sequence[acb]) -> bool:
-    """Whether two boxes of homogeneous coordinates have no common point."""
-    return any(
-        not (one[i] * other[j] - one[j] * other[i]).contains(0) for i, j in combinations(range(len(one)), 2)
-    )

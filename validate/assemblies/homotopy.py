@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.arrays import Array, Flags
+from validate.arrays import Array
 
 Complex = NDArray[np.complex128]
 
@@ -41,16 +41,7 @@ def solve_quadratic(forms: Array, seed: int = 0) -> Complex:
     Returns:
         Ends of paths, unit vectors, (ends, n + 1), without singular solutions and solutions on curves.
     """
-    random = np.random.default_rng(seed)
-    count = len(forms)
-    # Orthonormal lines l, (n + 1, n + 1), and the solutions l_r . x = +-l_0 . x of unit length.
-    shape = (count + 1, count + 1)
-    lines, _ = np.linalg.qr(random.normal(size=shape) + 1j * random.normal(size=shape))
-    signs = 1.0 - 2.0 * ((np.arange(2**count)[:, None] >> np.arange(count)) & 1)
-    x = np.concatenate([np.ones((2**count, 1)), signs], axis=1) / np.sqrt(count + 1.0) @ lines.conj()
-    squares = lines[:, :, None] * lines[:, None, :]
-    factors = np.exp(2j * np.pi * random.uniform(size=(count, 1, 1)))
-    both = np.stack([factors * (squares[1:] - squares[0]), forms])
+    both, x = _started(forms, np.random.default_rng(seed))
     t, step, good = np.zeros(len(x)), np.full(len(x), FIRST), np.zeros(len(x), dtype=int)
     active = np.arange(len(x))
     with np.errstate(all="ignore"):
@@ -58,7 +49,9 @@ def solve_quadratic(forms: Array, seed: int = 0) -> Complex:
             if not len(active):
                 break
             length = np.minimum(step[active], END - t[active])
-            ahead, there = _ahead(both, x[active], t[active], length)
+            ahead = _predicted(both, x[active], t[active], length)
+            ahead, sizes = _corrected(both, ahead, t[active] + length, x[active], NEWTON)
+            there = (sizes[0] < NEAR) & (sizes[-1] < ARRIVED)
             moved, stuck = active[there], active[~there]
             x[moved], t[moved] = ahead[there], t[moved] + length[there]
             good[moved] += 1
@@ -67,7 +60,23 @@ def solve_quadratic(forms: Array, seed: int = 0) -> Complex:
             step[stuck] *= 0.5
             good[grown] = good[stuck] = 0
             active = active[(t[active] < END) & (step[active] > SHORTEST)]
-        return _ends(both, x[t >= END])
+        near, one = x[t >= END], np.ones(np.count_nonzero(t >= END))
+        ends, sizes = _corrected(both, near, one, near, LAST)
+        matrices = _bordered(_at(both, ends, one)[1], near)
+        return np.asarray(ends[(sizes[0] < CLOSE) & (np.linalg.cond(matrices) < SINGULAR)])
+
+
+def _started(forms: Array, random: np.random.Generator) -> tuple[Complex, Complex]:
+    """The forms at t = 0 and at t = 1, (2, n, n + 1, n + 1), and the solutions at t = 0, (2^n, n + 1)."""
+    count = len(forms)
+    # Orthonormal lines l, (n + 1, n + 1), and the solutions l_r . x = +-l_0 . x of unit length.
+    shape = (count + 1, count + 1)
+    lines, _ = np.linalg.qr(random.normal(size=shape) + 1j * random.normal(size=shape))
+    signs = 1.0 - 2.0 * ((np.arange(2**count)[:, None] >> np.arange(count)) & 1)
+    x = np.concatenate([np.ones((2**count, 1)), signs], axis=1) / np.sqrt(count + 1.0) @ lines.conj()
+    squares = lines[:, :, None] * lines[:, None, :]
+    factors = np.exp(2j * np.pi * random.uniform(size=(count, 1, 1)))
+    return np.stack([factors * (squares[1:] - squares[0]), forms]), x
 
 
 def _at(both: Complex, x: Complex, t: Array) -> tuple[Complex, Complex, Complex]:
@@ -78,8 +87,8 @@ def _at(both: Complex, x: Complex, t: Array) -> tuple[Complex, Complex, Complex]
     return value, 2.0 * row, change
 
 
-def _ahead(both: Complex, x: Complex, t: Array, step: Array) -> tuple[Complex, Flags]:
-    """Unit vectors after a step of each path, and the paths whose Newton steps converged."""
+def _predicted(both: Complex, x: Complex, t: Array, step: Array) -> Complex:
+    """Points after a Runge-Kutta step of each path."""
 
     def tangent(y: Complex, share: float) -> Complex:
         _, rows, change = _at(both, y, t + share * step)
@@ -90,29 +99,20 @@ def _ahead(both: Complex, x: Complex, t: Array, step: Array) -> tuple[Complex, F
     second = tangent(x + 0.5 * along * first, 0.5)
     third = tangent(x + 0.5 * along * second, 0.5)
     fourth = tangent(x + along * third, 1.0)
-    y = x + along * (first + 2.0 * second + 2.0 * third + fourth) / 6.0
-    y, sizes = _newton(both, y, t + step, x, NEWTON)
-    return y / np.linalg.norm(y, axis=1, keepdims=True), (sizes[0] < NEAR) & (sizes[-1] < ARRIVED)
+    return x + along * (first + 2.0 * second + 2.0 * third + fourth) / 6.0
 
 
-def _ends(both: Complex, x: Complex) -> Complex:
-    """The regular solutions at t = 1 to which Newton's method converges."""
-    one = np.ones(len(x))
-    y, sizes = _newton(both, x, one, x, LAST)
-    _, rows, _ = _at(both, y, one)
-    regular = (sizes[0] < CLOSE) & (np.linalg.cond(_bordered(rows, x)) < SINGULAR)
-    return np.asarray((y / np.linalg.norm(y, axis=1, keepdims=True))[regular])
-
-
-def _newton(both: Complex, y: Complex, t: Array, normal: Complex, steps: int) -> tuple[Complex, list[Array]]:
-    """Points after some Newton steps at right angles to a vector, and the relative length of each step."""
+def _corrected(
+    both: Complex, y: Complex, t: Array, normal: Complex, steps: int
+) -> tuple[Complex, list[Array]]:
+    """Unit vectors after Newton steps at right angles to a vector, and the relative length of each step."""
     sizes = []
     for _ in range(steps):
         value, rows, _ = _at(both, y, t)
         change = _solved(rows, normal, -value)
         y = y + change
         sizes.append(np.linalg.norm(change, axis=1) / np.linalg.norm(y, axis=1))
-    return y, sizes
+    return y / np.linalg.norm(y, axis=1, keepdims=True), sizes
 
 
 def _bordered(rows: Complex, normal: Complex) -> Complex:

@@ -38,16 +38,11 @@ CONDITIONS = 6
 UNIT, NONE = np.eye(4), np.zeros((4, 4))
 
 
-def _before(vector: Array) -> Array:
-    """The matrix of q -> v q."""
+def _product(vector: Array, order: int) -> Array:
+    """The matrix of q -> v q for order 1, of q -> q v for order -1."""
     x, y, z = vector
-    return np.array([[0, -x, -y, -z], [x, 0, -z, y], [y, z, 0, -x], [z, -y, x, 0]])
-
-
-def _after(vector: Array) -> Array:
-    """The matrix of q -> q v."""
-    x, y, z = vector
-    return np.array([[0, -x, -y, -z], [x, 0, z, -y], [y, -z, 0, x], [z, y, -x, 0]])
+    turn = order * np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.block([[np.zeros(1), -vector], [vector[:, None], turn]])
 
 
 def _form(turns: Array, both: Array, moves: Array = NONE) -> Array:
@@ -121,18 +116,18 @@ def _conditions(mechanism: Mapping[str, Any], knuckle: str, at: Mapping[str, Arr
 
 def at_distance(point: Array, fixed: Array) -> Array:
     """A point of the body keeps its distance from a fixed one."""
-    x, y = _after(point), _before(fixed)
+    x, y = _product(point, -1), _product(fixed, 1)
     away = point - fixed
     return _form((point @ point + fixed @ fixed - away @ away) * UNIT - 2 * y.T @ x, 4 * (x - y).T, 4 * UNIT)
 
 
 def on_plane(point: Array, normal: Array) -> Array:
     """A point of the body stays on the plane through it with a fixed normal."""
-    n = _before(normal)
-    return _form(n.T @ _after(point) - (normal @ point) * UNIT, 2 * n.T)
+    n = _product(normal, 1)
+    return _form(n.T @ _product(point, -1) - (normal @ point) * UNIT, 2 * n.T)
 
 
 def on_plane_of_body(fixed: Array, normal: Array) -> Array:
     """A fixed point stays on a plane that moves with the body, through the point at the pose."""
-    b = _after(normal)
-    return _form(b.T @ _before(fixed) - (normal @ fixed) * UNIT, -2 * b.T)
+    b = _product(normal, -1)
+    return _form(b.T @ _product(fixed, 1) - (normal @ fixed) * UNIT, -2 * b.T)

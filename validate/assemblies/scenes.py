@@ -14,12 +14,8 @@ from validate.output.table import Part, Table
 
 SHIPPED = ("bounce", "off-axis-strut", "double-wishbone", "five-link")
 NUMBERS = ("paths", "candidates", "certified", "distinct", "real")
-
-
 Count = dict[str, Any]
-"""A count as plain data: scene and held inputs, with `NUMBERS` of its runs, whether two runs agree and the
-drawn assembly is found; or with the reason why there is no count.
-"""
+"""Scene, held inputs, and the result of `count_assemblies`, or the reason why there is no count."""
 
 
 def counts(name: str) -> Iterator[Count]:
@@ -33,15 +29,11 @@ def counts(name: str) -> Iterator[Count]:
         there = scene.model_copy(update={"inputs": {one: {"constant": "drawn"} for one in held}})
         drawn = {one: law.series(0.0, 0)[0] for one, law in there.functions.items()}
         places = {point: np.array(at) for point, at in solve_poses(there, drawn).position.items()}
-        where: Count = {"scene": name, "held": list(held)}
         try:
-            one = count_assemblies(there.mechanism.plain(held), places)
+            found = count_assemblies(there.mechanism.plain(held), places)
         except NoAnswer as error:
-            yield where | {"reason": str(error)}
-        else:
-            numbers = (one.paths, one.candidates, one.certified, len(one.assemblies), one.real)
-            found = dict(zip(NUMBERS, numbers, strict=True))
-            yield {**where, **found, "drawn": one.drawn, "agreed": one.agreed}
+            found = {"reason": str(error)}
+        yield {"scene": name, "held": list(held), **found}
 
 
 def complete(found: Sequence[Count]) -> bool:
@@ -54,27 +46,20 @@ def _ways_to_hold(scene: Scene) -> list[tuple[str, ...]]:
     known = scene.mechanism.structure.inputs
     steering = tuple(name for name in scene.inputs if known[name].named("slide"))
     own = [name for name in scene.inputs if name not in steering and not known[name].moves_the_chassis]
-    if len(own) != 1:
-        return [(*own, *steering)]
-    others = [name for name, one in known.items() if one.kind in ("arm", "height")]
-    return [(name, *steering) for name in dict.fromkeys((*own, *others))]
+    others = [name for name, one in known.items() if one.kind in ("arm", "height")] if len(own) == 1 else []
+    ways = [tuple(own), *((other,) for other in others if other not in own)]
+    return [(*way, *steering) for way in ways]
 
 
 def parts(found: Sequence[Count]) -> tuple[Part, ...]:
     """The counts as a table, and the reasons of those that are missing."""
-    rows = tuple(
-        (
-            *(one["scene"], " ".join(one["held"])),
-            *(str(one[name]).strip("[]").replace(",", "") for name in NUMBERS),
-            "real" if one["drawn"] else "not found",
-        )
-        for one in found
-        if "reason" not in one
-    )
-    why = (
-        f"{one['scene']}, {' and '.join(one['held'])}: not counted: {one['reason']}"
-        for one in found
-        if "reason" in one
-    )
+    rows, missing = list[tuple[str, ...]](), list[str]()
+    for one in found:
+        if "reason" in one:
+            missing.append(f"{one['scene']}, {' and '.join(one['held'])}: not counted: {one['reason']}")
+            continue
+        numbers = (str(one[name]).strip("[]").replace(",", "") for name in NUMBERS)
+        drawn = "real" if one["drawn"] else "not found"
+        rows.append((one["scene"], " ".join(one["held"]), *numbers, drawn))
     head = ("scene", "held", *NUMBERS, "the drawing's")
-    return (*([Table(head, rows)] if rows else ()), *why)
+    return (*([Table(head, tuple(rows))] if rows else ()), *missing)

@@ -1,4 +1,4 @@
-"""All hard cases, in the order of their groups."""
+"""All hard cases, the cases of a group together."""
 
 from __future__ import annotations
 
@@ -7,10 +7,15 @@ from difflib import get_close_matches
 
 from validate.errors import UsageError
 from validate.hard.case import Case
-from validate.hard.cases import body_rates, branches, ends, laws, links, numbers, placed, points, regressions
+from validate.hard.cases import branches, drawings, ends, links, motions, numbers
+from validate.plain_text import gathered
 
-MODULES = (ends, body_rates, points, placed, laws, branches, links, numbers, regressions)
-CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
+MODULES = (ends, motions, drawings, branches, links, numbers)
+CASES: tuple[Case, ...] = tuple(
+    case
+    for group in gathered((case.group, case) for module in MODULES for case in module.CASES).values()
+    for case in group
+)
 
 
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:

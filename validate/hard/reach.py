@@ -22,15 +22,15 @@ import numpy as np
 from pointcoord import AssemblyError, Scene
 from pointcoord.drawing_stands import End as SeenEnd
 from pointcoord.drawing_stands import reach_of
-from pointcoord.numerics.rounding import EPS
 from validate.cars.car import Law
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
-from validate.formulations.reference_solution import inputs_at, reference_instant
-from validate.hard.answer import Answer, Trial
+from validate.formulations.reference_solution import reference_instant, reference_solution
+from validate.hard.answer import Answer, Outcome, Trial, judged_answer
+from validate.hard.case import Setup
 from validate.hard.subjects import Content, Subject, drawn_at
 from validate.plain_text import named
-from validate.reference import Design, InfeasibleError, NoReferenceError
+from validate.reference import Design, InfeasibleError
 from validate.reference.exact import as_fraction
 from validate.reference.route import CLEAR, reached
 
@@ -38,7 +38,6 @@ FIRST = 5  # the links that lie in line are among so many that an error names fi
 NEAR = 1e-6  # largest error of pointcoord's end, as a share of the range
 BEYOND = 1e-3  # how far beyond pointcoord's end the reference is driven, as a share of the range
 SHARE = 1e-9  # accuracy of the end that a refusal gives, as a share of the range
-Inputs = Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -60,49 +59,30 @@ class LastValue:
         return float(self.value + (1 if self.ahead else -1) * Fraction(share) * Fraction(self.reach))
 
 
-def last_value(subject: Subject, driven: str, ahead: bool, held: Inputs | None = None) -> LastValue:
+@cache
+def last_value(subject: Subject, driven: str, ahead: bool, held: tuple[float, ...] = ()) -> LastValue:
     """The end of an input.
 
     Args:
         ahead: whether the upper end is wanted.
-        held: values of all inputs within their ranges, from which this input is driven; `home` if not given.
+        held: value of each input within its range, from which this input is driven; `home` if not given.
     Raises:
         ValueError: the reference finds no end near pointcoord's end.
     """
-    there = held or subject.home
-    return _last_value(subject, driven, ahead, tuple(there[name] for name in subject.driven))
-
-
-def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
-    """The ends of a mechanism's inputs, with the others as drawn: the input, and whether it is the upper end.
-
-    Inputs of the kind `turn` are left out: they have no end, or end where something else locks.
-    """
-    drawn = tuple(subject.drawn[name] for name in subject.driven)
-    return tuple(
-        (name, bool(ahead))
-        for name in subject.driven
-        if not subject.is_a("turn", name)
-        for ahead, end in enumerate(_seen(subject, name, drawn))
-        if end.limits
-    )
-
-
-@cache
-def _last_value(subject: Subject, driven: str, ahead: bool, values: tuple[float, ...]) -> LastValue:
-    held = dict(zip(subject.driven, values, strict=True))
-    low, high = _seen(subject, driven, values)
+    held = held or tuple(subject.home.values())
+    low, high = _seen(subject, driven, held)
     reach, seen = high.value - low.value, Fraction((low, high)[ahead].value)
+    inputs: dict[str, Any] = dict(zip(subject.driven, held, strict=True))
     # Redrawn at the pose of the held inputs, to many digits, so that one input alone leads from there to its
     # end.
     plain = subject.plain
-    if held != subject.drawn:
-        pose = reference_instant(subject.scene, {name: (value, 0, 0) for name, value in held.items()})
+    if inputs != subject.drawn:
+        pose = reference_instant(subject.scene, {name: (value, 0, 0) for name, value in inputs.items()})
         plain["points"] = {name: pose.position[name] for name in plain["points"]}
     design = Design.from_plain(plain)
-    beyond = {**held, driven: seen + Fraction(BEYOND * (reach if ahead else -reach))}
+    inputs[driven] = seen + Fraction(BEYOND * (reach if ahead else -reach))
     try:
-        reached(design, CLEAR, design.driven({name: (value, 0, 0) for name, value in beyond.items()}))
+        reached(design, CLEAR, design.driven({name: (value, 0, 0) for name, value in inputs.items()}))
     except InfeasibleError as fold:
         end = as_fraction(fold.inputs[driven], driven)
         if abs(end - seen) <= Fraction(NEAR * reach):
@@ -110,12 +90,26 @@ def _last_value(subject: Subject, driven: str, ahead: bool, values: tuple[float,
     raise ValueError(f"{driven} of {subject.name!r} has no end near {float(seen)!r}")
 
 
+def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
+    """The ends of a mechanism's inputs, with the others as drawn: the input, and whether it is the upper end.
+
+    Inputs of the kind `turn` are left out: they have no end, or end where something else locks.
+    """
+    return tuple(
+        (name, bool(ahead))
+        for name in subject.driven
+        if subject.inputs[name].kind != "turn"
+        for ahead, end in enumerate(_seen(subject, name, tuple(subject.drawn.values())))
+        if end.limits
+    )
+
+
 @cache
-def _seen(subject: Subject, driven: str, values: tuple[float, ...]) -> tuple[SeenEnd, SeenEnd]:
+def _seen(subject: Subject, driven: str, held: tuple[float, ...]) -> tuple[SeenEnd, SeenEnd]:
     """Both ends of an input as pointcoord finds them, with the other inputs held at these values."""
-    held = dict(zip(subject.driven, values, strict=True))
-    there = subject.car if held == subject.drawn else drawn_at(subject.car, held)
-    return reach_of(Scene.from_mapping(subject.absolute(held, there)), driven)
+    inputs = dict(zip(subject.driven, held, strict=True))
+    there = subject.car if inputs == subject.drawn else drawn_at(subject.car, inputs)
+    return reach_of(Scene.from_mapping(subject.absolute(inputs, there)), driven)
 
 
 @dataclass(frozen=True)
@@ -137,14 +131,14 @@ class End:
     moving: bool = True
 
     @property
-    def start(self) -> Inputs:
+    def start(self) -> Mapping[str, float]:
         """The inputs from which the end is passed; without a motion the drawn ones, so that one differs."""
         return self.subject.home if self.moving else self.subject.drawn
 
     @property
     def last(self) -> LastValue:
         """The true last value."""
-        return last_value(self.subject, self.driven, self.ahead, self.start)
+        return last_value(self.subject, self.driven, self.ahead, tuple(self.start.values()))
 
     def near(self, _: Subject, value: float) -> Content:
         """The scene of an input held short of its end, or moving there from the middle of its range."""
@@ -154,89 +148,74 @@ class End:
         inputs = {**self.subject.home, self.driven: way}
         return self.subject.absolute(inputs, stop=1.0 if self.moving else None)
 
-    def beyond(self, _: Subject, overshoot: float) -> Content:
+    def beyond(self, _: Subject, overshoot: float) -> Setup:
         """The scene that drives the input beyond its end by a share of its range, an arm to 0 or pi."""
         last, start = self.last, self.start[self.driven]
         goal = last.beyond(overshoot)
-        if self.subject.is_a("arm", self.driven):
+        if self.subject.inputs[self.driven].kind == "arm":
             room = float(abs(Fraction(np.pi if self.ahead else 0.0) - last.value))
             # The whole room ends at 0 or pi, and rounding must not lead beyond.
             goal = min(max(last.beyond(overshoot * room / last.reach), 0.0), np.pi)
         way: Law = (start, goal - start) if self.moving else goal
         stop, samples = (1.0, 5) if self.moving else (0.0, 1)
-        return self.subject.absolute({**self.start, self.driven: way}, stop=stop, samples=samples)
+        content = self.subject.absolute({**self.start, self.driven: way}, stop=stop, samples=samples)
+        return Setup(content, {"end [mm or rad]": float(last.value)}, self.judge)
 
-    def judge(self, _: Subject, overshoot: float, trial: Trial, answer: Answer) -> Answer:
+    def judge(self, trial: Trial, answer: Answer) -> Answer:
         """Compare a refusal with the true end; an answer that the reference confirms is unjudged."""
-        came = trial.came.get(answer.formulation)
-        if trial.scene is not None and isinstance(came, FormulationError):
-            return refusal_held(came, trial.scene, self)
-        lost = "rounding removed the overshoot: there is a pose"
-        return replace(answer, outcome="unjudged", reason=lost) if answer.outcome == "right" else answer
+        came, scene = trial.came.get(answer.formulation), trial.scene
+        if scene is None or not isinstance(came, FormulationError):
+            lost = "rounding removed the overshoot: there is a pose"
+            return replace(answer, outcome="unjudged", reason=lost) if answer.outcome == "right" else answer
+        faults = "; ".join(self._faults(came, scene))
+        outcome: Outcome = "wrong" if faults else "right"
+        words, condition = " ".join(str(came.reason).split()), getattr(came.reason, "condition", None)
+        judged = replace(answer, outcome=outcome, reason=faults or words, condition=condition)
+        if (stop := getattr(came.reason, "reached", {}).get(self.driven)) is None:
+            return judged
+        error, bound = float(abs(Fraction(stop) - self.last.value)), SHARE * self.last.reach
+        return replace(judged, error=error, bound=bound, share=error / bound)
 
-
-def refusal_held(refusal: FormulationError, scene: Scene, end: End) -> Answer:
-    """Compare a refusal with the true end; it is right if it has no fault."""
-    reason: Any = refusal.reason
-    reached: Inputs = getattr(reason, "reached", {})
-    sizes = dict[str, float]()
-    if end.driven in reached:
-        last = end.last
-        error, bound = float(abs(Fraction(reached[end.driven]) - last.value)), SHARE * last.reach
-        sizes = {"error": error, "bound": bound, "share": error / bound}
-        stops = f"stops at {end.driven} = {reached[end.driven]!r}, not {float(last.value)!r}"
-        kept = fault_of_kept(refusal, scene, float(last.value), end.driven) if end.moving else ""
-        faults = (
-            [stops] * (error > bound) + list(_faults_of_words(reason, reached, end)) + [kept] * bool(kept)
-        )
-    else:
-        faults = [f"does not say how far it came: {named(reason)}"]
-    words, condition = "; ".join(faults) or " ".join(str(reason).split()), getattr(reason, "condition", None)
-    return Answer(refusal.formulation, "wrong" if faults else "right", words, condition=condition, **sizes)
-
-
-def _faults_of_words(reason: Any, reached: Inputs, end: End) -> Iterator[str]:
-    """The facts that an error does not state, or states wrongly."""
-    driven, last = end.driven, end.last
-    wanted: Inputs = getattr(reason, "wanted", getattr(reason, "inputs", {}))
-    for other, held in end.start.items():
-        # A held input does not move; its value is computed back through a cosine and its inverse.
-        if other != driven and abs(reached[other] - held) > SHARE * max(1.0, abs(held)):
-            yield f"the error gives {other} = {reached[other]!r} at the end, but it is held at {held!r}"
-    if (wanted[driven] - float(last.value)) * (1.0 if end.ahead else -1.0) <= -SHARE * last.reach:
-        yield f"the value asked for, {wanted[driven]!r}, lies before the end"
-    of_pointcoord = isinstance(reason, AssemblyError)
-    for values in (wanted, reached) if of_pointcoord else (wanted,):
-        # The models print ten or twelve digits.
-        if not any(f"{driven} = {values[driven]:.{digits}g}" in str(reason) for digits in (10, 12)):
-            yield f"the message does not contain {driven} = {values[driven]:.10g}"
-    if of_pointcoord and reason.reduce != driven:
-        yield f"the error advises to reduce {reason.reduce!r}, but {driven!r} was driven"
-    if of_pointcoord and not (reason.limits and {*end.links} <= {*reason.limits[:FIRST]}):
-        yield f"the links named are not those that lie in line: {', '.join(reason.limits[:3])}"
+    def _faults(self, refusal: FormulationError, scene: Scene) -> Iterator[str]:
+        """What a refusal does not state, or states wrongly; and the fault of the motion that it keeps."""
+        reason: Any = refusal.reason
+        driven, last, reached = self.driven, self.last, getattr(reason, "reached", {})
+        if driven not in reached:
+            yield f"does not say how far it came: {named(reason)}"
+            return
+        if abs(Fraction(reached[driven]) - last.value) > SHARE * last.reach:
+            yield f"stops at {driven} = {reached[driven]!r}, not {float(last.value)!r}"
+        for other, held in self.start.items():
+            # A held input does not move; its value is computed back through a cosine and its inverse.
+            if other != driven and abs(reached[other] - held) > SHARE * max(1.0, abs(held)):
+                yield f"the error gives {other} = {reached[other]!r} at the end, but it is held at {held!r}"
+        wanted = getattr(reason, "wanted", getattr(reason, "inputs", {}))
+        if (wanted[driven] - float(last.value)) * (1.0 if self.ahead else -1.0) <= -SHARE * last.reach:
+            yield f"the value asked for, {wanted[driven]!r}, lies before the end"
+        of_pointcoord = isinstance(reason, AssemblyError)
+        for values in (wanted, reached) if of_pointcoord else (wanted,):
+            # The models print ten or twelve digits.
+            if not any(f"{driven} = {values[driven]:.{digits}g}" in str(reason) for digits in (10, 12)):
+                yield f"the message does not contain {driven} = {values[driven]:.10g}"
+        if of_pointcoord and reason.reduce != driven:
+            yield f"the error advises to reduce {reason.reduce!r}, but {driven!r} was driven"
+        if of_pointcoord and not (reason.limits and {*self.links} <= {*reason.limits[:FIRST]}):
+            yield f"the links named are not those that lie in line: {', '.join(reason.limits[:3])}"
+        if self.moving and (fault := fault_of_kept(refusal, scene, float(last.value), driven)):
+            yield fault
 
 
 def fault_of_kept(refusal: FormulationError, scene: Scene, end: float, driven: str) -> str:
     """The fault of the motion that a refusal keeps; empty if there is none.
 
-    The kept motion must have every instant before the end of the driven input. The error of every point must
-    be within its error bound plus the rounding of the reference to doubles.
+    The kept motion must have every instant before the end of the driven input, with right numbers.
     """
     values = rates(scene.inputs[driven], scene.instants)[:, 0]
     before = scene.instants[np.abs(values - values[0]) < abs(end - values[0])]
     kept = refusal.partial
-    if kept is None:
-        return "the motion up to the end is not kept" if len(before) else ""
-    if len(kept.times) != len(before):
-        return f"{len(kept.times)} instants are kept, and {len(before)} lie before the end"
-    for index, time in enumerate(before.tolist()):
-        try:
-            reference = reference_instant(scene, inputs_at(scene, time))
-        except NoReferenceError as error:
-            return f"the kept instant {index} has no reference: {error}"
-        for name, places in kept.position.items():
-            true = np.array(reference.position[name], dtype=float)
-            off = np.abs(places[index] - true)
-            if not (off <= kept.accuracy.claims["position"][name][index] + EPS * np.abs(true)).all():
-                return f"{name} of the kept instant {index} has an error of {off.max():.3g} mm"
-    return ""
+    if kept is None or len(kept.times) != len(before):
+        return f"{len(kept.times) if kept else 0} instants are kept, and {len(before)} lie before the end"
+    time = scene.time.model_copy(update={"stop": float(before[-1]), "samples": len(before)})
+    there = scene.model_copy(update={"time": time})
+    answer = judged_answer(there, kept, reference_solution(there, exact_sides=True))
+    return "" if answer.outcome == "right" else f"of the kept motion: {answer.reason}"

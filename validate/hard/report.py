@@ -6,13 +6,12 @@ import time
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from itertools import groupby
 from typing import Any, get_args
 
 from validate.hard.answer import MAP, Answer, Outcome, Trial
 from validate.hard.case import Case
 from validate.output.table import Part, Table
-from validate.plain_text import counted_as
+from validate.plain_text import counted_as, gathered
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table
@@ -60,10 +59,8 @@ def examine(case: Case) -> Examined:
 
 def counts(results: Iterable[Examined]) -> dict[str, Counter[Outcome]]:
     """Numbers of answers by formulation and outcome."""
-    found: dict[str, Counter[Outcome]] = {}
-    for _, answer in (one for result in results for one in result.answers()):
-        found.setdefault(answer.formulation, Counter())[answer.outcome] += 1
-    return found
+    answers = ((a.formulation, a.outcome) for result in results for _, a in result.answers())
+    return {name: Counter(outcomes) for name, outcomes in gathered(answers).items()}
 
 
 def as_expected(results: Iterable[Examined]) -> bool:
@@ -73,9 +70,8 @@ def as_expected(results: Iterable[Examined]) -> bool:
 
 def listing(cases: Sequence[Case]) -> str:
     """Names of cases and why they are hard, under the headings of their groups."""
-    groups = groupby(cases, lambda case: case.group)
-    texts = ("\n".join((group, *(f"  {one.name}: {one.why}" for one in some))) for group, some in groups)
-    return "\n\n".join(texts)
+    groups = gathered((case.group, f"  {case.name}: {case.why}") for case in cases)
+    return "\n\n".join("\n".join((group, *lines)) for group, lines in groups.items())
 
 
 def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
@@ -86,13 +82,13 @@ def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
     rows = []
     for name, found in counts([result]).items():
         given = result.answers(name)
-        unlike = any(answer.formulation == name for _, answer in result.unexpected)
-        refused = [(value, a) for value, a in given if a.outcome == "refused"]
-        verdict = "NOT as expected" if unlike else "as expected"
-        verdict += "".join(f"; first refusal at {value:g}: {short(a.reason)}" for value, a in refused[:1])
-        digits = _digits([answer for _, answer in given])
-        rows.append((name, str(len(given)), *_outcomes(found), *digits, verdict))
-    lines: list[Part] = [
+        verdict = (
+            "NOT as expected" if any(a.formulation == name for _, a in result.unexpected) else "as expected"
+        )
+        refused = [f"; first refusal at {v:g}: {short(a.reason)}" for v, a in given if a.outcome == "refused"]
+        cells = (*_outcomes(found), *_digits(a for _, a in given), "".join((verdict, *refused[:1])))
+        rows.append((name, str(len(given)), *cells))
+    parts: list[Part] = [
         f"{case.name}: {case.why}",
         f"  parameter: {case.parameter}, {span}",
         f"  expected: {case.behaviour}",
@@ -103,30 +99,22 @@ def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
             (f"{value:g}", a.formulation, a.outcome, *_digits([a]), short(a.reason))
             for value, a in result.answers()
         )
-        lines.append(Table(("value", "formulation", "outcome", *sizes, "verdict"), each, indent=2))
-        lines += [
-            f"  at {t.value:g}: {', '.join(f'{k}: {v}' for k, v in t.facts.items())}"
-            for t in result.trials
-            if t.facts
-        ]
-    lines += [
-        f"  NOT AS EXPECTED: {answer.formulation} is {answer.outcome} at {value:g}: {answer.reason}"
-        for value, answer in result.unexpected
-    ]
-    return tuple(lines)
+        parts.append(Table(("value", "formulation", "outcome", *sizes, "verdict"), each, indent=2))
+        facts = ((t.value, ", ".join(f"{k}: {v}" for k, v in t.facts.items())) for t in result.trials)
+        parts += [f"  at {value:g}: {words}" for value, words in facts if words]
+    unlike = (f"{a.formulation} is {a.outcome} at {value:g}: {a.reason}" for value, a in result.unexpected)
+    return (*parts, *(f"  NOT AS EXPECTED: {one}" for one in unlike))
 
 
 def _outcomes(found: Mapping[Outcome, int]) -> list[str]:
     return [str(found.get(outcome) or ".") for outcome in OUTCOMES]
 
 
-def _digits(answers: Sequence[Answer]) -> list[str]:
+def _digits(answers: Iterable[Answer]) -> list[str]:
     """The largest error, bound, share and condition; a share just below 1 is not rounded up to 1."""
-    found = []
-    for what in ("error", "bound", "share", "condition"):
-        most = max((x for a in answers if (x := getattr(a, what)) is not None), default=None)
-        found.append("-" if most is None else "0.99" if 0.99 < most < 1.0 else f"{most:.2g}")
-    return found
+    columns = zip(*((a.error, a.bound, a.share, a.condition) for a in answers), strict=True)
+    most = (max((x for x in column if x is not None), default=None) for column in columns)
+    return ["-" if x is None else "0.99" if 0.99 < x < 1.0 else f"{x:.2g}" for x in most]
 
 
 def short(reason: str) -> str:
@@ -136,9 +124,9 @@ def short(reason: str) -> str:
 
 def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     """Counts of the answers over all cases, and the verdict."""
-    rows = [(name, str(sum(found.values())), *_outcomes(found)) for name, found in counts(results).items()]
+    rows = [(name, str(found.total()), *_outcomes(found)) for name, found in counts(results).items()]
     trials = sum(len(result.trials) for result in results)
-    lines: list[Part] = [
+    parts: list[Part] = [
         f"{counted_as(len(results), 'case')}, {counted_as(trials, 'scene')}:",
         Table(("formulation", "answers", *OUTCOMES), tuple(rows)),
     ]
@@ -146,29 +134,39 @@ def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     of_map = (a for r in results for _, a in r.answers(MAP) if a.outcome == "refused")
     if refused := Counter(answer.reason.partition(":")[0] for answer in of_map):
         kinds = ", ".join(f"{count} {kind}" for kind, count in refused.most_common())
-        lines.append(f"Refused by the map, whose effort is bounded here: {kinds}.")
+        parts.append(f"Refused by the map, whose effort is bounded here: {kinds}.")
     verdict = "All as expected: no number is wrong without a warning"
     if other := [result for result in results if result.unexpected or result.wrong]:
+        unlike, wrong = (
+            sum(map(len, of)) for of in zip(*((r.unexpected, r.wrong) for r in other), strict=True)
+        )
+        names = ", ".join(result.case.name for result in other)
         verdict = (
-            f"NOT as expected: {counted_as(sum(len(r.unexpected) for r in other), 'answer')}, "
-            f"{sum(len(r.wrong) for r in other)} wrong without a warning, in "
-            f"{', '.join(result.case.name for result in other)}"
+            f"NOT as expected: {counted_as(unlike, 'answer')}, {wrong} wrong without a warning, in {names}"
         )
     if unjudged := Counter(r.case.name for r in results for _, a in r.answers() if a.outcome == "unjudged"):
         verdict += f"; {counted_as(unjudged.total(), 'answer')} not judged, in {', '.join(unjudged)}"
-    return (*lines, f"{verdict}.")
+    return (*parts, f"{verdict}.")
 
 
 def listing_data(cases: Sequence[Case]) -> dict[str, Any]:
     """Descriptions of cases and their expected outcomes as plain data, without results."""
-    return {"cases": [_description(case) for case in cases]}
+    same = ("name", "group", "why", "parameter", "unit", "behaviour")
+    found = [
+        {name: getattr(case, name) for name in same}
+        | {"values": list(case.values)}
+        | {"expected": {name: asdict(one) for name, one in case.expected.items()}}
+        for case in cases
+    ]
+    return {"cases": found}
 
 
 def results_data(results: Sequence[Examined]) -> dict[str, Any]:
     """All cases with all answers as plain data."""
+    described = listing_data([result.case for result in results])["cases"]
     cases = [
         {
-            **_description(result.case),
+            **of_case,
             "seconds": result.seconds,
             "trials": [
                 {"value": t.value, "answers": [asdict(a) for a in t.answers], "facts": dict(t.facts)}
@@ -176,13 +174,7 @@ def results_data(results: Sequence[Examined]) -> dict[str, Any]:
             ],
             "unexpected": [asdict(answer) | {"value": value} for value, answer in result.unexpected],
         }
-        for result in results
+        for of_case, result in zip(described, results, strict=True)
     ]
     found = {name: dict(found) for name, found in counts(results).items()}
     return {"as_expected": as_expected(results), "counts": found, "cases": cases}
-
-
-def _description(case: Case) -> dict[str, Any]:
-    same = ("name", "group", "why", "parameter", "unit", "behaviour")
-    expected = {name: asdict(one) for name, one in case.expected.items()}
-    return {**{name: getattr(case, name) for name in same}, "values": list(case.values), "expected": expected}

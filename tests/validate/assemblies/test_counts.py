@@ -65,11 +65,11 @@ def test_every_assembly_of_a_knuckle_is_found(scene: str, held: str, number: int
     meet in two.
     """
     found = count.count_assemblies(*pose(scene, held, "rack"))
-    assert len(found.assemblies) == number
-    assert found.agreed
-    assert found.drawn
+    assert found["distinct"] == number
+    assert found["agreed"]
+    assert found["drawn"]
     # Complex ones come in pairs.
-    assert (number - found.real) % 2 == 0
+    assert (number - found["real"]) % 2 == 0
 
 
 def test_what_is_no_solution_is_not_certified() -> None:
@@ -78,17 +78,17 @@ def test_what_is_no_solution_is_not_certified() -> None:
     drawn = np.eye(8)[0]
     with ctx.workprec(count.BITS):
         matrices = [acb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
-        parts, middle = count._Forms(matrices, 0), [acb(0)] * 7
+        parts, middle = count.Forms(matrices, 0), [acb(0)] * 7
         assert not parts.holds_one([acb(1e-6 * k) for k in range(1, 8)], count.WIDE)
         assert parts.holds_one(middle, count.WIDE)
         assert not parts.holds_one(middle, "10")  # other assemblies are in these discs
-        certified = count._certified(matrices, drawn.astype(complex))
+        certified = count.certify(matrices, drawn.astype(complex))
         assert certified is not None
         assert certified.real
         assert certified.drawn
         # Where a condition stands twice the solutions are curves, and nothing is proven.
         twice = [*matrices[:-1], matrices[-2]]
-        assert count._certified(twice, drawn.astype(complex)) is None
+        assert count.certify(twice, drawn.astype(complex)) is None
 
 
 def test_what_is_not_on_six_legs_is_refused_with_what_holds_it() -> None:

@@ -15,12 +15,13 @@ import pytest
 from pointcoord import Scene
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
+from validate.hard.answer import Answer, Trial
 from validate.hard.cases.ends import TIE_ROD
-from validate.hard.reach import End, fault_of_kept, last_value, refusal_held
+from validate.hard.reach import End, fault_of_kept, last_value
 from validate.hard.subjects import CARS, NAMED, PAPER
 
 RACK = End(PAPER, "rack", True, links=TIE_ROD)
-SCENE = Scene.from_mapping(RACK.beyond(PAPER, 1e-3))
+SCENE = Scene.from_mapping(RACK.beyond(PAPER, 1e-3).content)
 
 
 def refused(solver: str) -> Any:
@@ -30,9 +31,15 @@ def refused(solver: str) -> Any:
     return caught.value
 
 
+def judged(refusal: FormulationError) -> Answer:
+    """What is made of a refusal of the scene."""
+    answer = Answer(refusal.formulation, "refused")
+    return RACK.judge(Trial(1e-3, (answer,), scene=SCENE, came={refusal.formulation: refusal}), answer)
+
+
 def test_a_refusal_that_says_something_wrong_is_wrong() -> None:
     right = refused("pointcoord-newton")
-    assert refusal_held(right, SCENE, RACK).outcome == "right"
+    assert judged(right).outcome == "right"
 
     def saying(**other: Any) -> FormulationError:
         told = copy(right.reason)
@@ -44,10 +51,10 @@ def test_a_refusal_that_says_something_wrong_is_wrong() -> None:
         (saying(reached=short), "stops at rack"),
         (saying(reduce="arm_angle"), "advises to reduce 'arm_angle'"),
         (saying(limits=right.reason.limits[5:]), "not those that lie in line"),
-        (FormulationError(right.formulation, right.reason), "is not kept"),
+        (FormulationError(right.formulation, right.reason), "0 instants are kept"),
         (FormulationError(right.formulation, ValueError("no way on")), "does not say how far"),
     ):
-        answer = refusal_held(wrong, SCENE, RACK)
+        answer = judged(wrong)
         assert answer.outcome == "wrong"
         assert says in answer.reason
 
@@ -58,7 +65,7 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
     places = {name: array.copy() for name, array in right.partial.position.items()}
     places["tie_rod_outer"][1, 2] += 1e-6
     for kept, says in (
-        (right.partial.with_numbers({"position": places}), "tie_rod_outer of the kept instant 1"),
+        (right.partial.with_numbers({"position": places}), "of the kept motion: position of tie_rod_outer"),
         (replace(right.partial, times=right.partial.times[:-1]), "instants are kept"),
     ):
         wrong = FormulationError("pointcoord", right.reason, kept)

@@ -1,1 +1,1 @@
-"""The hard cases, one file for each group."""
+"""The hard cases, one file for each kind of difficulty."""

@@ -17,39 +17,27 @@ from __future__ import annotations
 import math
 from functools import partial
 
-import numpy as np
-
-from validate.cars.car import Law, content_of
 from validate.hard.case import REFUSED, Case, decades, family, right_from
-from validate.hard.cases.points import upper_arm_flat
+from validate.hard.cases.drawings import flattened
 from validate.hard.reach import ends_of, last_value
-from validate.hard.subjects import (
-    NAMED,
-    OTHERS,
-    PAPER,
-    WISHBONE,
-    Content,
-    Subject,
-    drawn_angle,
-    hyphens,
-    scene_content,
-)
+from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens, scene_content
+
+CLEAR = right_from(1e-6)
+CASES: list[Case] = []
+_branch = partial(family, CASES, "Branches")
+_by_nature = partial(family, CASES, "Mechanisms that are hard by nature")
 
 # Arm angle, rad, and rack travel, mm, at which the two assembly modes of the tie rod just meet: with less
 # rack travel the arm cannot pass this angle, with more it can. Third, half the range of the motion, rad; a
 # dead point is 0.05 rad below the meeting.
-MEETING = (0.6129246396239625, -0.00292320063271574, 0.05)
+ANGLE, RACK, WIDE = 0.6129246396239625, -0.00292320063271574, 0.05
 APPROACH = "Two assembly modes of the tie rod come near each other as the arm passes 35 degrees"
-CLEAR = right_from(1e-6)
-CASES: list[Case] = []
-_branch = partial(family, CASES, "Branches")
 
 
 def through_the_meeting(side: float, subject: Subject, share: float) -> Content:
     """The arm moves through the angle of the meeting; the rack is `share` of 10 mm on one side of it."""
-    angle, rack, wide = MEETING
-    inputs: dict[str, Law] = {"arm_angle": (angle + wide, -2.0 * wide), "rack": rack + side * 10.0 * share}
-    return subject.absolute(inputs, stop=1.0, samples=5)
+    arm, rack = (ANGLE + WIDE, -2.0 * WIDE), RACK + side * 10.0 * share
+    return scene_content(subject.car, arm, rack, stop=1.0, samples=5)
 
 
 _branch(
@@ -65,7 +53,7 @@ _branch(
 
 
 def whole_range(driven: str, subject: Subject, share: float) -> Content:
-    """The whole range of an input lies between two instants: one large step could reach a wrong branch."""
+    """An input moves from near its upper end to near its lower one, between two instants."""
     low, high = (last_value(subject, driven, ahead).beyond(-0.5 * share) for ahead in (False, True))
     return subject.absolute({**subject.home, driven: (high, low - high)}, stop=1.0, samples=2)
 
@@ -78,6 +66,8 @@ for subject in (PAPER, WISHBONE, *OTHERS):
                 (1e-8,) if subject is WISHBONE else (1e-4,),
                 subjects=[subject],
                 name=f"whole-range-{hyphens(driven).removesuffix('-angle')}",
+                why="The whole range of an input lies between two instants: "
+                "one large step could reach a wrong branch.",
             )(partial(whole_range, driven))
 
 
@@ -87,17 +77,14 @@ def flat_drawing(side: float, subject: Subject, share: float) -> Content:
     The tie rod's outer end is near the plane of kingpin and rack, on either side. For a wishbone the arm
     moves: its upper ball joint is drawn near the plane of its pivots and the lower ball joint.
     """
-    p = subject.assembled.array
+    point, plane = "upper_ball_joint", ("upper_arm_front", "upper_arm_rear", "lower_ball_joint")
     if subject is PAPER:
-        ball, outer = p["lower_ball_joint"], p["tie_rod_outer"]
-        normal = np.cross(p["strut_lower"] - ball, p["tie_rod_inner"] - ball)
-        normal /= np.linalg.norm(normal)
-        height = float((outer - ball) @ normal)
-        car = subject.car.drawn_as({**p, "tie_rod_outer": outer + (side * share - 1.0) * height * normal})
-        return scene_content(car, subject.drawn["arm_angle"], (0.0, 0.0, 20.0), stop=1.0, samples=3)
-    car = subject.car.drawn_as(upper_arm_flat(p, side * share))
-    inputs: dict[str, Law] = {"arm_angle": (drawn_angle(car), 0.0, -0.02), "rack": 0.0}
-    return content_of(car, inputs, stop=1.0, samples=3)
+        point, plane = "tie_rod_outer", ("lower_ball_joint", "strut_lower", "tie_rod_inner")
+    car = subject.car.drawn_as(flattened(subject.assembled.array, side * share, point=point, onto=plane))
+    angle = subject.drawn["arm_angle"]
+    if subject is PAPER:
+        return scene_content(car, angle, (0.0, 0.0, 20.0), stop=1.0, samples=3)
+    return scene_content(car, (angle, 0.0, -0.02), stop=1.0, samples=3, effects=None)
 
 
 for label, side in (("", 1.0), ("-mirrored", -1.0)):
@@ -112,7 +99,7 @@ for label, side in (("", 1.0), ("-mirrored", -1.0)):
 def to_the_line(turn: float, beyond: bool, moving: bool, subject: Subject, value: float) -> Content:
     """A pose short of a turn of the input or beyond it, by a share of it: at rest, or reached in 1 s."""
     (driven,) = subject.driven
-    goal = turn * (1.0 - (-value if beyond else value))
+    goal = turn * (1.0 + value if beyond else 1.0 - value)
     if moving:
         return subject.absolute({driven: [0.0, goal]}, stop=1.0, samples=3)
     return subject.absolute({driven: goal})
@@ -129,8 +116,7 @@ for mechanism, turn, what in (
         ("held-beyond-the-line", "The mechanism is to rest beyond the pose where", True, False),
         ("swept-through-the-line", "The mechanism is to move through the pose where", True, True),
     ):
-        family(
-            *(CASES, "Mechanisms that are hard by nature"),
+        _by_nature(
             f"distance from it, in parts of the way from the drawing{', beyond' * beyond}",
             (1e-2,) if beyond else (1e-1, 1e-4),
             REFUSED if beyond else right_from(1e-3),

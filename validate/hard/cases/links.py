@@ -9,8 +9,8 @@ drawing and nowhere else leave no motion, however close they are.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import Any
 
@@ -18,33 +18,34 @@ import numpy as np
 
 from pointcoord import Scene
 from validate.cars.car import Car, Point, as_tuple, content_of
-from validate.hard.answer import Answer
-from validate.hard.case import (
-    IF_ANY,
-    REFUSED,
-    Case,
-    Every,
-    Expected,
-    Values,
-    decades,
-    every,
-    family,
-    reason_of,
-    right_from,
-)
-from validate.hard.subjects import ALL, Content, Subject, hyphens
+from validate.hard.answer import Answer, Trial
+from validate.hard.case import IF_ANY, REFUSED, Case, Setup, decades, family, numbers_of, right_from
+from validate.hard.subjects import ALL, Subject
 
 GROUP = "Links and numbers that make no mechanism"
 SOLVERS = ("pointcoord", "absolute")
+MUST_REFUSE, MAY_ANSWER = dict.fromkeys(SOLVERS, REFUSED), dict.fromkeys(SOLVERS, IF_ANY)
 AGAIN, PIVOT = "again", "second_pivot"
 Tables = dict[str, Any]
-Piece = tuple[str, ...]
-"""A rod, a slide, or a point of a body: its keys in the tables."""
-Changed = tuple[Content, frozenset[str], dict[str, str]]
-"""A changed mechanism at rest, names of which an error must give one, and the change as facts."""
-Change = Callable[[Subject, float], Changed]
 CASES: list[Case] = []
 _links = partial(family, CASES, GROUP, given=False)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A constraint of a mechanism: a rod, a slide, or a point that joins a body to others.
+
+    Attributes:
+        words: `rod tie_rod`, or `tie_rod_outer of knuckle`.
+        names: an error must give one of these names if the piece is missing.
+        rows: the number of rods that constrain as much.
+        tables: the mechanism's tables without the piece.
+    """
+
+    words: str
+    names: frozenset[str]
+    rows: int
+    tables: Tables
 
 
 def joints(plain: Mapping[str, Any]) -> dict[str, list[str]]:
@@ -60,41 +61,40 @@ def joints(plain: Mapping[str, Any]) -> dict[str, list[str]]:
     }
 
 
-def pieces(plain: Mapping[str, Any]) -> dict[Piece, tuple[frozenset[str], int]]:
-    """The constraints of a mechanism: rods, slides, and points that join a body to others.
-
-    Returns:
-        For each piece, names of which an error must give one, and the number of rods that constrain as much.
-    """
+@cache
+def pieces(subject: Subject) -> list[Piece]:
+    """The constraints of a mechanism."""
+    plain, found = subject.plain, list[Piece]()
     bodies = plain["bodies"]
-    found: dict[Piece, tuple[frozenset[str], int]] = {}
     for rod, ends in plain["rods"].items():
-        found["rods", rod] = frozenset((rod, *ends)), 1
+        tables = tables_of(subject)
+        del tables["rods"][rod]
+        found.append(Piece(f"rod {rod}", frozenset((rod, *ends)), 1, tables))
     for name, slide in plain["slides"].items():
-        found["slides", name] = frozenset((name, *slide["points"])), 2 * len(slide["points"])
+        tables, points = tables_of(subject), slide["points"]
+        del tables["slides"][name]
+        found.append(Piece(f"slide {name}", frozenset((name, *points)), 2 * len(points), tables))
     for body, points in joints(plain).items():
         shared = [set(other) & set(bodies[body]) for name, other in bodies.items() if name != body]
         for point in points:
-            hinged = any(len(both) == 2 and point in both for both in shared)
-            found["bodies", body, point] = frozenset((body, *bodies[body])), 2 if hinged else 3
+            tables, hinged = tables_of(subject), any(len(both) == 2 and point in both for both in shared)
+            tables["bodies"][body].remove(point)
+            names = frozenset((body, *bodies[body]))
+            found.append(Piece(f"{point} of {body}", names, 2 if hinged else 3, tables))
     return found
 
 
-def without(tables: Tables, piece: Piece) -> str:
-    """Remove a piece from the tables; returns its name: `rod tie_rod`, or `tie_rod_outer of knuckle`."""
-    table, key, *point = piece
-    if point:
-        tables[table][key].remove(*point)
-        return f"{point[0]} of {key}"
-    del tables[table][key]
-    return f"{table[:-1]} {key}"
+def exchangeable(subject: Subject) -> list[Piece]:
+    """The pieces without which at least one rod is left."""
+    return [piece for piece in pieces(subject) if piece.tables["rods"]]
 
 
-def held_apart(plain: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+def held_apart(subject: Subject) -> list[tuple[str, str]]:
     """Pairs of points at a fixed distance: joints of a moving body, and the ends of a rod."""
+    plain = subject.plain
     rods = ((first, last) for first, last in plain["rods"].values())
     within = (pair for points in joints(plain).values() for pair in itertools.combinations(points, 2))
-    return tuple({frozenset(pair): pair for pair in (*within, *rods)}.values())
+    return list({frozenset(pair): pair for pair in (*within, *rods)}.values())
 
 
 def tables_of(subject: Subject) -> Tables:
@@ -114,41 +114,32 @@ def closed(subject: Subject) -> Car:
 
 
 def changed(
-    subject: Subject, tables: Tables, inputs: Mapping[str, Any] | None = None, **more: Point
-) -> Content:
-    """The scene of a mechanism with changed tables and further points; inputs as drawn if not given."""
+    subject: Subject,
+    tables: Tables,
+    names: Iterable[str] = (),
+    facts: Mapping[str, str] | None = None,
+    inputs: Mapping[str, Any] | None = None,
+    points: Mapping[str, Point] | None = None,
+) -> Setup:
+    """The scene of a mechanism with changed tables and further points; inputs as drawn if not given.
+
+    Args:
+        names: an error of pointcoord must give one of these, if there are any.
+    """
     car = closed(subject)
-    there = replace(car, points={**car.points, **more}, tables=tables)
+    there = replace(car, points={**car.points, **(points or {})}, tables=tables)
     laws = {n: law for n, law in (inputs or subject.drawn).items() if n in tables["inputs"]}
-    return content_of(there, laws, stop=0.1, samples=2, effects=("velocity",))
+    content = content_of(there, laws, stop=0.1, samples=2, effects=("velocity",))
+    return Setup(content, facts or {}, partial(must_name, frozenset(names)))
 
 
-def named(answer: Answer, names: frozenset[str]) -> Answer:
-    """A refusal by pointcoord that names nothing at fault is wrong; other answers are unchanged."""
-    if (answer.formulation, answer.outcome) != ("pointcoord", "refused") or any(
-        name in answer.reason for name in names
-    ):
+def must_name(names: frozenset[str], _: Trial, answer: Answer) -> Answer:
+    """A refusal by pointcoord that gives none of the names is wrong; other answers are unchanged."""
+    given = not names or any(name in answer.reason for name in names)
+    if given or (answer.formulation, answer.outcome) != ("pointcoord", "refused"):
         return answer
     reason = f"names none of {', '.join(sorted(names))}: {answer.reason}"
     return replace(answer, outcome="wrong", reason=reason)
-
-
-def _changes(
-    parameter: str, values: Values | Every, subjects: Sequence[Subject], expected: Expected = REFUSED
-) -> Callable[[Change], Change]:
-    """A decorator of a change: adds its cases, in which pointcoord must name the fault."""
-
-    def rows(change: Change) -> Change:
-        _links(
-            *(parameter, values, dict.fromkeys(SOLVERS, expected), subjects),
-            name=hyphens(change.__name__),
-            why=reason_of(change),
-            judge=lambda subject, value, _, answer: named(answer, change(subject, value)[1]),
-            facts=lambda subject, value: change(subject, value)[2],
-        )(lambda subject, value: change(subject, value)[0])
-        return change
-
-    return rows
 
 
 PIECE = "number of the piece"
@@ -156,65 +147,54 @@ PIVOT_AT = "distance of its pivot from the first pivot, in parts of the first li
 WITH_RODS = [subject for subject in ALL if subject.plain["rods"]]
 
 
-@_changes(PIECE, every(lambda subject: list(pieces(subject.plain))), ALL)
-def link_missing(subject: Subject, number: float) -> Changed:
+@_links(PIECE, numbers_of(pieces), MUST_REFUSE, ALL)
+def link_missing(subject: Subject, number: float) -> Setup:
     """A constraint is missing: a point or a body can move although all inputs are held."""
-    tables = tables_of(subject)
-    piece, (names, _) = list(pieces(subject.plain).items())[int(number) - 1]
-    missing = without(tables, piece)
-    return changed(subject, tables), names, {"missing": missing}
+    piece = pieces(subject)[int(number) - 1]
+    return changed(subject, piece.tables, piece.names, {"missing": piece.words})
 
 
-@_changes(
-    "number of the pair of points that are held apart",
-    every(lambda subject: held_apart(subject.plain)),
-    *(ALL, IF_ANY),
-)
-def link_twice(subject: Subject, number: float) -> Changed:
+@_links("number of the pair of points that are held apart", numbers_of(held_apart), MAY_ANSWER, ALL)
+def link_twice(subject: Subject, number: float) -> Setup:
     """There are more equations than unknowns, and two of them are equivalent.
 
     An additional rod joins two points that are already at a fixed distance.
     """
-    pair, tables = held_apart(subject.plain)[int(number) - 1], tables_of(subject)
+    pair, tables = held_apart(subject)[int(number) - 1], tables_of(subject)
     tables["rods"][AGAIN] = list(pair)
-    return changed(subject, tables), frozenset((AGAIN, *pair, *subject.driven)), {"twice": " - ".join(pair)}
+    return changed(subject, tables, (AGAIN, *pair, *subject.driven), {"twice": " - ".join(pair)})
 
 
-def exchangeable(subject: Subject) -> list[Piece]:
-    """The pieces without which at least one rod is left."""
-    return [piece for piece in pieces(subject.plain) if set(subject.plain["rods"]) - {piece[1]}]
-
-
-@_changes(PIECE, every(exchangeable), [one for one in ALL if exchangeable(one)])
-def link_twice_for_another(subject: Subject, number: float) -> Changed:
+@_links(PIECE, numbers_of(exchangeable), MUST_REFUSE, [one for one in ALL if exchangeable(one)])
+def link_twice_for_another(subject: Subject, number: float) -> Setup:
     """There are as many equations as unknowns, but some are redundant and some are missing.
 
     A piece is removed, and a rod is repeated to make up for the number of its equations.
     """
-    tables, piece = tables_of(subject), exchangeable(subject)[int(number) - 1]
-    names, rows = pieces(subject.plain)[piece]
-    rod, ends = next((name, ends) for name, ends in tables["rods"].items() if name != piece[1])
-    facts = {"twice": rod, "missing": without(tables, piece)}
-    tables["rods"] |= {f"{AGAIN}_{k}": list(ends) for k in range(rows)}
-    return changed(subject, tables), names | {rod, AGAIN}, facts
+    piece = exchangeable(subject)[int(number) - 1]
+    rod, ends = next(iter(piece.tables["rods"].items()))
+    more = {f"{AGAIN}_{k}": list(ends) for k in range(piece.rows)}
+    tables = {**piece.tables, "rods": {**piece.tables["rods"], **more}}
+    return changed(subject, tables, piece.names | {rod, AGAIN}, {"twice": rod, "missing": piece.words})
 
 
-@_changes("difference of their values, rad or mm", (*decades(), 0.0), WITH_RODS)
-def input_twice(subject: Subject, gap: float) -> Changed:
+@_links("difference of their values, rad or mm", (*decades(), 0.0), MUST_REFUSE, WITH_RODS)
+def input_twice(subject: Subject, gap: float) -> Setup:
     """Two inputs drive one coordinate and contradict each other, by less and less until they agree."""
     tables, first = tables_of(subject), subject.driven[0]
     tables["inputs"][AGAIN] = dict(tables["inputs"][first])
-    inputs = {**subject.drawn, AGAIN: subject.drawn[first] + gap}
-    return changed(subject, tables, inputs), frozenset((AGAIN, first)), {}
+    return changed(
+        subject, tables, (AGAIN, first), inputs={**subject.drawn, AGAIN: subject.drawn[first] + gap}
+    )
 
 
-def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, Any]]:
+def with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, Point]]:
     """A rod next to a link from the chassis to a moving point, its pivot a share of the length above."""
-    tables, places = tables_of(subject), {n: np.array(p) for n, p in closed(subject).points.items()}
+    tables, places = tables_of(subject), closed(subject).array
     chassis = tables["bodies"]["chassis"]
     ground, moving = next(
         pair if pair[0] in chassis else pair[::-1]
-        for pair in held_apart(subject.plain)
+        for pair in held_apart(subject)
         if (pair[0] in chassis) != (pair[1] in chassis)
     )
     # In a plane mechanism a pivot moved along the hinge axis would make an equivalent link.
@@ -233,26 +213,26 @@ def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, 
 
 # Two rows of n = 40 unknowns are distinguished down to 64 n EPS = 6e-13 of their size: a link closer to
 # another than this is a copy of it, as in `link_twice`.
-@_changes(PIVOT_AT, decades(low=-11), WITH_RODS)
-def contradictory_links(subject: Subject, share: float) -> Changed:
+@_links(PIVOT_AT, decades(low=-11), MUST_REFUSE, WITH_RODS)
+def contradictory_links(subject: Subject, share: float) -> Setup:
     """A further link agrees with the other links as drawn and nowhere else."""
     rates = {"rad": 0.5, "mm": 50.0}
-    inputs = {name: [value, rates[subject.units[name]]] for name, value in subject.drawn.items()}
-    tables, pivot = _with_third_link(subject, share)
-    return changed(subject, tables, inputs, **pivot), frozenset((AGAIN, PIVOT, *subject.driven)), {}
+    inputs = {name: [value, rates[subject.inputs[name].unit]] for name, value in subject.drawn.items()}
+    tables, pivot = with_third_link(subject, share)
+    return changed(subject, tables, (AGAIN, PIVOT, *subject.driven), inputs=inputs, points=pivot)
 
 
 # Two nearly equal links differ by the distance of their pivots, and the condition number is some 30 over this
-# distance: at 1e-6 half of the digits are left.
+# distance: at 1e-6 half of the digits are left. If the link replaced the only input, nothing would drive the
+# mechanism.
 @_links(
     f"{PIVOT_AT}; then a copy of it",
     (*decades(), 0.0),
     dict.fromkeys(SOLVERS, right_from(1e-6)),
-    # If the link replaces the only input, nothing drives the mechanism.
     [one for one in WITH_RODS if len(one.driven) > 1],
 )
-def arm_held_by_a_third_link(subject: Subject, share: float) -> Content:
+def arm_held_by_a_third_link(subject: Subject, share: float) -> Setup:
     """A further link replaces an input and constrains the mechanism less and less, until it is a copy."""
-    tables, pivot = _with_third_link(subject, share)
+    tables, pivot = with_third_link(subject, share)
     del tables["inputs"][subject.driven[0]]
-    return changed(subject, tables, **pivot)
+    return changed(subject, tables, points=pivot)

@@ -15,9 +15,8 @@ from pointcoord.solve.proven_step import Proof
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.answer import Answer, Trial
-from validate.hard.cases import laws, links
+from validate.hard.cases import links, motions
 from validate.hard.catalogue import CASES
-from validate.hard.subjects import PAPER
 
 BY_NAME = {case.name: case for case in CASES}
 
@@ -47,7 +46,7 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(monkeypatch: pyt
 def test_a_jump_refused_for_another_reason_is_wrong() -> None:
     def judged(reason: Exception) -> str:
         answer, came = Answer("pointcoord", "refused"), {"pointcoord": FormulationError("pointcoord", reason)}
-        return laws.refused_as_rough(PAPER, 1e-9, Trial(1e-9, (answer,), came=came), answer).outcome
+        return motions.refused_as_rough("arm_angle", Trial(1e-9, (answer,), came=came), answer).outcome
 
     assert judged(NotFollowed(0.5, name="arm_angle")) == "refused"
     assert judged(NotFollowed(0.5, name="rack")) == "wrong"
@@ -56,8 +55,9 @@ def test_a_jump_refused_for_another_reason_is_wrong() -> None:
 
 def test_a_refusal_that_names_nothing_of_what_is_at_fault_is_wrong() -> None:
     told = Answer("pointcoord", "refused", "MechanismError: free: x of strut_rod_end")
-    assert links.named(told, frozenset(("strut_rod_end",))) == told
-    answer = links.named(told, frozenset(("tie_rod", "tie_rod_inner")))
+    trial = Trial(1.0, (told,))
+    assert links.must_name(frozenset(("strut_rod_end",)), trial, told) == told
+    answer = links.must_name(frozenset(("tie_rod", "tie_rod_inner")), trial, told)
     assert answer.outcome == "wrong"
     assert "names none of tie_rod, tie_rod_inner" in answer.reason
 
