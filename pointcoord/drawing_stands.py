@@ -112,7 +112,7 @@ def drawn_angles(mechanism: Mechanism, axes: CarAxes, effects: Iterable[str], y:
     """The wheel angles that `effects` give for poses y, (..., size); each (...,), rad."""
     unit = mechanism.unit[..., None]
     places = {name: place * unit for name, place in mechanism.places(y).items()}
-    poses = Poses(mechanism, axes, (places,), (places,), added=(None,))
+    poses = Poses(mechanism, axes, (places,), (places,))
     found: dict[str, Array] = {}
     for effect in (EFFECTS[name] for name in effects):
         if effect.quantities == (WHEEL,):

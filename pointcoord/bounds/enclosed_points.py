@@ -32,6 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import comb
 
 import numpy as np
@@ -81,9 +82,33 @@ class EnclosedPoses:
     powers: Sequence[Array]
     slopes: Mapping[Way, tuple[Points, Points]] = field(default_factory=dict)
 
+    @property
+    def unit(self) -> float:
+        """The unit of lengths, a power of two, mm."""
+        return float(self.mechanism.unit)
+
+    @cached_property
+    def drawn(self) -> Points:
+        """Drawn place of every point."""
+        vectors = self.mechanism.drawing.vectors
+        return {name: Enclosed.of(vectors[name]) for name in self.mechanism.topology.points}
+
+    @property
+    def origin(self) -> Enclosed:
+        """From the user's origin to the mechanism's origin."""
+        return Enclosed.of(self.mechanism.origin / self.unit)
+
+    def constant(self, number: Array) -> Enclosed:
+        """An exact number, equal for all poses."""
+        return Enclosed.of(number)
+
+    def in_mm(self, number: Enclosed, power: int, derivative: int) -> Enclosed:
+        """A number of the unit of length^power and of time^-derivative, in mm and s; both are powers of 2."""
+        return number.scaled(self.unit**power / self.powers[derivative])
+
     def reported(self, name: str, derivative: int) -> Enclosed:
         """A point, or its time derivative, as the user reads it, (N, 3), mm per s^d."""
-        unit = float(self.mechanism.unit) / self.powers[derivative]
+        unit = self.unit / self.powers[derivative]
         return self.points[derivative][name].scaled(unit[..., None]) + self.added[derivative]
 
 

@@ -31,7 +31,7 @@ def anti_drive(corner: Corner[Dual[Any]]) -> Any:
 
 def _carried(corner: Corner[Dual[Any]], share: str, velocity: Any) -> Any:
     car = {name: number.value for name, number in corner.car.items()}
-    travel = corner.chassis.along(corner.moved_in_chassis(), "up").value
+    travel = corner.chassis.along(corner.moved(corner.chassis), "up").value
     height = car["centre_of_gravity_height"] - travel
     up = above_rounding(corner.seen.along(velocity, "up"), velocity)
     slope = ratio(corner.seen.along(velocity, "rearward"), up)

@@ -13,18 +13,18 @@ component along the first.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import product
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from pointcoord.effects.arithmetic import S, angle
-from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
+from pointcoord.effects.corner import Corner, Wheel, corner_of, wheels_of
 from pointcoord.effects.effect import (
     Doubt,
     Effect,
-    Point,
     Poses,
     Quantity,
     lacks,
@@ -36,10 +36,9 @@ from pointcoord.linkage.directions import CarAxes, Direction
 from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.arrays import Array
-from pointcoord.numerics.enclosure import Enclosed
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
+    from pointcoord.bounds.enclosed_points import EnclosedPoses
 
 
 BY_TRAVEL, BY_RACK, BY_ROLL = "by_travel", "by_rack", "by_roll"
@@ -53,7 +52,6 @@ SUCH_AS = {
     "spring_rate": "30.0",
     "spring_free_length": "350.0",
 }
-LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
 WHEEL = Quantity("wheel", "wheel angle", "rad", "car")
 # Symbols of the axes, as in the README.
 LETTERS = {"wheel_axis": "n", "steering_axis": "k"}
@@ -168,53 +166,34 @@ class CarNumbers(Effect):
 
     @classmethod
     def of(
-        cls,
-        name: str,
-        gives: str,
-        *numbers: Number,
-        base: str = "",
-        nowhere: str = "",
-        of_axle: bool = False,
-        apart: bool = False,
-        derivative: int = 0,
+        cls, name: str, gives: str, *numbers: Number, derivative: int = 0, nowhere: str = "", **more: Any
     ) -> CarNumbers:
         """The effect that gives some numbers.
 
         Args:
-            base: the effect of whose numbers these are the gradients; empty if they are not gradients.
+            derivative: 1 if the formulas take the points' derivatives by time.
             nowhere: where else, besides a wheel that does not travel, there is no number because a divisor
                 is zero; in words.
-            derivative: 1 if the formulas take the points' derivatives by time.
+            more: further attributes.
         """
         way = numbers[0].way
         travels = "the wheel does not travel there" if way == BY_TRAVEL else ""
         return cls(
             name,
             gives,
-            sign="; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers),
             derivative=derivative,
             quantities=tuple({number.quantity.name: number.quantity for number in numbers}.values()),
             own_names=tuple(number.name for number in numbers),
             lines=tuple(dict.fromkeys(role for number in numbers for role in number.roles)),
             way=way,
-            base=base,
             no_number=" or ".join(filter(None, (travels, nowhere))),
             numbers=numbers,
-            of_axle=of_axle,
-            apart=apart,
+            **more,
         )
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
-        prefixes = [prefix for prefix, _ in self._subjects(topology)]
-        return {
-            quantity.name: tuple(
-                prefix + number.name
-                for number in self.numbers
-                for prefix in prefixes
-                if number.quantity is quantity
-            )
-            for quantity in self.quantities
-        }
+        names = [(self._name(number, wheels), number) for number, wheels in self._each(topology)]
+        return {q.name: tuple(name for name, n in names if n.quantity is q) for q in self.quantities}
 
     def ways(self, topology: Topology) -> tuple[Way, ...]:
         return tuple(wheel.way(self.way) for wheel in self._wheels(topology) if self.way)
@@ -222,49 +201,41 @@ class CarNumbers(Effect):
     def needs(self, topology: Topology) -> Collection[str]:
         return {p for wheel in self._wheels(topology) for role in self.lines for p in wheel.role(role)}
 
-    def _subjects(self, topology: Topology) -> list[tuple[str, tuple[Wheel, ...]]]:
+    def evaluate(self, poses: Poses | EnclosedPoses) -> dict[str, dict[str, Any]]:
+        """Values of the formulas, with derivatives by time or along each wheel's way if they need them."""
+
+        def corner(wheel: Wheel) -> Corner[Any]:
+            if self.derivative:
+                return corner_of(poses, wheel, (poses.points[1], poses.in_chassis[1]))
+            return corner_of(poses, wheel, poses.slopes[wheel.way(self.way)] if self.way else None)
+
+        topology = poses.mechanism.topology
+        corners = {wheel.part: corner(wheel) for wheel in self._wheels(topology)}
+        found: dict[str, dict[str, Any]] = {quantity.name: {} for quantity in self.quantities}
+        for number, wheels in self._each(topology):
+            value = number.formula(*(corners[wheel.part] for wheel in wheels))
+            reported = poses.in_mm(value, number.power, self.derivative)
+            found[number.quantity.name][self._name(number, wheels)] = reported
+        return found
+
+    def _each(self, topology: Topology) -> Iterator[tuple[Number, tuple[Wheel, ...]]]:
+        """Every number with the wheels that its formula takes."""
+        wheels = self._wheels(topology)
+        subjects = [tuple(wheels)] if self.of_axle and wheels else [(wheel,) for wheel in wheels]
+        return product(self.numbers, subjects)
+
+    def _name(self, number: Number, wheels: Sequence[Wheel]) -> str:
+        return number.name if self.of_axle else wheels[0].prefix + number.name
+
+    def _wheels(self, topology: Topology) -> Sequence[Wheel]:
+        """The wheels that have the roles; of an axle the left and the right one, or none."""
         wheels = wheels_of(topology, self.lines)
         if not self.of_axle:
-            return [(wheel.prefix, (wheel,)) for wheel in wheels]
+            return wheels
         pair = sorted((wheel for wheel in wheels if wheel.part), key=lambda wheel: wheel.side)
-        return [("", tuple(pair))] if [wheel.side for wheel in pair] == ["left", "right"] else []
+        return pair if [wheel.side for wheel in pair] == ["left", "right"] else []
 
-    def _wheels(self, topology: Topology) -> list[Wheel]:
-        return [wheel for _, wheels in self._subjects(topology) for wheel in wheels]
-
-    def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
-        for name, number, value in self._made(poses):
-            found[number.quantity.name][name] = value
-        return found
-
-    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
-        """Errors from the enclosed exact numbers, which are in units of the mechanism."""
-        unit, time = float(poses.mechanism.unit), poses.powers[self.derivative]
-        found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
-        for name, number, exact in self._made(poses):
-            reported = numbers[number.quantity.name][name]
-            # The units of length and time are powers of two, so products with them are exact.
-            off = exact.scaled(unit**number.power).errors(reported * time) / time
-            found[number.quantity.name][name] = off
-        return found
-
-    def _made(self, poses: Poses | EnclosedPoses) -> Iterator[tuple[str, Number, Any]]:
-        """Every number with its name, in the arithmetic of the poses."""
-        for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [self._corner(poses, wheel) for wheel in wheels]
-            for number in self.numbers:
-                yield prefix + number.name, number, number.formula(*corners)
-
-    def _corner(self, poses: Poses | EnclosedPoses, wheel: Wheel) -> Corner[Any]:
-        """A corner, with derivatives by time or along its wheel's way if the numbers need them."""
-        corner = corner_of(poses, wheel)
-        if self.derivative:
-            states = poses.states if isinstance(poses, Poses) else poses.points
-            return corner.moving((states[1], poses.in_chassis[1]))
-        return corner.moving(poses.slopes[wheel.way(self.way)]) if self.way else corner
-
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
+    def refusal(self, topology: Topology, axes: CarAxes) -> str:
         """Why the car does not have these numbers: roles, wheel radius, car data or an input are missing."""
         wheels = self._wheels(topology)
         if not wheels and self.of_axle:
@@ -290,24 +261,3 @@ class CarNumbers(Effect):
                 of = f"of the {wheel.part} wheel " if wheel.part else ""
                 return not_one_input(self.name, f"{of}that {KINDS[self.way]}", driven)
         return ""
-
-
-def corner_of(poses: Poses | EnclosedPoses, wheel: Wheel) -> Corner[Any]:
-    """One wheel of poses: floats or duals in mm, or enclosures in units of the mechanism."""
-    mechanism, axes = poses.mechanism, poses.axes.on(wheel.side)
-    constant: Callable[[Array], Any]
-    if isinstance(poses, Poses):
-        unit, constant = 1.0, poses.constant
-        places, drawn, origin = poses.states[0], poses.drawn, poses.beside(mechanism.origin)
-    else:
-        unit, constant, vectors = float(mechanism.unit), Enclosed.of, mechanism.drawing.vectors
-        drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
-        places, origin = poses.points[0], mechanism.origin / unit
-    radius = constant(np.array(np.nan if axes.wheel_radius is None else axes.wheel_radius / unit))
-    up, outboard = constant(axes.up), constant(axes.outboard)
-
-    def view(points: Mapping[str, Any]) -> View[Any]:
-        return View(wheel, points, axes, up, outboard, radius)
-
-    car = {n: constant(np.array(number / unit if n in LENGTHS else number)) for n, number in axes.car.items()}
-    return Corner(view(places), view(poses.in_chassis[0]), view(drawn), constant(origin), car)

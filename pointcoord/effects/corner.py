@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, Generic
+from typing import TYPE_CHECKING, Any, Generic
 
 import numpy as np
 
@@ -28,10 +28,16 @@ from pointcoord.effects.arithmetic import (
     still,
     times,
 )
+from pointcoord.effects.effect import Poses
 from pointcoord.linkage.directions import CarAxes, Direction
 from pointcoord.linkage.slopes import ByInput
 from pointcoord.linkage.topology import Topology
 
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_points import EnclosedPoses
+
+LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
+"""The car data that are lengths."""
 # Share of a velocity. Rates of solved points have relative errors of some 1e-14, and far larger ones near a
 # singular pose, so a component as small as this may be zero.
 LEAST_PART = 1e-9
@@ -150,44 +156,52 @@ class Corner(Generic[S]):
     origin: S
     car: Mapping[str, S]
 
-    def moved(self) -> S:
-        """Displacement of the contact point from its drawn place."""
-        return _moved(self.seen, self.drawn) + (self.seen.contact() - self.drawn.contact())
-
-    def moved_in_chassis(self) -> S:
-        """Displacement of the contact point in the chassis' frame, with the disc along the chassis' up."""
-        return _moved(self.chassis, self.drawn) + (self.chassis.contact() - self.drawn.contact())
+    def moved(self, view: View[S]) -> S:
+        """Displacement of the contact point from its drawn place, in one of the views."""
+        return self._moved(view) + (view.contact() - self.drawn.contact())
 
     def risen(self) -> S:
         """Displacement of the wheel centre along up in the chassis' frame."""
-        return self.chassis.along(_moved(self.chassis, self.drawn), "up")
+        return self.chassis.along(self._moved(self.chassis), "up")
 
-    def moving(self, slopes: tuple[Mapping[str, Any], Mapping[str, Any]]) -> Corner[Dual[Any]]:
-        """The corner with derivatives of its points; those of directions, drawing and radius are zero.
-
-        Args:
-            slopes: derivatives of the points in `seen`, and of those in `chassis`.
-        """
-
-        def held(part: Any) -> Dual[Any]:
-            return Dual(part, still(part))
-
-        def dual(view: View[Any], points: Mapping[str, Dual[Any]]) -> View[Dual[Any]]:
-            up, outboard, radius = (held(part) for part in (view.up, view.outboard, view.radius))
-            return View(view.of, points, view.axes, up, outboard, radius)
-
-        def moved(view: View[Any], slope: Mapping[str, Any]) -> View[Dual[Any]]:
-            return dual(view, {n: Dual(p, slope[n]) for n, p in view.points.items() if n in slope})
-
-        drawn = dual(self.drawn, {name: held(place) for name, place in self.drawn.points.items()})
-        car = {name: held(number) for name, number in self.car.items()}
-        seen, chassis = moved(self.seen, slopes[0]), moved(self.chassis, slopes[1])
-        return Corner(seen, chassis, drawn, held(self.origin), car)
+    def _moved(self, view: View[S]) -> S:
+        return view.points[view.of.centre] - self.drawn.points[view.of.centre]
 
 
-def _moved(view: View[S], drawn: View[S]) -> S:
-    centre = view.of.centre
-    return view.points[centre] - drawn.points[centre]
+def corner_of(
+    poses: Poses | EnclosedPoses,
+    wheel: Wheel,
+    slopes: tuple[Mapping[str, Any], Mapping[str, Any]] | None = None,
+) -> Corner[Any]:
+    """One wheel of poses, in their unit of length.
+
+    Args:
+        slopes: derivatives of the points after and before the rotations of the chassis, which make the
+            corner one of duals; those of directions, drawing, radius and data are zero.
+    """
+    axes, unit = poses.axes.on(wheel.side), poses.unit
+
+    def fixed(number: Any) -> Any:
+        return number if slopes is None else Dual(number, still(number))
+
+    def constant(number: Any) -> Any:
+        return fixed(poses.constant(np.asarray(number)))
+
+    def moving(points: Mapping[str, Any], which: int) -> Mapping[str, Any]:
+        if slopes is None:
+            return points
+        return {n: Dual(place, slopes[which][n]) for n, place in points.items() if n in slopes[which]}
+
+    radius = constant(np.nan if axes.wheel_radius is None else axes.wheel_radius / unit)
+    up, outboard = constant(axes.up), constant(axes.outboard)
+    # A part of a mechanism may be solved without the wheel's axis, such as for the damper's length.
+    drawn = {name: fixed(poses.drawn[name]) for name in wheel.role("wheel_axis") if name in poses.drawn}
+    seen, chassis, drawn_view = (
+        View(wheel, points, axes, up, outboard, radius)
+        for points in (moving(poses.points[0], 0), moving(poses.in_chassis[0], 1), drawn)
+    )
+    car = {n: constant(number / unit if n in LENGTHS else number) for n, number in axes.car.items()}
+    return Corner(seen, chassis, drawn_view, fixed(poses.origin), car)
 
 
 def contact_place(corner: Corner[Dual[Any]]) -> Any:

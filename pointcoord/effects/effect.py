@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
@@ -17,7 +17,7 @@ from pointcoord.numerics.arrays import Array, Flags
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 
-Point = tuple[float, float, float]
+ALONG = "components along the user's axes"
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Quantity:
             car has scalars (N,).
         definition: the definition as in the README; empty if the words are enough, or if each number has
             one of its own.
-        sign: where it is positive, in words; empty if its effect gives that.
+        sign: where it is positive, in words; empty if each number has a sign of its own.
     """
 
     name: str
@@ -58,28 +58,28 @@ class Doubt:
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Solved poses, from which effects are evaluated.
+    """Solved poses, from which effects are evaluated; lengths in mm, from the mechanism's origin.
+
+    All numbers here are floats. `EnclosedPoses` has the same attributes in enclosures, and a subclass may use
+    another arithmetic (see `arithmetic`).
 
     Attributes:
         axes: the car's directions.
-        states: by time derivative, point -> state after the rotations of the chassis, (..., N, 3), mm per
-            s^d, from the mechanism's origin; points that were requested.
-        in_chassis: the states in the chassis' frame, as far as effects need them; equal to `states` if
+        points: by time derivative, point -> state after the rotations of the chassis, (..., N, 3), mm per
+            s^d; points that were requested.
+        in_chassis: the states in the chassis' frame, as far as effects need them; equal to `points` if
             nothing rotates the chassis.
-        added: by time derivative, what is added to every reported point: the user's origin and the chassis'
-            displacement, (..., N, 3), mm per s^d; None where that is zero.
         slopes: way -> derivatives of positions along it, after the rotations of the chassis and in the
             chassis' frame, (N, 3), mm per rad, mm or unit; for the ways that effects need.
-
-    All numbers here are floats; a subclass may use another arithmetic (see `arithmetic`).
+        unit: the unit of lengths, mm.
     """
 
     mechanism: Mechanism
     axes: CarAxes
-    states: Sequence[Mapping[str, Any]]
+    points: Sequence[Mapping[str, Any]]
     in_chassis: Sequence[Mapping[str, Any]]
-    added: Sequence[Any]
     slopes: Mapping[Way, tuple[Mapping[str, Any], Mapping[str, Any]]] = field(default_factory=dict)
+    unit: ClassVar[float] = 1.0
 
     def constant(self, number: Array) -> Any:
         """A number that is equal for all cars, in the arithmetic of the poses."""
@@ -87,13 +87,22 @@ class Poses:
 
     @cached_property
     def drawn(self) -> Mapping[str, Any]:
-        """Drawn place of every point, mm from the mechanism's origin."""
-        return {name: self.beside(place) for name, place in self.mechanism.drawn_places.items()}
+        """Drawn place of every point."""
+        return {name: self._beside(place) for name, place in self.mechanism.drawn_places.items()}
 
-    def beside(self, place: Array) -> Array:
+    @property
+    def origin(self) -> Any:
+        """From the user's origin to the mechanism's origin."""
+        return self.constant(self._beside(self.mechanism.origin))
+
+    def _beside(self, place: Array) -> Array:
         """Places of a batch of cars, (..., 3), reshaped to broadcast with places at their instants."""
-        more = next(iter(self.states[0].values())).ndim - place.ndim if place.ndim > 1 else 0
+        more = next(iter(self.points[0].values())).ndim - place.ndim if place.ndim > 1 else 0
         return place.reshape(*place.shape[:-1], *(1,) * more, 3)
+
+    def in_mm(self, number: Any, power: int, derivative: int) -> Any:
+        """A number of the unit of length^power and of time^-derivative, in mm and s."""
+        return number
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +112,6 @@ class Effect(ABC):
     Attributes:
         name: the name in a scene's list.
         gives: the results in words, with the unit.
-        sign: the sign convention of its numbers.
         derivative: highest time derivative of positions that it needs.
         quantities: the quantities of its numbers in results.
         own_names: names of its numbers for one wheel; empty for effects of points and bodies.
@@ -116,7 +124,6 @@ class Effect(ABC):
 
     name: str
     gives: str
-    sign: str
     derivative: int
     quantities: tuple[Quantity, ...]
     own_names: tuple[str, ...] = ()
@@ -144,10 +151,9 @@ class Effect(ABC):
         """The points whose states it needs."""
 
     @abstractmethod
-    def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        """Its numbers by quantity and name."""
+    def evaluate(self, poses: Poses | EnclosedPoses) -> dict[str, dict[str, Any]]:
+        """Its numbers by quantity and name, in the arithmetic of the poses."""
 
-    @abstractmethod
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """Error bounds of its numbers, proven and expected, each with a leading dimension of 2.
 
@@ -155,8 +161,12 @@ class Effect(ABC):
             poses: enclosed exact places and rates of the points.
             numbers: all reported numbers, its own included.
         """
+        return {
+            quantity: {name: exact.errors(numbers[quantity][name]) for name, exact in of.items()}
+            for quantity, of in self.evaluate(poses).items()
+        }
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
+    def refusal(self, topology: Topology, axes: CarAxes) -> str:
         """Why a drawing does not have this effect, and what to do, in words; empty if it has."""
         return ""
 

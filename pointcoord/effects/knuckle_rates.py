@@ -12,25 +12,25 @@ a rate, and it also proves an error bound for a rate found in any other way. The
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pointcoord.effects.arithmetic import P, cross, multiple, plain, still
 from pointcoord.effects.corner import turn_of_edges
-from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.effects.effect import ALONG, Effect, Poses, Quantity, no_role
 from pointcoord.errors import SingularConfiguration
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.arrays import Array
-from pointcoord.numerics.enclosure import Enclosed, both
+from pointcoord.numerics.enclosure import both
 from pointcoord.numerics.rounding import EPS
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers, Points
+    from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
 
 States = Mapping[str, Array]
 Edges = tuple[Array, Array]
@@ -38,8 +38,9 @@ Edges = tuple[Array, Array]
 # Each refinement multiplies the first solution's rounding error by some EPS k (see `BodyRates.loss`): some
 # 1e-3 for a needle 1e-6 as thick as long, where the error was still visible after one refinement.
 REFINEMENTS = 2
-VELOCITY = Quantity("angular_velocity", "angular velocity", "rad/s", "body")
-ACCELERATION = Quantity("angular_acceleration", "angular acceleration", "rad/s^2", "body")
+TURNS = f"{ALONG}, right-handed"
+VELOCITY = Quantity("angular_velocity", "angular velocity", "rad/s", "body", sign=TURNS)
+ACCELERATION = Quantity("angular_acceleration", "angular acceleration", "rad/s^2", "body", sign=TURNS)
 
 
 def _edges(points: Mapping[str, P], names: Iterable[str]) -> tuple[P, P]:
@@ -47,12 +48,18 @@ def _edges(points: Mapping[str, P], names: Iterable[str]) -> tuple[P, P]:
     return second - first, third - first
 
 
-def _refined(p: P, q: P, v: P, w: P) -> P:
-    """The angular velocity of edges p and q whose rates are v and w."""
-    turn = still(p)
-    for _ in range(1 + REFINEMENTS):
-        turn = turn + turn_of_edges(p, q, v - cross(turn, p), w - cross(turn, q))
-    return turn
+def body_rate_error(edges: tuple[P, P], rates: tuple[P, P], found: P, pull: P | None) -> P:
+    """Exact rate of a body minus the computed one, (N, 3).
+
+    Args:
+        edges, rates: two edges of the body, and their velocities or accelerations.
+        found: the computed rate.
+        pull: the exact angular velocity if `rates` are accelerations, else None.
+    """
+    rest = [v - cross(found, edge) for v, edge in zip(rates, edges, strict=True)]
+    if pull is not None:
+        rest = [s - cross(pull, cross(pull, edge)) for s, edge in zip(rest, edges, strict=True)]
+    return turn_of_edges(*edges, *rest)
 
 
 def _require_apart(p: Array, q: Array) -> None:
@@ -81,15 +88,21 @@ class BodyRates(Effect):
         Raises:
             SingularConfiguration: the points are in one line; the rotation about it is free.
         """
-        (p, q), (v, w), (a, b) = (_edges(states, states) for states in (position, velocity, acceleration))
+        edges, *rates = (_edges(states, states) for states in (position, velocity, acceleration))
         # Scaled by a power of two near the body's size: products of lengths neither over- nor underflow.
-        size = max(float(np.abs(plain(edge)).max(initial=0.0)) for edge in (p, q))
+        size = max(float(np.abs(plain(edge)).max(initial=0.0)) for edge in edges)
         scale = float(np.ldexp(1.0, -np.frexp(size or 1.0)[1]))
-        p, q, v, w, a, b = (multiple(scale, part) for part in (p, q, v, w, a, b))
-        _require_apart(plain(p), plain(q))
-        omega = _refined(p, q, v, w)
-        a, b = (part - cross(omega, cross(omega, edge)) for part, edge in ((a, p), (b, q)))
-        return omega, _refined(p, q, a, b)
+        edges, *rates = ((multiple(scale, p), multiple(scale, q)) for p, q in (edges, *rates))
+        _require_apart(*map(plain, edges))
+
+        def refined(of: Edges, pull: Array | None = None) -> Array:
+            turn = still(edges[0])
+            for _ in range(1 + REFINEMENTS):
+                turn = turn + body_rate_error(edges, of, turn, pull)
+            return turn
+
+        omega = refined(rates[0])
+        return omega, refined(rates[1], omega)
 
     def loss(self, edges: Edges, rates: Edges) -> Array:
         """Factor by which the rates' errors may exceed the rounding of the equations, shape (..., 1).
@@ -109,14 +122,14 @@ class BodyRates(Effect):
     def needs(self, topology: Topology) -> Collection[str]:
         return {point for points in topology.bodies.values() for point in points}
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
+    def refusal(self, topology: Topology, axes: CarAxes) -> str:
         return "" if topology.bodies else no_role(self.name, "knuckle", topology)
 
-    def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
+    def evaluate(self, poses: Poses | EnclosedPoses) -> dict[str, dict[str, Any]]:
         """Rates of each body in the user's axes, each (..., N, 3), with the chassis' rotations included."""
-        found: dict[str, dict[str, Array]] = {VELOCITY.name: {}, ACCELERATION.name: {}}
+        found: dict[str, dict[str, Any]] = {VELOCITY.name: {}, ACCELERATION.name: {}}
         for body, points in poses.mechanism.topology.bodies.items():
-            states = ({point: state[point] for point in points} for state in poses.states[:3])
+            states: Iterator[Any] = ({point: state[point] for point in points} for state in poses.points[:3])
             found[VELOCITY.name][body], found[ACCELERATION.name][body] = self.rates(*states)
         return found
 
@@ -125,45 +138,22 @@ class BodyRates(Effect):
         found: dict[str, dict[str, Array]] = {VELOCITY.name: {}, ACCELERATION.name: {}}
         for body in numbers[VELOCITY.name]:
             names, spin = poses.mechanism.topology.bodies[body], None
-            edges, rates = (
-                (one.middle, other.middle)
-                for one, other in (_edges(points, names) for points in poses.points[:2])
-            )
-            loss = self.loss(edges, rates)
+            edges, *rates = (_edges(points, names) for points in poses.points[:3])
+            loss = self.loss(*((one.middle, other.middle) for one, other in (edges, rates[0])))
             for d, quantity in enumerate(found, 1):
                 reported = numbers[quantity][body]
                 # For a rate that is NaN nothing can be proven, but an expected error can be given.
                 near = np.nan_to_num(reported, posinf=0.0, neginf=0.0) * poses.powers[d][..., None]
-                off = body_rate_error(poses.points[0], poses.points[d], names, near, spin)
+                off = body_rate_error(edges, rates[d - 1], edges[0].like(near), spin)
                 error = np.where(np.isfinite(reported), np.abs(off.middle) + off.radius[0], np.inf)
                 found[quantity][body] = both(error, loss * off.radius[1]) / poses.powers[d][..., None]
                 spin = off.corrected(near)
         return found
 
 
-def body_rate_error(
-    points: Points, rates: Points, names: Sequence[str], found: Array, pull: Enclosed | None
-) -> Enclosed:
-    """Exact rate of a body minus the computed one, enclosed, (N, 3).
-
-    Args:
-        points, rates: positions and velocities, or accelerations, of the body's points.
-        names: names of the body's points; the first three are used.
-        found: the computed rate, (N, 3).
-        pull: the exact angular velocity if `rates` are accelerations, else None.
-    """
-    (e1, e2), (v1, v2) = _edges(points, names), _edges(rates, names)
-    turning = e1.like(found)
-    s1, s2 = v1 - cross(turning, e1), v2 - cross(turning, e2)
-    if pull is not None:
-        s1, s2 = (s - cross(pull, cross(pull, edge)) for s, edge in ((s1, e1), (s2, e2)))
-    return turn_of_edges(e1, e2, s1, s2)
-
-
 KNUCKLE_RATES = BodyRates(
     name="knuckle_rates",
     gives="angular velocity and acceleration of the knuckle, rad/s, rad/s^2",
-    sign="components along the user's axes, right-handed",
     derivative=2,
     quantities=(VELOCITY, ACCELERATION),
 )

@@ -17,24 +17,31 @@ along it where an input drives the travel.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from pointcoord.effects.arithmetic import dot, ratio, root, times
-from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of
-from pointcoord.effects.corner import Corner, Wheel, turning_of, velocity_at, wheels_of
-from pointcoord.effects.effect import Effect, Point, Poses, Quantity, lacks, no_radius, no_role, not_one_input
+from pointcoord.effects.car_number import BY_TRAVEL, KINDS
+from pointcoord.effects.corner import (
+    Wheel,
+    contact_place,
+    corner_of,
+    turning_of,
+    velocity_at,
+    wheels_of,
+)
+from pointcoord.effects.effect import Effect, Poses, Quantity, lacks, no_radius, no_role, not_one_input
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.slopes import GAP, ByGap, ByLength, Way
 from pointcoord.linkage.topology import Topology
-from pointcoord.numerics.arrays import Array
-from pointcoord.numerics.enclosure import Enclosed
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.enclosed_points import EnclosedPoses, Numbers
+    from pointcoord.bounds.enclosed_points import EnclosedPoses
 
 
 ROD_FORCE = Quantity(
@@ -70,25 +77,6 @@ AXES = np.eye(3)
 
 
 @dataclass(frozen=True, eq=False)
-class _Along:
-    """Changes along a way.
-
-    Attributes:
-        work: work of all loads, N times the unit of length.
-        dampers: changes of the dampers' lengths.
-    """
-
-    work: Any
-    dampers: tuple[Any, ...]
-
-    def with_held(self, held: int, free: _Along) -> _Along:
-        """The changes with a damper held, and the input that moves this damper free."""
-        share = ratio(self.dampers[held], free.dampers[held])
-        pairs = zip(self.dampers, free.dampers, strict=True)
-        return _Along(self.work - share * free.work, tuple(one - share * other for one, other in pairs))
-
-
-@dataclass(frozen=True, eq=False)
 class Loads(Effect):
     """The forces that hold a mechanism under its scene's loads.
 
@@ -115,15 +103,63 @@ class Loads(Effect):
     def needs(self, topology: Topology) -> Collection[str]:
         return topology.points
 
-    def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        return _forces(poses, 1.0, poses.constant)
+    def evaluate(self, poses: Poses | EnclosedPoses) -> dict[str, dict[str, Any]]:
+        """Tensions, forces at joints and thrusts of hinges."""
+        topology, places = poses.mechanism.topology, poses.points[0]
+        slopes, damped = cast("Mapping[Way, Any]", poses.slopes), _held(topology)
 
-    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
-        unit = float(poses.mechanism.unit)
-        exact = _forces(poses, 1.0 / unit, Enclosed.of)
-        return {q: {n: each.errors(numbers[q][n]) for n, each in of.items()} for q, of in exact.items()}
+        def stretch(way: Way, ends: Sequence[str]) -> Any:
+            """Change of the distance between two points along a way."""
+            line, moved = (of[ends[1]] - of[ends[0]] for of in (places, slopes[way][0]))
+            return ratio(dot(line, moved), root(dot(line, line)))
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
+        def along(way: Way) -> list[Any]:
+            """Work of all loads, N times the unit of length, and changes of the dampers' lengths."""
+            works = []
+            for part, (force, moment) in poses.axes.loads.items():
+                corner = corner_of(poses, Wheel(topology, part), slopes[way])
+                works.append(dot(poses.constant(force), velocity_at(corner, contact_place(corner))))
+                for i in np.flatnonzero(moment).tolist():
+                    # The knuckle's rotation about an axis: how far the next axis moves along the one after.
+                    turn = turning_of(corner, poses.constant(AXES[i - 2]))
+                    works.append(dot(poses.constant(moment[i] / poses.unit * AXES[i - 1]), turn))
+            return [reduce(add, works), *(stretch(way, wheel.role(HOLDING)) for wheel in damped)]
+
+        def with_held(found: list[Any], i: int) -> list[Any]:
+            """Changes with a damper held, and the input that moves this damper free."""
+            share = ratio(found[1 + i], free[i][1 + i])
+            return [one - share * other for one, other in zip(found, free[i], strict=True)]
+
+        def work(way: Way) -> Any:
+            """The work along a way with all dampers held."""
+            return reduce(with_held, range(len(free)), along(way))[0]
+
+        free = [along(wheel.way(BY_TRAVEL)) for wheel in damped]
+        for i in range(len(free)):
+            free = [one if k == i else with_held(one, i) for k, one in enumerate(free)]
+        rods = {}
+        for rod, ends in topology.rods.items():
+            rods[rod] = ratio(work(ByLength(rod)), stretch(ByLength(rod), ends))
+        for i, wheel in enumerate(damped):
+            rods[f"{wheel.prefix}{HOLDING}"] = ratio(free[i][0], free[i][1 + i])
+        joints, thrusts = {}, {}
+        for point in _joined(topology):
+            parts = []
+            for axis in range(3):
+                gap = slopes[ByGap(point, axis)][0][GAP]
+                parts.append(times(ratio(work(ByGap(point, axis)), dot(gap, gap)), gap))
+            force = reduce(add, parts)
+            _, of_line = topology.sliding.get(point, ("", point in topology.chassis))
+            joints[point] = -force if of_line else force
+        for points in (points for points in topology.joints if len(points) == 2):
+            line = places[points[1]] - places[points[0]]
+            parts = [dot(joints[point], line) for point in points]
+            thrusts[points[0]] = ratio(parts[0] + parts[1], root(dot(line, line)))
+            for point, part in zip(points, parts, strict=True):
+                joints[point] = joints[point] - times(ratio(part, dot(line, line)), line)
+        return {ROD_FORCE.name: rods, JOINT_FORCE.name: joints, HINGE_THRUST.name: thrusts}
+
+    def refusal(self, topology: Topology, axes: CarAxes) -> str:
         if not axes.loads:
             advice = "give one under [mechanism.loads], such as force = [0.0, 0.0, 3000.0]"
             return lacks(self.name, "a load, which the scene does not give", advice)
@@ -155,83 +191,9 @@ def _held(topology: Topology) -> tuple[Wheel, ...]:
     return wheels_of(topology, (HOLDING,))
 
 
-def _forces(
-    poses: Poses | EnclosedPoses,
-    unit: float,
-    constant: Callable[[Array], Any],
-) -> dict[str, dict[str, Any]]:
-    """Tensions and forces in the arithmetic of the corners.
-
-    Args:
-        unit: 1 mm in the corners' unit. constant: converts plain numbers to their arithmetic.
-    """
-    topology, slopes = poses.mechanism.topology, cast("Mapping[Way, Any]", poses.slopes)
-    corners = [(corner_of(poses, Wheel(topology, part)), load) for part, load in poses.axes.loads.items()]
-    loaded = [(one, one.seen.contact_place(), load) for one, load in corners]
-    damped = [(wheel, corner_of(poses, wheel)) for wheel in _held(topology)]
-
-    def along(way: Way) -> _Along:
-        works = []
-        for one, contact, (force, moment) in loaded:
-            moving = one.moving(slopes[way])
-            works.append(dot(constant(force), velocity_at(moving, contact)))
-            for i in np.flatnonzero(moment).tolist():
-                # The knuckle's rotation about an axis: how far the next axis moves along the one after it.
-                turn = turning_of(moving, constant(AXES[i - 2]))
-                works.append(dot(constant(moment[i] * unit * AXES[i - 1]), turn))
-        work = works[0]
-        for more in works[1:]:
-            work = work + more
-        return _Along(work, tuple(_length(one.moving(slopes[way]), HOLDING) for _, one in damped))
-
-    free = [along(wheel.way(BY_TRAVEL)) for wheel, _ in damped]
-    for i in range(len(free)):
-        free = [one if k == i else one.with_held(i, free[i]) for k, one in enumerate(free)]
-
-    def held(found: _Along) -> _Along:
-        for i, one in enumerate(free):
-            found = found.with_held(i, one)
-        return found
-
-    rods = {}
-    for rod, ends in topology.rods.items():
-        way = ByLength(rod)
-        moving = loaded[0][0].moving(slopes[way]).seen.line(*ends)
-        rods[rod] = ratio(held(along(way)).work, root(dot(moving, moving)).slope)
-    for i, (wheel, _) in enumerate(damped):
-        rods[f"{wheel.prefix}{HOLDING}"] = ratio(free[i].work, free[i].dampers[i])
-    joints, thrusts = {}, {}
-    for point in _joined(topology):
-        parts = []
-        for axis in range(3):
-            opening = ByGap(point, axis)
-            gap = slopes[opening][0][GAP]
-            share = ratio(held(along(opening)).work, dot(gap, gap))
-            parts.append(times(share, gap))
-        force = parts[0] + parts[1] + parts[2]
-        _, of_line = topology.sliding.get(point, ("", point in topology.chassis))
-        joints[point] = -force if of_line else force
-    for points in topology.joints:
-        if len(points) == 2:
-            line = loaded[0][0].seen.line(*points)
-            parts = [dot(joints[point], line) for point in points]
-            thrusts[points[0]] = ratio(parts[0] + parts[1], root(dot(line, line)))
-            for point, part in zip(points, parts, strict=True):
-                joints[point] = joints[point] - times(ratio(part, dot(line, line)), line)
-    return {ROD_FORCE.name: rods, JOINT_FORCE.name: joints, HINGE_THRUST.name: thrusts}
-
-
-def _length(corner: Corner[Any], role: str) -> Any:
-    """The change of the distance between the two points of a role."""
-    line = corner.seen.role(role)
-    return root(dot(line, line)).slope
-
-
 LOADS = Loads(
     name="loads",
     gives="forces in rods and joints under the loads at the wheels, N",
-    sign="tension of a rod or damper: positive; components along the user's axes; a thrust from the first "
-    "point of a hinge to the second",
     derivative=0,
     quantities=(ROD_FORCE, JOINT_FORCE, HINGE_THRUST),
     way="lengths",

@@ -18,10 +18,9 @@ comparisons every name has one meaning, so that two people who write "camber" me
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from types import ModuleType
 from typing import Any, Literal
 
 from pointcoord.effects import ackermann, anti_features, centres, damper, steering_axis, wheel
@@ -83,16 +82,12 @@ def _number(name: str, entry: Entry, made: Mapping[str, Number]) -> Number:
         if isinstance(like, Angle):
             names, keys = ("lean", like.sine, like.cosine), {**keys, "quantity": WHEEL.name, "power": 0}
     keys["quantity"] = QUANTITIES[keys.get("quantity", "dimension")]
-    formula = _formula(FILES[keys["file"]], names, keys.get("axis", ""))
+    # A function of the module with its first arguments bound, and applied to an axis of the wheel, if any.
+    file = FILES[keys["file"]]
+    formula = partial(getattr(file, names[0]), *names[1:])
+    if axis := keys.get("axis"):
+        formula = partial(steering_axis.of_axis, getattr(file, axis), formula)
     return Number(name=name, formula=formula, **{k: v for k, v in keys.items() if k not in OF_FORMULAS})
-
-
-def _formula(file: ModuleType, names: tuple[str, ...], axis: str) -> Callable[..., Any]:
-    """A function of a module with its first arguments bound; with `axis`, applied to that axis of a wheel."""
-    formula = getattr(file, names[0])
-    if len(names) > 1:
-        formula = partial(formula, *names[1:])
-    return partial(steering_axis.of_axis, getattr(file, axis), formula) if axis else formula
 
 
 CAR_NUMBERS = {effect.name: effect for effect in _effects()}

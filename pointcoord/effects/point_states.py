@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from pointcoord.effects.effect import Effect, Poses, Quantity
+from pointcoord.effects.effect import ALONG, Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.arrays import Array
 
@@ -24,11 +24,9 @@ class PointStates(Effect):
     def needs(self, topology: Topology) -> Collection[str]:
         return topology.points
 
-    def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        """The states plus the user's origin and the chassis' displacement, each (..., N, 3)."""
-        states, added = poses.states[self.derivative], poses.added[self.derivative]
-        reported = {name: state if added is None else state + added for name, state in states.items()}
-        return {self.quantities[0].name: reported}
+    def evaluate(self, poses: Poses | EnclosedPoses) -> dict[str, dict[str, Any]]:
+        """The states, each (..., N, 3), without the user's origin and the displacement of the chassis."""
+        return {self.quantities[0].name: dict(poses.points[self.derivative])}
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """Distances of the reported states from the exact ones, with the expected rounding of a sum."""
@@ -52,9 +50,8 @@ def _states(derivative: int) -> PointStates:
     return PointStates(
         name=name,
         gives=f"{words} of every point, {unit}",
-        sign="components along the user's axes",
         derivative=derivative,
-        quantities=(Quantity(name, words, unit, "point"),),
+        quantities=(Quantity(name, words, unit, "point", sign=ALONG),),
         base="" if named else NAMED[0],
         reports_states=True,
     )

@@ -45,9 +45,9 @@ def travel(corner: Corner[S]) -> S:
 
 def contact_travel(corner: Corner[S]) -> S:
     """Displacement of the contact point along up, of a disc along the chassis' up."""
-    return corner.chassis.along(corner.moved_in_chassis(), "up")
+    return corner.chassis.along(corner.moved(corner.chassis), "up")
 
 
 def displacement(direction: Direction, corner: Corner[S]) -> S:
     """Displacement of the contact point c, (c - drawn c) . direction."""
-    return corner.seen.along(corner.moved(), direction)
+    return corner.seen.along(corner.moved(corner.seen), direction)

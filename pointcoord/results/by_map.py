@@ -10,7 +10,7 @@ import numpy as np
 
 from pointcoord.bounds.summed import Summed
 from pointcoord.errors import InputOutOfRange
-from pointcoord.numerics.arrays import Array, Indices
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.evaluation import sum_series
@@ -55,14 +55,6 @@ class ByMap(SolvedScene):
         inputs = self._inputs(instants)[: derivatives + 1]
         return self.patches.sums(self.patches.series, inputs)
 
-    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        unknown = self.solved(instants, derivatives)
-        laws = {name: f.series(instants, len(unknown) - 1) for name, f in self.functions.items()}
-        known = self.readout.mechanism.known_series(laws)
-        return [
-            np.concatenate([state.T, factorial(d) * known[:, d]], axis=-1) for d, state in enumerate(unknown)
-        ]
-
     def summed(self, instants: Array) -> list[Summed]:
         inputs = self._inputs(instants)
         patch = self.patches.lookup.at(inputs[0])
@@ -83,9 +75,6 @@ class ByMap(SolvedScene):
 
         parts = (sums(order - 1, order), sums(order - 3, order - 2), sums(0, order))
         return [Summed(*part) for part in zip(*parts, strict=True)]
-
-    def pieces(self, instants: Array) -> Indices:
-        return self.patches.lookup.at(self._inputs(instants)[0])
 
     def _inputs(self, instants: Array) -> list[Array]:
         """The free inputs and their derivatives up to the plan's highest, each (N, p).

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from pointcoord.bounds.summed import Summed
-from pointcoord.numerics.arrays import Array, Indices
-from pointcoord.results.readout import ENOUGH, Readout
+from pointcoord.numerics.arrays import Array
+from pointcoord.results.cells import fill_cells
+from pointcoord.results.readout import Readout
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.dense_output import SeriesRows, evaluate
 from pointcoord.solve.series_in_inputs import InputSeries
@@ -20,7 +21,6 @@ from pointcoord.solve.taylor import Chain
 from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:
-    from pointcoord.results.cells import CloseInstants
     from pointcoord.solve.pointwise import Solved
 
 
@@ -41,10 +41,7 @@ class AtInstants(SolvedScene):
         return cls(readout, functions, solved.status, solved.work, first, last, (), solved)
 
     def solved(self, instants: Array, derivatives: int) -> list[Array]:
-        return [state.T for state in self.coordinates(instants, derivatives)]
-
-    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        return self.poses.coordinates(instants)[: derivatives + 1]
+        return [state.T for state in self.poses.coordinates(instants)[: derivatives + 1]]
 
     def unsolved(self, instants: Array) -> Array:
         return self.poses.left[np.searchsorted(self.poses.times, instants)]
@@ -77,87 +74,46 @@ class ByChain(SolvedScene):
         if isinstance(box := self.chain.segments[0], InputSeries):
             coefficients = box.coefficients.swapaxes(-1, -2)
             return [coefficients @ powers for powers in box.powers(instants, derivatives + 1)]
+        order = None if (instants[1:] >= instants[:-1]).all() else np.argsort(instants, kind="stable")
         sums = np.empty((*self._series.shape, len(instants)))
-        self._series.sum(instants, sums)
+        self._series.sum(instants if order is None else instants[order], sums)
+        if order is not None:
+            sums[..., order] = sums.copy()
         return np.split(sums, self.readout.plan.derivative + 1, axis=-2)[: derivatives + 1]
 
     @cached_property
     def _series(self) -> SeriesRows:
-        columns = [segment.coefficients[..., : self._count] for segment in self.chain.segments]
-        orders = range(self.readout.plan.derivative + 1)
-        return SeriesRows.of(self.chain, columns, [range(self._count)] * len(orders))
-
-    @property
-    def _count(self) -> int:
-        return self.readout.mechanism.map.unknowns
+        unknowns = range(self.readout.mechanism.map.unknowns)
+        columns = [segment.coefficients for segment in self.chain.segments]
+        return SeriesRows.of(self.chain, columns, [unknowns] * (self.readout.plan.derivative + 1))
 
     def fill(self, times: Array, rows: Array) -> None:
-        """Fill by cells where instants are close and one car's chassis does not rotate; else by blocks."""
-        left, one = [(0, len(times))], self.readout.mechanism.drawn.ndim == 1
-        if one and len(times) >= ENOUGH and not self.readout.chassis.turning:
-            left = self._close.fill(times, rows)
-        for first, last in left:
+        """Fill by cells where instants are close; else by blocks."""
+        filled = fill_cells(self, self._starts, times, rows)
+        edges = np.flatnonzero(np.diff(filled, prepend=True, append=True))
+        for first, last in edges.reshape(-1, 2).tolist():
             self.fill_plainly(times[first:last], rows[..., first:last])
 
-    @cached_property
-    def _close(self) -> CloseInstants:
-        # Imported here: few motions are read at many instants close together.
-        from pointcoord.results.cells import CloseInstants
-
-        return CloseInstants(self, self.chain)
-
-    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """Sums of the series; (designs, N, size) for many designs. The instants are contiguous in memory."""
-        mechanism, segments = self.readout.mechanism, self.chain.segments
-        wanted = min(derivatives, self.readout.plan.derivative)
-        unknowns, known = mechanism.map.unknowns, self._known(instants)
-        if isinstance(box := segments[0], InputSeries):
-            size = unknowns + known.shape[-1]
-            found = [np.zeros((len(box.coefficients), len(instants), size)) for _ in range(wanted + 1)]
-            for each, powers in zip(found, box.powers(instants, wanted + 1), strict=True):
-                each[..., :unknowns] = powers.T @ box.coefficients
-        else:
-            found = list(evaluate(self.chain, [s.coefficients for s in segments], instants, wanted))
-        found[0][..., unknowns:] = known
-        return found
-
-    def _known(self, instants: Array) -> Array:
-        mechanism = self.readout.mechanism
-        laws = {name: law.series(instants, 0) for name, law in self.functions.items()}
-        if mechanism.drawn.ndim == 1:
-            return mechanism.known_series(laws)[:, 0]
-        # One car for each pose: all designs have the same laws.
-        cars, count = len(mechanism.drawn), len(instants)
-        each = mechanism.taken(np.repeat(np.arange(cars), count))
-        known = each.known_series({name: np.tile(law, (cars, 1)) for name, law in laws.items()})
-        return known[:, 0].reshape(cars, count, -1)
-
     def summed(self, instants: Array) -> list[Summed]:
-        terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
-        # Last terms that are missing by chance say nothing about the truncation error: they are extrapolated.
-        lasts = [
-            last_magnitudes(segment.coefficients, (segment.stop - segment.start) / segment.scale)
-            for segment in self.chain.segments
-        ]
-        for segment, last in zip(self.chain.segments, lasts, strict=True):
+        tables = []
+        for segment in self.chain.segments:
+            terms = np.abs(segment.coefficients)
+            # Last terms that are missing by chance say nothing about the truncation error: they are
+            # extrapolated.
+            last = last_magnitudes(segment.coefficients, (segment.stop - segment.start) / segment.scale)
             # The constant term is none of the last two, also in a series of order 0 or 1.
             last[: max(2 - segment.order, 0)] = 0.0
+            lasts, before = np.zeros_like(terms), np.zeros_like(terms)
+            lasts[-2:], before[-4:-2] = last[-2:], terms[-4:-2]
+            tables.append((lasts, before, terms))
         derivative = self.readout.plan.derivative
-
-        def sums(first: int, last: int | None, sizes: Sequence[Array]) -> Array:
-            """Sums of the terms from number `first` to before `last`; negative numbers count from the end."""
-            kept = [np.zeros_like(t) for t in terms]
-            for part, whole in zip(kept, sizes, strict=True):
-                part[first:last] = whole[first:last]
-            return evaluate(self.chain, kept, instants, derivative)
-
-        parts = (sums(-2, None, lasts), sums(-4, -2, terms), sums(0, None, terms))
+        parts = (evaluate(self.chain, each, instants, derivative) for each in zip(*tables, strict=True))
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
     def unsolved(self, instants: Array) -> Array:
         left = np.array([np.max(segment.left) for segment in self.chain.segments])
-        return np.asarray(left[self.pieces(instants)])
+        return np.asarray(left[np.searchsorted(self._starts, instants, side="right") - 1])
 
-    def pieces(self, instants: Array) -> Indices:
-        starts = [segment.start for segment in self.chain.segments]
-        return np.asarray(np.searchsorted(starts, instants, side="right") - 1)
+    @cached_property
+    def _starts(self) -> Array:
+        return np.array([segment.start for segment in self.chain.segments])

@@ -15,6 +15,7 @@ from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.counters import Work
 from pointcoord.results.closing import Closing
 from pointcoord.results.even_instants import even_instants
+from pointcoord.results.named_columns import columns, data_frame, html_table
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.assembly import Pose
@@ -63,9 +64,6 @@ class Motion(Samples):
 
     def _repr_html_(self) -> str:
         """A table of the numbers of the car, or positions of points if there are none, at some instants."""
-        # Imported here: only notebooks use it.
-        from pointcoord.results.named_columns import columns, html_table
-
         picked = np.unique(
             np.linspace(0, len(self.times) - 1, min(SHOWN, len(self.times))).round().astype(int)
         )
@@ -180,9 +178,6 @@ class Motion(Samples):
             MissingLibrary: the library is not installed; the message names the extra that installs it.
             UnknownName: the library is not one of the two.
         """
-        # Imported here: the solver needs no data frames.
-        from pointcoord.results.named_columns import data_frame
-
         return data_frame(self, library)
 
     def _require_dense(self) -> None:

@@ -57,11 +57,9 @@ def _imported(libraries: tuple[str, ...]) -> Any:
     for name in libraries:
         try:
             return import_module(name)
-        except ModuleNotFoundError as error:
-            if error.name != name:
-                raise MissingLibrary("a data frame", (name,), f"does not load: {error}") from None
         except ImportError as error:
-            raise MissingLibrary("a data frame", (name,), f"does not load: {error}") from None
+            if not isinstance(error, ModuleNotFoundError) or error.name != name:
+                raise MissingLibrary("a data frame", (name,), f"does not load: {error}") from None
     raise MissingLibrary("a data frame", libraries)
 
 

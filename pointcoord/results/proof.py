@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -28,6 +27,7 @@ from pointcoord.results.readout import Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 
+Arrays = dict[str, dict[str, Array]]
 Laws = Mapping[str, Sequence[Enclosed]]
 
 POSITION = "position"
@@ -102,75 +102,72 @@ def prove(
             `solved.unsolved` unless given.
     """
     times, effects = samples.times, solved.readout.plan.computed
-    order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
+    order = np.argsort(times, kind="stable")
     columns = np.empty((6, len(times)))
-    bounds = _Bounds(len(times))
+    bounds: tuple[Arrays, Arrays] = ({}, {})
     for low in range(0, len(times), BLOCK):
-        here = slice(low, low + BLOCK) if order is None else order[low : low + BLOCK]
+        here = order[low : low + BLOCK]
         numbers = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in samples.numbers.items()}
         with np.errstate(all="ignore"):  # an overflow gives an infinite bound
+            unsolved = solved.unsolved(times[here]) if left is None else left[here]
+            poses, exact = _exact(solved, times[here], unsolved, rates, certain)
+            together = poses.groups.together
             if rates:
-                unsolved = solved.unsolved(times[here]) if left is None else left[here]
-                poses, exact = _with_rates(solved, times[here], unsolved)
-                together = poses.groups.together
                 by_group = {q: {n: together(a) for n, a in arrays.items()} for q, arrays in numbers.items()}
-                bounds.put(here, poses.groups, *bounds_of_numbers(exact, effects, by_group))
-            else:
-                poses, exact = _positions(solved, times[here], certain)
+                for whole, part in zip(bounds, bounds_of_numbers(exact, effects, by_group), strict=True):
+                    _put(whole, part, here, poses.groups, len(times))
             columns[:, here] = _of_poses(times[here], poses, exact, numbers[POSITION])
     own, bound, carried, gain, condition, residual = columns
-    return Proof(times, own, bound, carried, gain, condition, residual, bounds.proven, bounds.expected)
+    return Proof(times, own, bound, carried, gain, condition, residual, *bounds)
 
 
-def _positions(solved: SolvedScene, times: Array, certain: bool) -> tuple[CertifiedPoses, EnclosedPoses]:
-    """Certified poses at some instants, and enclosures of their exact points."""
-    mechanism, (y,) = solved.readout.mechanism, solved.coordinates(times, 0)
-    drives = _drives(mechanism)
-    groups, factors = grouped(mechanism.map, y, drives)
-    together, driven = groups.together, {}
-    for place, drive in drives.items():
-        law = solved.functions[drive.input]
-        of_law = np.zeros_like(times) if certain else law.rounding(times)
-        low, uncertainty = drive.rounding(y[:, place], mechanism.drawing, of_law)
-        driven[place] = Enclosed.of(y[:, place], low, uncertainty, uncertainty).together(together)
-    poses = CertifiedPoses.of(mechanism, groups, factors, together(y), driven)
-    functions = solved.readout.chassis.functions
-    laws = {name: [law.enclosed(times)[0].together(together)] for name, law in functions.items()}
-    number = len(poses.factors.condition)
-    coordinates = enclosed_coordinates(mechanism, poses, (), np.zeros((number, 1)), ())
-    points = enclosed_points(mechanism, coordinates)
-    return poses, enclosed_poses(solved.readout, points, laws, [np.ones((number, 1))])
+def _put(whole: Arrays, part: Numbers, here: Indices, groups: Groups, count: int) -> None:
+    """Write bounds by group into those of all instants, at the instants `here`."""
+    for quantity, arrays in part.items():
+        found = whole.setdefault(quantity, {})  # also for a quantity without numbers
+        for name, array in arrays.items():
+            if name not in found:
+                # Components first in memory, so that reads and writes run over contiguous instants.
+                found[name] = np.empty((*array.shape[2:], count)).T
+            found[name][here] = groups.apart(array)
 
 
-def _with_rates(solved: SolvedScene, times: Array, unsolved: Array) -> tuple[CertifiedPoses, EnclosedPoses]:
-    """Certified poses at some instants, and enclosures of their exact points and of all solved rates."""
+def _exact(
+    solved: SolvedScene, times: Array, unsolved: Array, rates: bool, certain: bool
+) -> tuple[CertifiedPoses, EnclosedPoses]:
+    """Certified poses at some instants, and enclosures of their exact points and, if asked, of their rates.
+
+    Args:
+        unsolved, rates, certain: `left`, `rates` and `certain` of `prove`.
+    """
     readout, mechanism = solved.readout, solved.readout.mechanism
-    y, *rates = solved.coordinates(times, max(readout.plan.derivative, 2))
-    groups, factors = grouped(mechanism.map, y, _drives(mechanism))
-    together, functions = groups.together, {**solved.functions, **readout.chassis.functions}
-    laws = {
-        name: [part.together(together) for part in law.enclosed(times, max(len(rates), 2))]
-        for name, law in functions.items()
-    }
-    driven = driven_coordinates(mechanism, laws)
-    parts = [{place: each[d] for place, each in driven.items()} for d in range(max(len(rates), 2) + 1)]
-    poses = CertifiedPoses.of(mechanism, groups, factors, together(y), parts[0])
-    computed = [
-        with_known(together(rate), mechanism.map.unknowns, known)
-        for rate, known in zip(rates, parts[1:], strict=False)
-    ]
-    time = unit_of_time([poses.pose.size, *(rate.size for rate in computed)])
-    powers = [time**d for d in range(len(rates) + 1)]
-    computed = [rate.scaled(power[:, None, None]) for rate, power in zip(computed, powers[1:], strict=True)]
-    cut = _left_out(poses, times, solved, (y, *rates), powers)
+    highest = max(readout.plan.derivative, 2) if rates else 0
+    y, *computed = solved.coordinates(times, highest)
+    drives, unknowns = _drives(mechanism), mechanism.map.unknowns
+    groups, factors = grouped(mechanism.map, y, drives)
+    together, laws = groups.together, {}
+    for name, law in {**solved.functions, **readout.chassis.functions}.items():
+        if rates or name not in solved.functions:
+            parts = law.enclosed(times, highest)
+        else:
+            doubt = 0.0 if certain else law.rounding(times)
+            parts = [Enclosed.of(law.series(times, 0)[:, 0], 0.0, doubt, doubt)]
+        laws[name] = [part.together(together) for part in parts]
+    driven = {place: drive.enclosed(laws[drive.input], mechanism.drawing) for place, drive in drives.items()}
+    pose, *known = ({place: each[d] for place, each in driven.items()} for d in range(len(computed) + 1))
+    poses = CertifiedPoses.of(mechanism, groups, factors, together(y), pose)
+    found = [with_known(together(r), unknowns, of) for r, of in zip(computed, known, strict=True)]
+    time = unit_of_time([poses.pose.size, *(rate.size for rate in found)])
+    powers = [time**d for d in range(len(found) + 1)]
+    found = [rate.scaled(power[:, None, None]) for rate, power in zip(found, powers[1:], strict=True)]
+    cut = _left_out(poses, times, solved, (y, *computed), powers) if rates else []
     most = together(unsolved).max(axis=1)[:, None]
-    coordinates = enclosed_coordinates(mechanism, poses, computed, most, cut)
+    points = enclosed_points(mechanism, enclosed_coordinates(mechanism, poses, found, most, cut))
     own = {name: laws[name] for name in readout.chassis.functions}
-    points = enclosed_points(mechanism, coordinates)
     exact = enclosed_poses(readout, points, own, [power[:, None] for power in powers])
-    ways = readout.plan.ways(mechanism.topology)
+    ways = readout.plan.ways(mechanism.topology) if rates else ()
     # A slope has no series: it is solved for at the pose, which is off by what its series leaves out.
-    off = most + cut[0][:, : mechanism.map.unknowns] if cut else most
+    off = most + cut[0][:, :unknowns] if cut else most
     slopes = {
         way: _slopes(readout, poses, slope, laws, off, way)
         for way, slope in zip(ways, way_slopes(mechanism, y, ways), strict=True)
@@ -219,27 +216,16 @@ def _left_out(
 ) -> list[Array]:
     """Largest truncation and rounding error of the series in each group, by derivative, (G, size).
 
-    Terms grow with the distance from the start of their series. So they are largest at an end of the group
-    or of a series, and only these instants are evaluated.
-
     Args:
         states: coordinates and their derivatives, (N, size), units per s^d.
         powers: powers of the unit of time of each group, s^d, each (G,).
     """
     groups, found = poses.groups, []
-    pieces = groups.together(solved.pieces(times).astype(float))
-    ends = np.zeros(pieces.shape, dtype=bool)
-    ends[:, [0, -1]] = True
-    over = pieces[:, 1:] != pieces[:, :-1]
-    ends[:, 1:] |= over
-    ends[:, :-1] |= over
-    of = np.nonzero(ends)[0]
-    here = np.minimum(np.flatnonzero(ends), groups.count - 1)
-    starts = np.searchsorted(of, np.arange(len(ends)))
-    for state, summed, power in zip(states, solved.summed(times[here]), powers, strict=False):
-        value, time = state[here] * power[of, None], power[of]
-        made = summed.expected(value, poses.factors.condition[of], time)
-        found.append(np.maximum.reduceat(made, starts) if len(of) else made)
+    condition = np.repeat(poses.factors.condition, groups.size)[: groups.count]
+    for state, summed, power in zip(states, solved.summed(times), powers, strict=False):
+        time = np.repeat(power, groups.size)[: groups.count]
+        error = summed.expected(state * time[:, None], condition, time)
+        found.append(groups.together(error).max(axis=1))
     return found
 
 
@@ -311,31 +297,17 @@ def _gain(exact: EnclosedPoses, name: str) -> Array:
 
 def bounds_of_numbers(
     poses: EnclosedPoses, effects: Sequence[Effect], numbers: Numbers
-) -> tuple[Numbers, Numbers]:
+) -> tuple[Arrays, Arrays]:
     """Proven error bound of every number, and the largest error that the method makes if nothing is wrong."""
-    found: dict[str, dict[str, Array]] = {quantity: {} for quantity in numbers}
+    bounds: tuple[Arrays, Arrays] = ({q: {} for q in numbers}, {q: {} for q in numbers})
     for effect in effects:
         for quantity, errors in effect.errors(poses, numbers).items():
-            found[quantity] |= errors
-    return _inflated(found, 0, INFLATION), _inflated(found, 1, ROUNDINGS)
-
-
-def _inflated(found: Numbers, which: int, factor: float) -> dict[str, dict[str, Array]]:
-    """One of the two bounds of each number, times a factor, in place; NaN becomes infinite."""
-    inflated = {q: {n: e[which] for n, e in part.items()} for q, part in found.items()}
-    for part in inflated.values():
-        for bound in part.values():
-            bound *= factor
-            np.copyto(bound, np.inf, where=np.isnan(bound))
-    return inflated
-
-
-def driven_coordinates(mechanism: Mechanism, laws: Laws) -> dict[int, list[Enclosed]]:
-    """Enclosures of each driven coordinate and its time derivatives, by place in y, each (N,)."""
-    return {
-        place: drive.enclosed(laws[drive.input], mechanism.drawing)
-        for place, drive in _drives(mechanism).items()
-    }
+            for name, both in errors.items():
+                for found, bound, factor in zip(bounds, both, (INFLATION, ROUNDINGS), strict=True):
+                    bound *= factor
+                    np.copyto(bound, np.inf, where=np.isnan(bound))
+                    found[quantity][name] = bound
+    return bounds
 
 
 def _drives(mechanism: Mechanism) -> dict[int, Drive]:
@@ -355,27 +327,3 @@ def unit_of_time(states: Sequence[Array]) -> Array:
         fastest = np.maximum(fastest, largest ** (1.0 / d))
     exponent = np.frexp(np.where(np.isfinite(fastest) & (fastest > 0.0), fastest, 1.0))[1]
     return np.asarray(np.ldexp(1.0, -np.clip(exponent, -LONGEST, LONGEST)))
-
-
-@dataclasses.dataclass
-class _Bounds:
-    """Bounds of every number at all instants, written block by block.
-
-    Attributes:
-        count: number of instants.
-    """
-
-    count: int
-    proven: dict[str, dict[str, Array]] = field(default_factory=dict)
-    expected: dict[str, dict[str, Array]] = field(default_factory=dict)
-
-    def put(self, here: slice | Indices, groups: Groups, *parts: Numbers) -> None:
-        """Write proven and expected bounds, by group, at the instants `here`."""
-        for whole, part in zip((self.proven, self.expected), parts, strict=True):
-            for quantity, arrays in part.items():
-                found = whole.setdefault(quantity, {})  # also for a quantity without numbers
-                for name, array in arrays.items():
-                    if name not in found:
-                        # Components first in memory, so that reads and writes run over contiguous instants.
-                        found[name] = np.empty((*array.shape[2:], self.count)).T
-                    found[name][here] = groups.apart(array)

@@ -27,8 +27,6 @@ mechanism's origin."""
 # Instants of a block: intermediate results stay in a second-level cache, and arrays are long enough for
 # numpy.
 BLOCK = 4096
-# Fewest instants of one series for which cells pay (see `cells`).
-ENOUGH = 1024
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +59,8 @@ class Readout:
         Raises:
             InputOutOfRange: a value, a rate or an acceleration is too large to be added to a position.
         """
-        chassis, reported = self.chassis, max(self.table.reported, default=0)
-        return {
-            name: list(
-                chassis.law(name, times, self.plan.derivative if name in chassis.centres else reported)
-            )
-            for name in chassis.functions
-        }
+        chassis = self.chassis
+        return {name: list(chassis.law(name, times, self.plan.derivative)) for name in chassis.functions}
 
     def states(self, rows: Array) -> list[dict[str, Array]]:
         """The states that are reported or needed, by time derivative, to be filled in.
@@ -106,17 +99,22 @@ class Readout:
             states = self.chassis.turned_by(laws, states)
             for (derivative, point), first in self.table.states.items():
                 vectors(rows, first)[...] = states[derivative][point]
-        added = self.added(laws)
-        if self.table.computed:
-            poses = Poses(self.mechanism, self.axes, states, in_chassis, added, slopes)
-            for effect in self.table.computed:
-                for quantity, arrays in effect.evaluate(poses).items():
-                    for name, array in arrays.items():
-                        self.table.put(rows, quantity, name, array)
-        for derivative in self.table.reported if add else ():
-            more = added[derivative]
-            if more is not None:
-                self.table.add(rows, derivative, more)
+        poses = Poses(self.mechanism, self.axes, states, in_chassis, slopes)
+        for effect in self.table.computed:
+            for quantity, arrays in effect.evaluate(poses).items():
+                for name, array in arrays.items():
+                    self.table.put(rows, quantity, name, array)
+        if add:
+            self.add(laws, rows)
+
+    def add(self, laws: Laws, rows: Array) -> None:
+        """Add the user's origin and the displacement of the chassis to the reported states in a table."""
+        shifts, origin = self.chassis.shifts(laws), self.mechanism.origin[..., None, :]
+        for derivative in self.table.reported:
+            if shifts:
+                self.table.add(rows, derivative, shifts[derivative] + (0.0 if derivative else origin))
+            elif derivative == 0 and origin.any():
+                self.table.add(rows, derivative, origin)
 
     def slopes(self, laws: Laws, y: Array) -> Slopes:
         """Derivatives of positions along each way, by way, after and before the rotations of the chassis."""
@@ -126,16 +124,6 @@ class Readout:
             way: (self.chassis.turned_by(alone(laws, way), [places, slopes])[1], slopes)
             for way, slopes in zip(ways, every, strict=True)
         }
-
-    def added(self, laws: Laws) -> list[Array | None]:
-        """Origin plus displacement of the chassis, by time derivative, added to every point; None if zero."""
-        found: list[Array | None] = [*self.chassis.shifts(laws)] or [None] * (self.plan.derivative + 1)
-        origin = self.mechanism.origin[..., None, :]
-        if found[0] is not None:
-            found[0] = origin + found[0]
-        elif origin.any():
-            found[0] = origin
-        return found
 
 
 def alone(laws: Laws, way: Way) -> dict[str, list[Array]]:

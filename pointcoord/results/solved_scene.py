@@ -11,14 +11,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import comb
+from math import comb, factorial
 from typing import ClassVar
 
 import numpy as np
 
 from pointcoord.bounds.summed import Summed
 from pointcoord.errors import WrongArgument
-from pointcoord.numerics.arrays import Array, Indices
+from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.solve.status import Status
@@ -56,27 +56,33 @@ class SolvedScene(ABC):
         """The unknown coordinates, possibly followed by others, and their derivatives.
 
         Args:
-            instants: instants that do not decrease, shape (N,), s.
+            instants: shape (N,), s, in any order.
+            derivatives: highest derivative; fewer are returned if fewer were solved for.
         Returns:
             One array for each derivative, (..., coordinates, N), units per s^d.
         """
 
-    @abstractmethod
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """y and its derivatives, each (..., N, size), units per s^d.
+        """y and its derivatives, each (..., N, size), units per s^d; the arguments are those of `solved`.
 
-        Args:
-            instants: shape (N,), s, in any order.
-            derivatives: highest derivative; fewer are returned if fewer were solved for.
+        The instants are contiguous in memory.
         """
+        mechanism, unknown = self.readout.mechanism, self.solved(instants, derivatives)
+        if mechanism.drawn.ndim > 1:
+            # All designs have the same laws.
+            mechanism = mechanism.taken(np.arange(len(mechanism.drawn))[:, None])
+        laws = {name: law.series(instants, len(unknown) - 1) for name, law in self.functions.items()}
+        known, count = mechanism.known_series(laws), mechanism.map.unknowns
+        return [
+            np.concatenate(
+                [state[..., :count, :], factorial(d) * known[..., d, :].swapaxes(-1, -2)], axis=-2
+            ).swapaxes(-1, -2)
+            for d, state in enumerate(unknown)
+        ]
 
     def summed(self, instants: Array) -> Sequence[Summed]:
         """Magnitudes of the terms that `coordinates` sums for each derivative; empty if nothing is summed."""
         return ()
-
-    def pieces(self, instants: Array) -> Indices:
-        """Number of the series from which each instant is summed, (N,); all 0 if nothing is summed."""
-        return np.zeros(len(instants), dtype=np.intp)
 
     def unsolved(self, instants: Array) -> Array:
         """Proven distance of each pose to its assembly at which the solver stopped, in units, (N,)."""
@@ -94,7 +100,7 @@ class SolvedScene(ABC):
         """The states of the points that the plan needs, by time derivative (see `readout.States`).
 
         Args:
-            instants: instants that do not decrease, shape (N,), s.
+            instants: shape (N,), s.
             rows: a table of results or some columns of one, shape (..., height, N). Reported states are
                 written into it, and the returned states may be views of it.
         """

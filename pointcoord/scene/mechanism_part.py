@@ -380,7 +380,7 @@ class MechanismPart(Part):
 
     def refusal(self, effect: Effect) -> str:
         """Why this car does not have an effect, and what to do; empty if it has."""
-        return effect.refusal(self.topology, self.points, self.axes)
+        return effect.refusal(self.topology, self.axes)
 
     @property
     def outboard(self) -> Array:

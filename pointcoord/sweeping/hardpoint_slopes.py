@@ -192,7 +192,6 @@ class ByHardpoints:
             readout.axes,
             list(map(_duals, chassis.turned_by(laws, in_chassis))),
             list(map(_duals, in_chassis)),
-            [None if one is None else Dual(one, np.zeros_like(one)) for one in readout.added(laws)],
             ways,
         )
         found: dict[str, dict[str, Array]] = {}

@@ -18,7 +18,7 @@ from three_mechanics import MECHANICS, solved_by
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import drawn_inputs
-from pointcoord.effects.car_number import LENGTHS
+from pointcoord.effects.corner import LENGTHS
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.arrays import Array
 from validate.formulations.asked_numbers import per_second

@@ -35,7 +35,7 @@ def _said(effect: Effect) -> Iterator[tuple[str, ...]]:
         definition = f"{one.words} of every {one.of}"
         if one.definition:
             definition = f"{one.words}: {one.definition}"
-        yield one.name, definition, one.sign or effect.sign, one.unit, ""
+        yield one.name, definition, one.sign, one.unit, ""
 
 
 def table() -> str:

@@ -156,7 +156,8 @@ def _text(columns: Columns, target: str, reasons: Mapping[int, str] | None = Non
     signs |= {one.called: one for one in numbers if len(one.path) > 2 and not one.is_force}
     named = {"+": "positive", "-": "negative"}
     directions = [f"{number}: {named[one.mark]} {one.sign}" for number, one in signs.items() if one.sign]
-    directions += [f"forces: {LOADS.sign}"] * any(one.is_force for one in numbers)
+    if any(one.is_force for one in numbers):
+        directions += [f"{force.words}: positive {force.sign}" for force in LOADS.quantities]
     if target != "-":
         return "\n".join([table.markdown, "", *(f"- {line}" for line in directions), ""])
     return text_for(sys.stdout, [table, "", *directions, ""])

@@ -13,6 +13,7 @@ from pointcoord import Motion, NotComputed, OutsideMotion, Scene, simulate
 from pointcoord.effects.numbers import CAR_NUMBERS
 from pointcoord.effects.registry import ANGLES, plan_effects
 from pointcoord.results.by_series import ByChain
+from pointcoord.results.cells import fill_cells
 
 EPS = float(np.finfo(float).eps)
 EVERY = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster", "damper")
@@ -29,8 +30,9 @@ def solved(name: str, effects: tuple[str, ...] | None = None, **changes: object)
 
 def share_in_cells(motion: Motion, instants: np.ndarray) -> float:
     assert isinstance(motion.solved, ByChain)
-    left = motion.solved._close.fill(instants, np.empty((motion.height, len(instants))))
-    return 1.0 - sum(last - first for first, last in left) / len(instants)
+    starts = np.array([segment.start for segment in motion.solved.chain.segments])
+    filled = fill_cells(motion.solved, starts, instants, np.empty((motion.height, len(instants))))
+    return float(filled.mean())
 
 
 def test_a_motion_that_begins_from_rest_keeps_the_digits_of_its_first_rates() -> None:
