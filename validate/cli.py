@@ -23,15 +23,15 @@ COMMANDS: Mapping[str, str] = {
     "sweep": "sweep",
     "plan": "scenes",
     "scenes": "scenes",
-    "new": "new",
+    "new": "scenes",
     "draw": "scenes",
     "plot": "solved",
-    "table": "table",
-    "sensitivity": "sensitivity",
+    "table": "solved",
+    "sensitivity": "sweep",
     "hard": "hard",
     "cost": "cost",
     "import": "hardpoints",
-    "export": "export",
+    "export": "hardpoints",
     "report": "report",
     "fit": "fit",
     "study": "study",
@@ -47,9 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     console = Console()
     try:
-        status = _run(list(sys.argv[1:] if arguments is None else arguments), console)
-        console.flush()
-        return status
+        return _run(list(sys.argv[1:] if arguments is None else arguments), console)
     except BaseException as error:
         ending = _ending(error, console)
         if ending is None or (ending[0] is ExitStatus.NOT_FINISHED and sys.flags.dev_mode):

@@ -35,13 +35,11 @@ from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Accuracy, Solution
 from validate.output.document import program_version
-from validate.plain_text import shown
+from validate.plain_text import named, shown
 
 FORMAT, VERSION = "pointcoord baseline", 1
 PARTS = ("times", "condition", "numbers", "claims")
 """The parts of a solution that are stored as arrays."""
-ALLOWED = "a file that --save-baseline wrote"
-NEVER = np.empty(0)  # the instants of a formulation that a run does not have
 
 Standing = Literal["compared", "new", "gone", "not solved now", "another car", "another motion"]
 UNTOLD = ("new", "gone", "not solved now")
@@ -165,24 +163,22 @@ class Baseline:
         if then is None:
             return Since(name, "new", f"{name} is not in the baseline")
         if other := ", ".join(_differing(then.mechanism, now.mechanism)):
-            return Since(
-                name, "another car", f"{name} is a different car in the baseline; differences: {other}"
-            )
+            words = f"{name} is a different car in the baseline; differences: {other}"
+            return Since(name, "another car", words)
         if now.motion != then.motion:
             words = f"{name} has different inputs or another time in the baseline"
             return Since(name, "another motion", words)
         if not outcomes:
             return Since(name, "not solved now", f"{name} is in the baseline and has no comparison now")
-        moves = tuple(_moves(name, scene, then.solutions, now.solutions, factor))
-        before, after = ({one.formulation for one in kept.solutions} for kept in (then, now))
-        lacking, others = (", ".join(sorted(some)) for some in (before - after, after - before))
-        if not lacking or not others:
-            return Since(name, "compared", "", moves)
+        before, after = ({one.formulation: one for one in kept.solutions} for kept in (then, now))
+        moves = tuple(_moves(name, scene, before, after, factor))
+        lacking, others = (", ".join(sorted(some)) for some in (before.keys() - after, after.keys() - before))
+        replaced = bool(lacking and others)
         words = (
             f"{name} has another formulation than in the baseline, {others} instead of {lacking}, so their "
             "numbers cannot be compared"
         )
-        return Since(name, "compared", words, moves, replaced=True)
+        return Since(name, "compared", words if replaced else "", moves, replaced)
 
 
 def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[Since]) -> dict[str, Any]:
@@ -210,22 +206,22 @@ def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[Sin
 
 
 def _moves(
-    name: str, scene: Scene, then: Sequence[Solution], now: Sequence[Solution], factor: float
+    name: str, scene: Scene, before: Mapping[str, Solution], after: Mapping[str, Solution], factor: float
 ) -> Iterator[Move]:
-    before, after = ({one.formulation: one for one in some} for some in (then, now))
+    """The movement of every number that a formulation gives in either run."""
     for formulation in dict.fromkeys((*after, *before)):
         # A run without this formulation has no numbers of it.
-        nothing = Solution(formulation, NEVER, {}, Accuracy(NEVER))
+        nothing = Solution(formulation, np.empty(0), {}, Accuracy(np.empty(0)))
         one, two = before.get(formulation, nothing), after.get(formulation, nothing)
         asked = {q: tuple({**one.numbers.get(q, {}), **two.numbers.get(q, {})}) for q in QUANTITIES}
         for row in compare_solutions(scene, one, two, name, asked, factor).rows:
-            yield Move(row, _verdict(row, one))
-
-
-def _verdict(row: Comparison, then: Solution) -> MoveVerdict:
-    if row.verdict == "not given":
-        return "gone" if row.name in then.numbers.get(row.quantity, ()) else "new"
-    return "moved" if row.verdict == "disagrees" else row.verdict
+            there = row.name in one.numbers.get(row.quantity, ())
+            verdict: MoveVerdict = "moved"
+            if row.verdict == "not given":
+                verdict = "gone" if there else "new"
+            elif row.verdict != "disagrees":
+                verdict = row.verdict
+            yield Move(row, verdict)
 
 
 def _differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
@@ -252,12 +248,7 @@ def written(scenes: Mapping[str, Kept]) -> bytes:
         return {"formulation": one.formulation, **dict(zip(PARTS, numbered, strict=True))}
 
     kept = [
-        {
-            "scene": name,
-            "mechanism": one.mechanism,
-            "motion": one.motion,
-            "solutions": [*map(plain, one.solutions)],
-        }
+        {"scene": name, **vars(one), "solutions": [*map(plain, one.solutions)]}
         for name, one in scenes.items()
     ]
     head = json.dumps({"program": program_version(), "scenes": kept})
@@ -282,21 +273,17 @@ def read_baseline(target: str) -> Baseline:
     try:
         with open(target, "rb") as stream, np.load(stream, allow_pickle=False) as file:
             found = {name: file[name] for name in file.files}
-    except OSError as error:
-        raise _unusable(target, f"cannot be read ({error.strerror or error})") from None
-    except Exception:  # a damaged npz file raises many kinds of errors
-        raise _unusable(target, "is not an npz file, or a damaged one") from None
-    if str(found.get("format", "")) != FORMAT:
-        raise _unusable(target, "contains no baseline")
-    if str(found.get("version", "")) != str(VERSION):
-        version = shown(str(found.get("version", "none")))
-        raise _unusable(target, f"has version {version}", f"version {VERSION}; save the baseline again")
-    try:
+        if (kind := f"{found['format']} {found['version']}") != f"{FORMAT} {VERSION}":
+            raise ValueError(f"it is a {kind}")
         head = json.loads(str(found["head"]))
         scenes = {one["scene"]: _kept(one, found) for one in head["scenes"]}
         return Baseline(target, str(head["program"]), scenes)
-    except Exception as error:  # a foreign head raises many kinds of errors too
-        raise _unusable(target, f"contains no complete baseline ({shown(str(error))})") from None
+    except Exception as error:  # a damaged file and a foreign one raise many kinds of errors
+        why = shown((error.strerror if isinstance(error, OSError) else None) or named(error))
+        raise UsageError(
+            f"baseline {target}: no baseline, or a damaged one ({why}); allowed: a file that --save-baseline "
+            "of this version wrote"
+        ) from None
 
 
 def _kept(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Kept:
@@ -309,7 +296,3 @@ def _kept(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Kept:
             raise ValueError(f"{sorted(unknown)[0]} is not a quantity")
         solutions.append(solution)
     return Kept(head["mechanism"], head["motion"], tuple(solutions))
-
-
-def _unusable(target: str, problem: str, allowed: str = ALLOWED) -> UsageError:
-    return UsageError(f"baseline {target}: {problem}; allowed: {allowed}")

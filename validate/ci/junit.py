@@ -21,11 +21,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from validate.ci.baseline import UNTOLD, WHY, Move, Since
+from validate.ci.baseline import UNTOLD, WHY, Since
 from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
@@ -53,21 +53,21 @@ def _suites(record: Record) -> Iterator[Element]:
         for outcome in examined.outcomes:
             first, second = (solution.formulation for solution in outcome.solutions)
             pair = {"first": first, "second": second, "instants": str(outcome.compared)}
-            cases = [*(_compared(row, outcome) for row in outcome.rows), *_unusable(outcome)]
-            yield _suite(f"{examined.name}: {first} and {second}", {**scene, **pair, **factor}, cases)
+            yield _suite(f"{examined.name}: {first} and {second}", scene | pair | factor, _cases(outcome))
         if faults := [*_faults(examined)]:
             yield _suite(examined.name, scene, faults)
     baseline = {"baseline": "" if record.baseline is None else record.baseline.target}
     for since in (*record.since, *record.gone):
         properties = {"scene": since.scene, **baseline, **factor}
-        yield _suite(f"{since.scene}: since the baseline", properties, [*_since(since)])
+        yield _suite(f"{since.scene}: since the baseline", properties, _moves(since))
     for name in record.not_run:
         case = _case("run", "skipped", "not run", f"not run: {record.stopped}")
         yield _suite(name, {"scene": name}, [case])
 
 
-def _suite(name: str, properties: Mapping[str, str], cases: Sequence[Element]) -> Element:
-    name, kinds = shown(name), Counter(child.tag for case in cases for child in case)
+def _suite(name: str, properties: Mapping[str, str], found: Iterable[Element]) -> Element:
+    name, cases = shown(name), [*found]
+    kinds = Counter(child.tag for case in cases for child in case)
     counts = {"failures": kinds["failure"], "errors": kinds["error"], "skipped": kinds["skipped"]}
     suite = Element("testsuite", {"name": name, "tests": str(len(cases))})
     suite.attrib |= {what: str(count) for what, count in counts.items()}
@@ -91,25 +91,22 @@ def _case(name: str, kind: str = "", type: str = "", message: str = "", out: Seq
     return case
 
 
-def _compared(row: Comparison, outcome: Outcome) -> Element:
-    name = about(row.quantity, row.name)
-    if row.why in outcome.faults:
-        return _case(name, "error", UNUSABLE, f"{UNUSABLE}: {row.why}")
-    if row.verdict == "not given":
-        return _case(name, "skipped", row.verdict, f"not given: {row.why}")
-    out = _numbers(row, "difference", "tolerance")
-    out = (*out, f"tolerance limited by: {row.rests_on} ({row.part:.0%} of it)")
-    if row.verdict == "not tested":
-        return _case(name, "skipped", row.verdict, f"not tested: {row.why}", out)
-    if row.verdict == "agrees":
-        return _case(name, out=out)
-    message = f"{row.first} and {row.second} disagree: {told_row(row)}"
-    why = tuple(f"possible explanation: {words}" for words in outcome.explained(row))
-    return _case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
-
-
-def _unusable(outcome: Outcome) -> Iterator[Element]:
-    """Cases for given data that belong to no compared number, and for a scene without a verdict."""
+def _cases(outcome: Outcome) -> Iterator[Element]:
+    """A case for each row, for given data that belong to no row, and for a scene without a verdict."""
+    for row in outcome.rows:
+        name, out = about(row.quantity, row.name), _numbers(row, "difference", "tolerance")
+        out += [f"tolerance limited by: {row.rests_on} ({row.part:.0%} of it)"]
+        if row.why in outcome.faults:
+            yield _case(name, "error", UNUSABLE, f"{UNUSABLE}: {row.why}")
+        elif row.verdict == "disagrees":
+            why = [f"possible explanation: {words}" for words in outcome.explained(row)]
+            message = "; ".join((f"{row.first} and {row.second} disagree: {told_row(row)}", *why[:1]))
+            yield _case(name, "failure", row.verdict, message, out + why)
+        elif row.verdict == "agrees":
+            yield _case(name, out=out)
+        else:
+            numbers = out if row.verdict == "not tested" else ()
+            yield _case(name, "skipped", row.verdict, f"{row.verdict}: {row.why}", numbers)
     reported = {row.why for row in outcome.rows}
     rest = [fault for fault in outcome.faults if fault not in reported]
     yield from (_case(f"given data, {i}", "error", UNUSABLE, one) for i, one in enumerate(rest, 1))
@@ -117,17 +114,12 @@ def _unusable(outcome: Outcome) -> Iterator[Element]:
         yield _case("verdict", "error", "no verdict", f"no verdict: {outcome.why_no_verdict}")
 
 
-def _numbers(row: Comparison, gap: str, bound: str) -> tuple[str, ...]:
-    values = (
-        (gap, row.difference, row.unit),
-        (bound, row.tolerance, row.unit),
-        (f"{gap} / {bound}", row.share, ""),
-    )
-    lines = [
-        f"{what}: {f'{value:.6g} {unit}'.rstrip() if math.isfinite(value) else 'not a number'}"
-        for what, value, unit in values
-    ]
-    return (*lines, f"instant: {when(row)}")
+def _numbers(row: Comparison, gap: str, bound: str) -> list[str]:
+    def line(what: str, value: float, unit: str) -> str:
+        return f"{what}: {f'{value:.6g} {unit}'.rstrip() if math.isfinite(value) else 'not a number'}"
+
+    sizes = [line(gap, row.difference, row.unit), line(bound, row.tolerance, row.unit)]
+    return [*sizes, line(f"{gap} / {bound}", row.share, ""), f"instant: {when(row)}"]
 
 
 def _faults(examined: Examined) -> Iterator[Element]:
@@ -141,20 +133,18 @@ def _faults(examined: Examined) -> Iterator[Element]:
         yield _case(f"solved by {failure.formulation}", "error", failure.error, failure.message)
 
 
-def _since(since: Since) -> Iterator[Element]:
+def _moves(since: Since) -> Iterator[Element]:
+    """A case for a scene that is not compared as it was, and for each number then or now."""
     if since.words:
         standing = "another formulation" if since.replaced else since.standing
         yield _case("in the baseline", "skipped" if standing in UNTOLD else "error", standing, since.words)
     for move in since.moves:
-        yield _moved(move, move in since.lost)
-
-
-def _moved(move: Move, lost: bool) -> Element:
-    row, verdict = move.row, move.verdict
-    name = f"{move.formulation}: {about(row.quantity, row.name)}"
-    out = () if verdict in ("new", "gone") else _numbers(row, "moved", "bound")
-    if verdict == "agrees":
-        return _case(name, out=out)
-    more = f": {told_row(row)}" if verdict == "moved" else ""
-    kind = "failure" if lost or verdict == "moved" else "skipped"
-    return _case(name, kind, verdict, f"{verdict}: {WHY[verdict]}{more}", out)
+        row, verdict = move.row, move.verdict
+        name = f"{move.formulation}: {about(row.quantity, row.name)}"
+        out = [] if verdict in ("new", "gone") else _numbers(row, "moved", "bound")
+        if verdict == "agrees":
+            yield _case(name, out=out)
+        else:
+            more = f": {told_row(row)}" if verdict == "moved" else ""
+            kind = "failure" if verdict == "moved" or move in since.lost else "skipped"
+            yield _case(name, kind, verdict, f"{verdict}: {WHY[verdict]}{more}", out)

@@ -5,20 +5,10 @@ Names and messages are escaped: characters that could be Markdown or HTML become
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
+from validate.ci import verdict
 from validate.ci.record import Record
-from validate.ci.verdict import (
-    HEAD,
-    by_scene,
-    complaints,
-    disagreements,
-    scene_row,
-    sentence,
-    since_lines,
-    undecided,
-)
-from validate.comparison.examined import Examined
 from validate.exit_status import MEANINGS, ExitStatus
 from validate.output.table import Cell, Table, markdown
 
@@ -29,38 +19,31 @@ ROWS = 500
 
 def summary(record: Record, status: ExitStatus) -> str:
     """The Markdown of a run that ends with a status."""
-    blocks = [
-        "## pointcoord validate",
-        f"**{status.verdict.capitalize()}**: {markdown(sentence(record))} "
-        f"(exit status {status.value}: {markdown(MEANINGS[status])}).",
-    ]
-    rows = [_row(one) for one in sorted(record.examined, key=lambda one: one.status == 0)[:ROWS]]
-    more = len(record.examined) - len(rows)
-    blocks += [
-        Table(HEAD, tuple(rows)).markdown,
-        *([f"and {more} more scenes: --json has them all"] if more else ()),
-    ]
-    for title, of in (
-        ("What disagrees", disagreements),
-        ("Without a verdict", undecided),
-        ("Not compared", complaints),
-    ):
-        blocks += _list(f"### {title}", by_scene(record, of))
+    return "\n\n".join(_blocks(record, status)) + "\n"
+
+
+def _blocks(record: Record, status: ExitStatus) -> Iterator[str]:
+    yield "## pointcoord validate"
+    meaning = f"exit status {status.value}: {markdown(MEANINGS[status])}"
+    yield f"**{status.verdict.capitalize()}**: {markdown(verdict.sentence(record))} ({meaning})."
+    rows = map(verdict.scene_row, sorted(record.examined, key=lambda one: one.status == 0)[:ROWS])
+    yield Table(
+        verdict.HEAD, tuple((name, Cell(word, "", word), text.strip()) for name, word, text in rows)
+    ).markdown
+    if (more := len(record.examined) - ROWS) > 0:
+        yield f"and {more} more scenes: --json has them all"
+    yield from _list("What disagrees", verdict.by_scene(record, verdict.disagreements))
+    yield from _list("Without a verdict", verdict.by_scene(record, verdict.undecided))
+    yield from _list("Not compared", verdict.by_scene(record, verdict.complaints))
     if record.baseline is not None:
-        lines = [f"{one.scene}: {line}" for one in record.since for line in since_lines(one)]
+        lines = [f"{one.scene}: {line}" for one in record.since for line in verdict.since_lines(one)]
         lines += [one.words for one in record.gone]
-        blocks += _list(f"### Since the baseline {markdown(record.baseline.target)}", lines)
-    return "\n\n".join(blocks) + "\n"
+        yield from _list(f"Since the baseline {record.baseline.target}", lines)
 
 
-def _row(examined: Examined) -> tuple[str, Cell, str]:
-    name, verdict, share = scene_row(examined)
-    return name, Cell(verdict, verdict=verdict), share.strip()
-
-
-def _list(title: str, lines: Sequence[str]) -> list[str]:
+def _list(title: str, lines: Sequence[str]) -> Iterator[str]:
     """The first lines as a list with a title; nothing if there are no lines."""
-    if not lines:
-        return []
-    more = [f"- and {len(lines) - LISTED} more"] if len(lines) > LISTED else []
-    return [title, "\n".join([*(f"- {markdown(line)}" for line in lines[:LISTED]), *more])]
+    if lines:
+        yield f"### {markdown(title)}"
+        more = [f"- and {len(lines) - LISTED} more"] if len(lines) > LISTED else []
+        yield "\n".join([*(f"- {markdown(line)}" for line in lines[:LISTED]), *more])

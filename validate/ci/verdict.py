@@ -11,17 +11,7 @@ from validate.ci.record import Record
 from validate.comparison.compare import Outcome, Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
-from validate.output.report import (
-    about,
-    explained_lines,
-    held_to,
-    pair_of,
-    severity,
-    share_of,
-    silent_lines,
-    told_row,
-    when,
-)
+from validate.output import report
 from validate.plain_text import counted_as, gathered, shown, some_of, typed
 from validate.solvers.plain import SolverFailed
 
@@ -29,19 +19,24 @@ NAMED = 10  # largest number of scenes that a sentence names for each verdict
 FAULTS = 3  # largest number of lines on unusable data below the line of a scene
 NUMBERS = 8  # largest number of numbers in a sentence: the notes of the table have them all
 NOT_TESTED = "not tested"
+VERDICTS = {ExitStatus.AGREE: "agrees", ExitStatus.DISAGREE: "disagrees"}
+# Why a scene has no verdict, and what to do about it.
+REASONS = {ExitStatus.WRONG_INPUT: "wrong input", ExitStatus.NOT_FINISHED: "failed"}
 NEXT = {
     "refused": "pointcoord plan {} shows how far each input can go and what stops it",
-    ExitStatus.WRONG_INPUT.verdict: "correct {} as its message says",
+    "wrong input": "correct {} as its message says",
     "failed": "report the failure on {}, with its file",
 }
-"""What to do about a scene that was not tested, by the reason."""
 # The line of a scene shows the number whose verdict is last in this order.
 OF_THE_LINE = ("not given", NOT_TESTED, "agrees", "disagrees")
+HEAD = ("scene", "verdict", "largest share of a tolerance, and where")
+"""The header of the table of scenes, on the terminal and in Markdown."""
+Lines = Callable[[Examined], Iterator[str]]
 
 
 def word(status: ExitStatus) -> str:
     """The verdict that belongs to an exit status."""
-    return {ExitStatus.AGREE: "agrees", ExitStatus.DISAGREE: "disagrees"}.get(status, NOT_TESTED)
+    return VERDICTS.get(status, NOT_TESTED)
 
 
 def standing(examined: Examined) -> tuple[str, str]:
@@ -49,33 +44,25 @@ def standing(examined: Examined) -> tuple[str, str]:
 
     The reason is empty if the scene was solved, but error bounds are too wide to test it.
     """
-    status = examined.status
-    if word(status) != NOT_TESTED or not examined.complaint:
-        return word(status), ""
-    if status is ExitStatus.WRONG_INPUT:
-        return NOT_TESTED, status.verdict
-    return NOT_TESTED, "failed" if status is ExitStatus.NOT_FINISHED else "refused"
+    verdict = word(examined.status)
+    why = REASONS.get(examined.status, "refused") if verdict == NOT_TESTED and examined.complaint else ""
+    return verdict, why
 
 
 def sentence(record: Record) -> str:
     """The verdict of a run in a sentence, which names everything that does not agree."""
-    parts = [*_of_files(record)] if record.files else [*_of_scenes(record)]
-    if record.factor != 1.0:
-        parts.append(held_to(record.factor))
+    parts = [*(_of_files(record) if record.files else _of_scenes(record))]
+    parts += [report.held_to(record.factor)] if record.factor != 1.0 else []
     return "; ".join([*parts, *_since(record)])
 
 
 def _of_files(record: Record) -> Iterator[str]:
     for name, file in record.files.items():
         rows, source = file.outcome.rows, file.outcome.solutions[0].formulation
-        by_verdict = gathered((str(row.verdict), about(row.quantity, row.name)) for row in rows)
+        by_verdict = gathered((str(row.verdict), report.about(row.quantity, row.name)) for row in rows)
         agree = len(by_verdict.pop("agrees", ()))
         yield f"{source} and the car of {name}: {agree} of {len(rows)} agree"
-        yield from _by_verdict(by_verdict)
-
-
-def _by_verdict(names: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    yield from (f"{verdict}: {some_of(some, NAMED)}" for verdict, some in sorted(names.items()))
+        yield from _named(by_verdict)
 
 
 def _of_scenes(record: Record) -> Iterator[str]:
@@ -83,7 +70,7 @@ def _of_scenes(record: Record) -> Iterator[str]:
     by_verdict = gathered((f"{verdict} ({why})" if why else verdict, name) for verdict, why, name in verdicts)
     agree, count = len(by_verdict.pop("agrees", ())), len(record.names)
     yield f"{agree} of {count} {'scene agrees' if count == 1 else 'scenes agree'}"
-    yield from _by_verdict(by_verdict)
+    yield from _named(by_verdict)
     if record.not_run:
         yield f"not run ({record.stopped}): {some_of(record.not_run, NAMED)}"
     # How many of the requested numbers were compared, for a solver that may give only some of them.
@@ -95,17 +82,20 @@ def _of_scenes(record: Record) -> Iterator[str]:
         yield f"{counts['agrees'] + counts['disagrees']} of {every} numbers compared{back}{rest}"
 
 
+def _named(by_verdict: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    yield from (f"{verdict}: {some_of(some, NAMED)}" for verdict, some in sorted(by_verdict.items()))
+
+
 def _since(record: Record) -> Iterator[str]:
     """Numbers and scenes that moved, are gone, or could not be compared with the baseline."""
     if record.baseline is None:
         return
     held = [since for since in record.since if since.compared]
     moved = [since.scene for since in held if since.moved]
-    target = shown(record.baseline.target)
-    if moved:
-        yield f"moved since the baseline {target}: {some_of(moved, NAMED)}"
-    else:
-        yield f"nothing {'moved since' if held else 'could be compared with'} the baseline {target}"
+    since_when = (
+        f"{'moved since' if held else 'could be compared with'} the baseline {shown(record.baseline.target)}"
+    )
+    yield f"{since_when}: {some_of(moved, NAMED)}" if moved else f"nothing {since_when}"
     lost = [
         f"{since.scene}: {some_of(whats, NUMBERS)} by {formulation}"
         for since in record.since
@@ -114,8 +104,7 @@ def _since(record: Record) -> Iterator[str]:
     if lost:
         yield f"given in the baseline and not now: {'; '.join(lost)}"
     yield from (f"no verdict: {why}" for why in undecided_since(record))
-    if record.gone:
-        gone = [since.scene for since in record.gone]
+    if gone := [since.scene for since in record.gone]:
         yield f"gone, in the baseline and not in this run: {some_of(gone, NAMED)}"
 
 
@@ -126,22 +115,19 @@ def undecided_since(record: Record) -> Iterator[str]:
             yield since.words or f"{since.scene}: some numbers are not tested"
 
 
-HEAD = ("scene", "verdict", "largest share of a tolerance, and where")
-"""The header of the table of scenes, on the terminal and in Markdown."""
-
-
 def scene_row(examined: Examined) -> tuple[str, str, str]:
     """Name, verdict, and the largest share of a tolerance with its place, or the reason why there is none.
 
     If one formulation gives only some of the instants, the text says how many were compared.
     """
-    verdict, why = standing(examined)
-    # Unusable data follow in lines of their own.
-    most = 1 if any(outcome.faults for outcome in examined.outcomes) else 2
-    text = why or (silence(examined, most) if verdict == NOT_TESTED else "")
+    verdict, text = standing(examined)
+    if verdict == NOT_TESTED and not text:
+        # Unusable data follow in lines of their own.
+        text = silence(examined, 1 if any(outcome.faults for outcome in examined.outcomes) else 2)
     if not text and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
-        row, outcome = max(rows, key=lambda one: severity(one[0], OF_THE_LINE))
-        text = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
+        row, outcome = max(rows, key=lambda one: report.severity(one[0], OF_THE_LINE))
+        about, when = report.about(row.quantity, row.name), report.when(row, 4)
+        text = f"{report.share_of(row.share):>4}  {about} at {when}"
         if outcome is not examined.outcomes[0]:
             text += f", {outcome.solutions[0].formulation}"
     asked = [(one.compared, len(one.solutions[1].times)) for one in examined.outcomes]
@@ -168,7 +154,7 @@ def scene_notes(examined: Examined) -> Iterator[str]:
             yield from (f"  cannot be used: {fault}" for fault in outcome.faults[:FAULTS])
             if more := outcome.faults[FAULTS:]:
                 yield f"  cannot be used: {counted_as(len(more), 'further number')}; -v prints all lines"
-            yield from (f"  {line}" for line in explained_lines(outcome))
+            yield from (f"  {line}" for line in report.explained_lines(outcome))
 
 
 def next_step(record: Record, verbose: bool = False) -> str:
@@ -181,25 +167,21 @@ def next_step(record: Record, verbose: bool = False) -> str:
         table = "" if verbose else "-v prints the table of every quantity, "
         steps.append(f"{table}--report DIR makes a page with both models in motion")
     for (_, why), one in by_standing.items():
-        solvers = [r.formulation for r in one.refusals if r.error == SolverFailed.__name__]
-        if solvers and why == "refused":
+        if solvers := [r.formulation for r in one.refusals if r.error == SolverFailed.__name__]:
             steps.append(f"correct {solvers[0]} as its message says")
-        elif why in NEXT:
+        elif why:
             steps.append(NEXT[why].format(typed(one.name)))
     if any(since.status is ExitStatus.DISAGREE for since in record.since):
         steps.append("if the new numbers are right, save them with --save-baseline FILE")
     return f"Next: {'; '.join(steps)}." if steps else ""
 
 
-Lines = Callable[[Examined], Iterator[str]]
-
-
 def disagreements(examined: Examined) -> Iterator[str]:
     """The numbers that disagree, the worst first, and possible explanations."""
     for outcome in examined.outcomes:
         for row in sorted(outcome.disagreements, key=lambda row: -row.share):
-            yield f"{pair_of(outcome)}: {told_row(row)}"
-        yield from explained_lines(outcome)
+            yield f"{report.pair_of(outcome)}: {report.told_row(row)}"
+        yield from report.explained_lines(outcome)
 
 
 def complaints(examined: Examined) -> Iterator[str]:
@@ -212,13 +194,13 @@ def complaints(examined: Examined) -> Iterator[str]:
 def undecided(examined: Examined) -> Iterator[str]:
     """The numbers without a verdict, grouped by the reason."""
     for outcome in examined.outcomes:
-        yield from (f"{pair_of(outcome)}: {line}" for line in _undecided(outcome))
+        yield from (f"{report.pair_of(outcome)}: {line}" for line in _undecided(outcome))
 
 
 def _undecided(outcome: Outcome) -> Iterator[str]:
-    yield from silent_lines(outcome)
+    yield from report.silent_lines(outcome)
     rows = sorted(outcome.undecided, key=lambda row: row.verdict == "not given")
-    reasons = gathered((f"{row.verdict}: {row.why}", about(row.quantity, row.name)) for row in rows)
+    reasons = gathered((f"{row.verdict}: {row.why}", report.about(row.quantity, row.name)) for row in rows)
     yield from (f"{some_of(words, NUMBERS)}: {reason}" for reason, words in reasons.items())
 
 
@@ -250,18 +232,15 @@ def since_lines(since: Since) -> Iterator[str]:
     if since.words:
         yield since.words
     for move in sorted(since.moved, key=lambda move: -move.row.share):
-        yield f"MOVED, solved by {move.formulation}: {told_row(move.row)}"
-    shared = {move.formulation for move in since.moves if move.verdict not in ("new", "gone")}
+        yield f"MOVED, solved by {move.formulation}: {report.told_row(move.row)}"
     untold: tuple[MoveVerdict, ...] = ("new", "gone", "not tested")
     for verdict in untold:
-        found = _by_formulation(move for move in since.moves if move.verdict == verdict)
-        for formulation, whats in found.items():
-            what = ", ".join(whats) if formulation in shared else "every number"
-            yield f"{verdict}, {WHY[verdict]}: {what} by {formulation}"
+        for formulation, whats in _by_formulation(m for m in since.moves if m.verdict == verdict).items():
+            yield f"{verdict}, {WHY[verdict]}: {some_of(whats, NUMBERS)} by {formulation}"
     if same := sum(move.verdict == "agrees" for move in since.moves):
         yield f"{counted_as(same, 'number')} did not move"
 
 
 def _by_formulation(moves: Iterable[Move]) -> dict[str, list[str]]:
     """The names of the moved numbers, by formulation."""
-    return gathered((move.formulation, about(move.row.quantity, move.row.name)) for move in moves)
+    return gathered((move.formulation, report.about(move.row.quantity, move.row.name)) for move in moves)

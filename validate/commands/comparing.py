@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 from pointcoord import Scene
@@ -26,75 +25,57 @@ if TYPE_CHECKING:
     from validate.html.run import Drawings, Run
 
 
-@dataclass(frozen=True)
-class Page:
-    """The HTML page of a run.
+def page_folder(options: argparse.Namespace) -> str | None:
+    """The folder of the page that `--report` asks for, or None. Checked before anything is solved.
 
-    Attributes:
-        folder: where it is written.
-        drawings: the curves and pictures of the scenes.
-        with_more: for `pointcoord report`: adds further results to the run for its page. Such a run prints
-            only a sentence with the verdict, and the path of the page.
+    Raises:
+        MissingLibrary: the extra `report`, which a page needs, is not installed.
+        UsageError: the folder has no name, or cannot be used for a report.
+        NotFinished: the folder cannot be written.
     """
+    if options.report is None:
+        return None
+    from validate.html.page import require_folder
 
-    folder: str
-    drawings: Drawings
-    with_more: Callable[[Run], Run] | None = None
+    if not options.report.strip():
+        option = "" if "folder" in options else "--report "
+        raise UsageError(
+            f"{option}{options.report!r} names no folder; give the path of a folder; it is made if needed"
+        )
+    for package in ("jinja2", "plotly.offline"):
+        needed("report", package)
+    require_folder(options.report)
+    return str(options.report)
 
-    @classmethod
-    def of(cls, options: argparse.Namespace, scenes: int = 0) -> Page | None:
-        """The page that `--report` asks for, or None. Checked before anything is solved.
 
-        Args:
-            scenes: number of scenes of the run.
-        Raises:
-            MissingLibrary: the extra `report`, which a page needs, is not installed.
-            UsageError: the folder has no name, or cannot be used for a report.
-            NotFinished: the folder cannot be written.
-        """
-        if options.report is None:
-            return None
-        from validate.html.page import require_folder
-        from validate.html.run import Drawings
+def write_page(folder: str, run: Run, console: Console) -> str:
+    """Write the page of a run; returns its path, as printed."""
+    from validate.html.page import write_report
 
-        if not options.report.strip():
-            option = "" if "folder" in options else "--report "
-            raise UsageError(
-                f"{option}{options.report!r} names no folder; give the path of a folder; it is made if needed"
-            )
-        for package in ("jinja2", "plotly.offline"):
-            needed("report", package)
-        require_folder(options.report)
-        return cls(options.report, Drawings(scenes), getattr(options, "with_more", None))
-
-    @property
-    def place(self) -> str:
-        """The path of the page, as printed."""
-        return shown(os.path.join(self.folder, "index.html"))
-
-    def write(self, run: Run, console: Console) -> Run:
-        """Write the page of a run; returns the run with the results that `with_more` added."""
-        from validate.html.page import write_report
-
-        whole = run if self.with_more is None else self.with_more(run)
-        write_report(self.folder, whole)
-        console.written[self.place] = "the report"
-        return whole
+    write_report(folder, run)
+    place = shown(os.path.join(folder, "index.html"))
+    console.written[place] = "the report"
+    return place
 
 
 @dataclass(frozen=True)
 class Comparing:
-    """A run of comparisons in progress; `journal.status` is its exit status."""
+    """A run of comparisons in progress.
+
+    Attributes:
+        journal: `journal.status` is the exit status of the run.
+        drawings: the curves and pictures of the scenes for the page; None if there is no page.
+    """
 
     record: Record
     journal: Journal
-    page: Page | None
+    drawings: Drawings | None
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
         """Add the results of a scene, which the page draws if it is given, and write all results so far."""
         self.record.add(examined, since, scene)
-        if self.page is not None:
-            self.page.drawings.add(examined, scene)
+        if self.drawings is not None:
+            self.drawings.add(examined, scene)
         self.journal.keep()
 
 
@@ -104,26 +85,37 @@ def comparing(
 ) -> Iterator[Comparing]:
     """A run of comparisons. Its files are written however it ends; its page only after a whole run.
 
+    `pointcoord report` gives `options.with_more`, which adds further results to the run for its page. Such a
+    run prints only a sentence with the verdict, and the path of the page.
+
     Raises:
         MissingLibrary, UsageError: the page cannot be made. NotFinished: a result cannot be written.
     """
-    page = Page.of(options, len(record.names))
+    folder, with_more = page_folder(options), getattr(options, "with_more", None)
     record.kept = None if options.save_baseline is None else {}
-    what = partial(share_of_all, record.examined, record.names, noun)
-    journal = Journal.of(options, console, "validate", record.data, what)
-    mute, brief = console.mute, page is not None and page.with_more is not None
-    console.mute = mute or brief
-    with journal.closing(), journal.closing(partial(_leave_files, options, record, console, journal)):
-        yield Comparing(record, journal, page)
-        journal.status = record.status
-        if page is not None:
-            from validate.html.run import Run
+    mute, console.mute = console.mute, console.mute or with_more is not None
 
-            made = page.write(Run(journal.head, record, page.drawings.kept), console)
-            journal.status = made.status
-            console.mute = mute
-            if brief:
-                console.say(f"{made.sentence}\n{page.place}")
+    def done() -> str:
+        return share_of_all(record.examined, record.names, noun)
+
+    def leave(journal: Journal) -> None:
+        _leave_files(options, record, console, journal)
+
+    with Journal.of(options, console, "validate", record.data, done, leave) as journal:
+        if folder is None:
+            yield Comparing(record, journal, None)
+            journal.status = record.status
+            return
+        from validate.html.run import Drawings, Run
+
+        drawings = Drawings(len(record.names))
+        yield Comparing(record, journal, drawings)
+        run = Run(journal.head, record, drawings.kept)
+        run = run if with_more is None else with_more(run)
+        place, journal.status = write_page(folder, run, console), run.status
+        console.mute = mute
+        if with_more is not None:
+            console.say(f"{run.sentence}\n{place}")
 
 
 def _leave_files(options: argparse.Namespace, record: Record, console: Console, journal: Journal) -> None:
@@ -138,11 +130,11 @@ def _leave_files(options: argparse.Namespace, record: Record, console: Console, 
         return
     what = f"{len(record.examined)} of {len(record.names)} scenes"
     if record.kept is not None:
-        why = "" if record.kept else "no scene was compared"
-        if why := why if record.ended else record.stopped:
-            console.complain(f"baseline {options.save_baseline}: not written, because {why}")
-        else:
+        if record.ended and record.kept:
             console.put(options.save_baseline, written(record.kept), what)
+        else:
+            why = "no scene was compared" if record.ended else record.stopped
+            console.complain(f"baseline {options.save_baseline}: not written, because {why}")
     # Imported here: most runs do not write these files.
     if options.junit is not None:
         from validate.ci.junit import junit

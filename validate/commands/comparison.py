@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -23,6 +24,7 @@ from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation, second_there
 from validate.output import report
 from validate.output.console import Console
+from validate.output.table import Part
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import WHY_NOT_EQUAL, compare_with_paper
 from validate.plain_text import counted_as, shown
@@ -61,15 +63,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     kind = require_sense(options)
     if options.tolerance_factor is None:
         options.tolerance_factor = 1.0
-    # Imported here: most runs compare neither a file nor tables.
-    if kind == TABLES:
-        from validate.commands.tables import run as run_tables
+    if kind in (TABLES, A_FILE):
+        # Imported here: most runs compare neither.
+        from validate.commands import data
 
-        return run_tables(options, console)
-    if kind == A_FILE:
-        from validate.commands.data import run as run_data
-
-        return run_data(options, console)
+        return data.run_tables(options, console) if kind == TABLES else data.run_data(options, console)
     return _compare_scenes(options, console)
 
 
@@ -89,47 +87,50 @@ def require_sense(options: argparse.Namespace) -> str:
 
 
 def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
-    names, pairs = _names(options), _pairs(options, console)
+    names, pairs, verbose = _names(options), _pairs(options, console), options.verbose
     if options.save_baseline == "-":
         raise UsageError("--save-baseline - is not a file; a baseline is binary: give the path of a file")
     for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
         formulation(name)  # a wrong name is reported before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
-    shown_names = [*map(name_of, names)]
-    record, width = Record(shown_names, options.tolerance_factor, baseline), max(map(len, shown_names))
+    record = Record([*map(name_of, names)], options.tolerance_factor, baseline)
     with (
         _solver(options) as own,
         comparing(options, console, record) as compared,
-        console.progress("scenes", total=len(names), lines="folder" in options) as progress,
+        console.progress("scenes", total=len(names), everywhere="folder" in options) as progress,
     ):
         # All scenes are read before any is solved.
         loaded = [_loaded(name, console) for name in names]
         pair_names = "; ".join(" and ".join(pair) for pair in pairs)
         console.say(f"{pair_names}: {counted_as(len(names), 'scene')}\n")
-        if not options.verbose:
+        width = max(map(len, record.names))
+        if not verbose:
             console.say(verdict.scene_line(verdict.HEAD, "time", width))
-        for place, (name, scene) in enumerate(zip(names, loaded, strict=True)):
+        for done, (name, scene) in enumerate(zip(names, loaded, strict=True), 1):
             since, began = None, time.monotonic()
-            progress(shown_names[place], place)
+            progress(record.names[done - 1], done - 1)
             if isinstance(scene, Scene):
                 printed = name in PAPER_SCENES and not own
-                examined = explained(scene, examine(name, scene, pairs, printed, record.factor, own))
+                examined = _explained(scene, examine(name, scene, pairs, printed, record.factor, own))
                 if baseline is not None:
                     since = baseline.since(examined.name, scene, examined.outcomes, record.factor)
+                if examined.complaint:
+                    console.complain(examined.complaint)
             else:
                 examined = scene
-            _say(examined, since, time.monotonic() - began, options.verbose, console, width)
+            took = time.monotonic() - began
+            console.show([*_lines(examined, verbose, took, width), *_moved(since, verbose)])
             compared.add(examined, since, scene if isinstance(scene, Scene) else None)
-            if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
+            if options.fail_fast and ends_the_run(examined, since) and done < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
                 break
         if not own and not record.not_run and not options.scenes and options.scenes_dir is None:
             record.paper = compare_with_paper()
-        _say_at_the_end(record, options.verbose, console)
+        _say_at_the_end(record, verbose, console)
     return compared.journal.status
 
 
-def explained(scene: Scene, examined: Examined) -> Examined:
+def _explained(scene: Scene, examined: Examined) -> Examined:
     """The results of a scene, with possible explanations of its disagreements."""
     if not any(outcome.disagreements for outcome in examined.outcomes):
         return examined
@@ -157,29 +158,23 @@ def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
 
 
 def _names(options: argparse.Namespace) -> list[str]:
-    """The named scenes, then the scenes of --scenes-dir; all built-in scenes if neither is given."""
-    folder = [] if options.scenes_dir is None else _scenes_below(options.scenes_dir)
-    # A repeated scene is compared once.
-    return list(dict.fromkeys((*options.scenes, *folder))) or list(DEFAULT_SCENES)
+    """The named scenes, then the scenes of --scenes-dir, each once; all built-in scenes if neither is given.
 
-
-def _scenes_below(folder: str) -> list[str]:
-    """The paths of all scene files in a folder and those below it, sorted; links to folders are not followed.
-
-    A mechanism's file, which stands beside the scenes that name it, is no scene.
+    Scene files below a folder are sorted by their paths; links to folders are not followed.
 
     Raises:
         UsageError: there is no such folder, or it holds no scene.
     """
-    try:
-        files = sorted(path for path in Path(folder).rglob("*.toml") if path.is_file())
-        found = [path for path in files if not _is_mechanism(path)]
-        problem = "contains no scene" if Path(folder).is_dir() else "is not a folder"
-    except (OSError, ValueError) as error:
-        found, problem = [], f"cannot be read ({error})"
-    if not found:
-        raise UsageError(f"--scenes-dir {folder}: {problem}; allowed: a folder with a .toml file below it")
-    return list(map(str, found))
+    found: list[str] = []
+    if (folder := options.scenes_dir) is not None:
+        files = sorted(Path(folder).rglob("*.toml")) if os.path.isdir(folder) else []
+        found = [str(path) for path in files if path.is_file() and not _is_mechanism(path)]
+        if not found:
+            problem = "contains no scene" if os.path.isdir(folder) else "is not a folder"
+            raise UsageError(
+                f"--scenes-dir {folder}: {problem}; allowed: a folder with a .toml file below it"
+            )
+    return list(dict.fromkeys((*options.scenes, *found))) or list(DEFAULT_SCENES)
 
 
 def _is_mechanism(path: Path) -> bool:
@@ -220,32 +215,33 @@ def _loaded(name: str, console: Console) -> Scene | Examined:
     try:
         return load_scene(name)
     except SceneError as error:
-        bad = Examined(name=name_of(name), problem=str(error))
-        console.complain(bad.complaint)
-        return bad
+        console.complain(str(error))
+        return Examined(name=name_of(name), problem=str(error))
 
 
-def _say(
-    examined: Examined, since: Since | None, seconds: float, verbose: bool, console: Console, width: int
-) -> None:
-    """Print the line of a scene, or with --verbose its tables."""
-    if examined.complaint and examined.problem is None:
-        console.complain(examined.complaint)
+def _lines(examined: Examined, verbose: bool, seconds: float, width: int) -> Iterator[Part]:
+    """The line of a scene and the lines below it, or with --verbose its tables."""
     if not verbose:
-        line = verdict.scene_line(verdict.scene_row(examined), seconds, width)
-        console.show([line, *verdict.scene_notes(examined)])
-    for i, outcome in enumerate(examined.outcomes if verbose else ()):
-        notes = (f"  note: {note}" for note in examined.defaults if not i)
-        console.show((*report.outcome_parts(outcome), *notes, ""))
+        yield verdict.scene_line(verdict.scene_row(examined), seconds, width)
+        yield from verdict.scene_notes(examined)
+        return
+    for i, outcome in enumerate(examined.outcomes):
+        yield from report.outcome_parts(outcome)
+        yield from (f"  note: {note}" for note in examined.defaults if not i)
+        yield ""
+
+
+def _moved(since: Since | None, verbose: bool) -> Iterator[Part]:
+    """What has moved since the baseline."""
     if since is not None and (verbose or since.status is not ExitStatus.AGREE):
-        lines = (f"  {line}" for line in verdict.since_lines(since))
-        console.show((f"{since.scene}: since the baseline", *lines, ""))
+        yield f"{since.scene}: since the baseline"
+        yield from (f"  {line}" for line in verdict.since_lines(since))
+        yield ""
 
 
 def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
     """Print the warnings, the verdict of the run, and what to do next."""
-    for warning in verdict.by_scene(record, lambda one: iter(() if one.complaint else one.warnings)):
-        console.warn(warning)
+    console.warn(*verdict.by_scene(record, lambda one: iter(() if one.complaint else one.warnings)))
     if verbose:
         console.show((*report.printed_parts(record.examined, record.findings), ""))
         if record.paper:

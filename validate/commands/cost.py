@@ -9,15 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from validate.commands.comparing import Page
+from validate.commands.comparing import page_folder, write_page
 from validate.commands.pages import Command
-from validate.commands.usage import (
-    STANDARD_INPUT,
-    given,
-    load_scene,
-    name_of,
-    named_scene,
-)
+from validate.commands.usage import STANDARD_INPUT, given, load_scene, name_of, named_scene
 from validate.cost.report import Report
 from validate.cost.table import frame, measured_here
 from validate.errors import UsageError
@@ -39,12 +33,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.from_rows and (more := given(options, "scenes", "--ways", "--quick")):
         what = "SCENE" if more[0] == "scenes" else more[0]
         raise UsageError(f"--from-rows shows all rows of {options.rows}; leave {what} out")
-    if options.report is not None:
-        needed("--report", "matplotlib")
-    for package in ("pandas", "pyarrow"):
+    for package in ("pandas", "pyarrow", *(["matplotlib"] if options.report is not None else [])):
         needed("cost", package)
-    page = Page.of(options)
-    command = shlex.join(options.command)
+    folder, command = page_folder(options), shlex.join(options.command)
     if options.from_rows:
         study, report = None, Report.of_file(options.rows, command)
     else:
@@ -53,17 +44,32 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     def rows_so_far() -> str:
         return counted_as(len(report.rows), "row") if report.rows else ""
 
-    journal = Journal.of(options, console, "cost", lambda: report.data(), rows_so_far)
-    with journal.closing():
+    with Journal.of(options, console, "cost", lambda: report.data(), rows_so_far) as journal:
         if study is not None:
             from validate.cost.study import measure
 
-            with console.progress("cost") as progress:
+            with console.progress("cost", everywhere=True) as progress:
                 for rows in measure(study, progress):
                     report = replace(report, rows=(*report.rows, *rows))
                     write_content(options.rows, frame(report.rows).to_parquet())
-                    console.written[options.rows] = counted_as(len(report.rows), "row")
-        journal.status = _print_and_write(report, page, options, console)
+                    console.written[options.rows] = rows_so_far()
+        console.show(report.parts())
+        if options.csv is not None:
+            console.put(options.csv, report.csv(), "the rows")
+        if folder is not None:
+            # Imported here: most runs write no page.
+            from validate.html.page import make_folder
+            from validate.html.run import Run
+
+            make_folder(folder)
+            if (picture := report.headline()) is not None:
+                write_content(os.path.join(folder, "headline.svg"), picture)
+            write_page(folder, Run(Head.of("cost", options.command), cost=report), console)
+        elif study is not None and not console.quiet and not console.mute:
+            _draw_beside(options.rows, report, console)
+        if not report.measured:
+            console.complain(f"nothing could be measured; {options.rows} says why, row by row")
+            journal.status = ExitStatus.NO_VERDICT
     return journal.status
 
 
@@ -87,29 +93,6 @@ def _study(options: argparse.Namespace, command: str) -> Study:
         with named_scene(name, own_scene if own else load_scene) as (scene, _):
             scenes[name_of(name)] = with_rates(scene)
     return Study(scenes, ways, measured_here(command), options.quick)
-
-
-def _print_and_write(
-    report: Report, page: Page | None, options: argparse.Namespace, console: Console
-) -> ExitStatus:
-    """Print the report and write its files except the JSON; returns the exit status of a finished run."""
-    console.show(report.parts())
-    if options.csv is not None:
-        console.put(options.csv, report.csv(), "the rows")
-    if page is not None:
-        # Imported here: most runs write no page.
-        from validate.html.page import make_folder
-        from validate.html.run import Run
-
-        make_folder(page.folder)
-        if (picture := report.headline()) is not None:
-            write_content(os.path.join(page.folder, "headline.svg"), picture)
-        page.write(Run(Head.of("cost", options.command), cost=report), console)
-    elif not options.from_rows and not console.quiet and not console.mute:
-        _draw_beside(options.rows, report, console)
-    if not report.measured:
-        console.complain(f"nothing could be measured; {options.rows} says why, row by row")
-    return ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
 
 
 def _draw_beside(rows: str, report: Report, console: Console) -> None:

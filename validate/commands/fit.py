@@ -27,49 +27,41 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         NO_VERDICT if least squares did not converge; with --suspects, if nothing explains the file and some
         fits did not converge.
     """
-    if options.suspects and options.output is not None:
+    target = options.output
+    if options.suspects and target is not None:
         raise UsageError(
-            f"-o {shown(options.output)}: --suspects corrects nothing; allowed: -o with --free, which fits "
+            f"-o {shown(target)}: --suspects corrects nothing; allowed: -o with --free, which fits "
             "the coordinates that it names"
         )
-    corrected, again = "", ["--data", options.data]
-    if options.map is not None:
-        again += ["--map", options.map]
-    if options.accuracy:
-        again += ["--accuracy", f"{options.accuracy:g}"]
-    with (
-        named_scene(options.scene) as (scene, name),
-        console.progress("designs", lines=False) as progress,
-    ):
+    with named_scene(options.scene) as (scene, name), console.progress("designs") as progress:
         if options.map is not None and not os.path.exists(options.map):
             return to_be_filled_in(options.map, map_to_fill_in(options.data, scene), console)
         measured = read_results(options.data, options.map, scene)
-        limits = options.bounds, options.prior, options.accuracy
-        problem = Problem.of(scene, measured, options.free, *limits)
-        numbers, source = len(problem.spread), measured.source
-        coordinates = counted_as(len(problem.free), "coordinate")
+        problem = Problem.of(scene, measured, options.free, options.bounds, options.prior, options.accuracy)
+        coordinates, source = counted_as(len(problem.free), "coordinate"), measured.source
         task = f"testing {coordinates} as suspects with" if options.suspects else f"fitting {coordinates} to"
-        many = f"{task} {counted_as(numbers, 'number')}"
-        console.note(f"{many}; this may take a while", of=name)
+        console.note(f"{task} {counted_as(len(problem.spread), 'number')}; this may take a while", of=name)
         if options.suspects:
             suspects = suspected(problem, progress)
-            report = report_of_suspects(suspects, name, source)
+            report, corrected = report_of_suspects(suspects, name, source), ""
         else:
             fit = fit_hardpoints(problem, told=progress)
             report, corrected = report_of_fit(fit, name, source), corrected_text(fit, name, source)
     console.say(report.text)
     console.note(*measured.notes, *report.notes, of=name)
     console.warn(*report.warnings, of=name)
-    if options.output is not None:
-        console.put(options.output, corrected, "the corrected scene")
+    if target is not None:
+        console.put(target, corrected, "the corrected scene")
     Journal.of(options, console, report.kind, lambda: report.data(name, source), lambda: report.what).write(
         report.status
     )
     if options.csv is not None:
         console.put(options.csv, report.table, report.what)
-    if options.output not in (None, "-"):
-        step = shlex.join(["pointcoord", "validate", *again, options.output])
-        console.say(f"{shown(options.output)} is written; try: {shown(step)}")
+    again = ["--data", options.data, *(["--map", options.map] if options.map is not None else [])]
+    again += ["--accuracy", f"{options.accuracy:g}"] if options.accuracy else []
+    if target not in (None, "-"):
+        step = shlex.join(["pointcoord", "validate", *again, target])
+        console.say(f"{shown(target)} is written; try: {shown(step)}")
     if options.suspects and suspects.explaining:
         first = suspects.explaining[0].coordinates
         step = shlex.join(["pointcoord", "fit", options.scene, *again, "--free", *first])
@@ -77,6 +69,4 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return report.status
 
 
-COMMANDS = {
-    "fit": Command(run, {"bounds": f"{BOUNDS:g}", "prior": f"{PRIOR:g}"}, {"--data": {"required": True}})
-}
+COMMANDS = {"fit": Command(run, {"bounds": f"{BOUNDS:g}", "prior": f"{PRIOR:g}"})}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from validate.commands.comparing import Page
+from validate.commands.comparing import page_folder, write_page
 from validate.commands.pages import Command
 from validate.commands.usage import given
 from validate.errors import UsageError
@@ -19,30 +19,31 @@ from validate.plain_text import counted_as
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Run the cases. Each result is printed, and written as JSON, as soon as it is known."""
     if options.assemblies:
-        return count(options, console)
+        return _count(options, console)
     # Imported here: the reference needs packages that the solvers do not need.
     from validate.hard import catalogue, report
 
     cases = catalogue.chosen(options.cases)
-    if options.list and options.report is not None:
-        raise UsageError("--report needs solved cases, and --list solves none; leave one of them out")
     if options.list:
+        if options.report is not None:
+            raise UsageError("--report needs solved cases, and --list solves none; leave one of them out")
         console.say(report.listing(cases))
-        found = report.listing_data(cases)
-        Journal.of(options, console, "hard-list", lambda: found, lambda: "the list").write(ExitStatus.AGREE)
-        return ExitStatus.AGREE
-    page = Page.of(options)
+        with Journal.of(
+            options, console, "hard-list", lambda: report.listing_data(cases), lambda: "the list"
+        ):
+            return ExitStatus.AGREE
+    folder, results = page_folder(options), list[report.Examined]()
     lacking = missing(name for case in cases for name in case.expected)
     console.warn(*(f"{name} is left out: {why}" for name, why in lacking.items()))
     cases = tuple(one for one in (case.without(lacking) for case in cases) if one.expected)
-    results: list[report.Examined] = []
-    journal = Journal.of(
-        *(options, console, "hard"),
-        lambda: report.results_data(results),
-        lambda: share_of_all(results, cases, "case"),
-    )
 
-    with journal.closing(), console.progress("cases", total=len(cases), lines=False) as working:
+    def done() -> str:
+        return share_of_all(results, cases, "case")
+
+    with (
+        Journal.of(options, console, "hard", lambda: report.results_data(results), done) as journal,
+        console.progress("cases", total=len(cases)) as working,
+    ):
         for case in cases:
             result = report.examine(case)
             if case.group not in {one.case.group for one in results}:
@@ -54,32 +55,35 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.show(report.summary_parts(results))
         if not report.as_expected(results):
             journal.status = ExitStatus.DISAGREE
-        if page is not None:
+        if folder is not None:
             from validate.html.hard_cases import HardCases
             from validate.html.run import Run
 
             document = journal.head.document(report.results_data(results), journal.status, complete=True)
-            journal.status = page.write(Run(journal.head, hard=HardCases(document)), console).status
+            run = Run(journal.head, hard=HardCases(document))
+            write_page(folder, run, console)
+            journal.status = run.status
     return journal.status
 
 
-def count(options: argparse.Namespace, console: Console) -> ExitStatus:
+def _count(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Count assembly modes; status 3 if two counts of a scene differ, or do not contain the drawn mode."""
     from validate.assemblies import scenes
 
     if others := given(options, "--list", "--report"):
         raise UsageError(f"{others[0]} goes with cases only; leave it out with --assemblies")
-    found: list[scenes.Count] = []
-    names = options.cases or scenes.SHIPPED
-    journal = Journal.of(
-        *(options, console, "assemblies"),
-        lambda: {"counts": found},
-        lambda: counted_as(len(found), "count") if found else "",
-    )
-    with journal.closing(), console.progress("scenes", total=len(names), lines=False) as working:
-        for done, name in enumerate(names, start=1):
+    found, names = list[scenes.Count](), options.cases or scenes.SHIPPED
+
+    def done() -> str:
+        return counted_as(len(found), "count") if found else ""
+
+    with (
+        Journal.of(options, console, "assemblies", lambda: {"counts": found}, done) as journal,
+        console.progress("scenes", total=len(names)) as working,
+    ):
+        for number, name in enumerate(names, start=1):
             found.extend(scenes.counts(name))
-            working(f"scenes, {name} done", done)
+            working(f"scenes, {name} done", number)
         console.show(scenes.parts(found))
         if not scenes.complete(found):
             journal.status = ExitStatus.NO_VERDICT

@@ -1,4 +1,4 @@
-"""`pointcoord import`: writes the hardpoints of another program's file as a scene."""
+"""`pointcoord import` and `export`: hardpoints of other programs as a scene, and a car as a MuJoCo model."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ import os
 from collections.abc import Iterator
 from dataclasses import fields
 
-from validate.closed_drawing import warnings_of
+from validate.closed_drawing import closed_drawing, closed_mechanism, warnings_of
 from validate.commands.pages import Command
-from validate.commands.usage import to_be_filled_in
+from validate.commands.usage import named_scene, to_be_filled_in
 from validate.exit_status import ExitStatus
+from validate.extras import needed
 from validate.hardpoint_files.contents import DIRECTIONS
 from validate.hardpoint_files.format import formats
 from validate.hardpoint_files.identified import PARTS, SIDES, Choices
@@ -21,7 +22,7 @@ from validate.plain_text import shown, some_of, typed
 from validate.tables.units import LENGTHS
 
 
-def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+def run_import(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Write a scene from another program's file, and list what each of its points was read as.
 
     Returns:
@@ -33,10 +34,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return to_be_filled_in(options.names, text, console)
     choices = {one.name: getattr(options, one.name) for one in fields(Choices)}
     found = import_hardpoints(options.file, **choices)
-    name = shown(options.file)
-    console.put(options.output, found.text, "the scene")
+    name, target = shown(options.file), options.output
+    console.put(target, found.text, "the scene")
     console.say("\n".join(_report(name, found)))
-    console.say(f"{shown(options.output)} is written; try: pointcoord validate {typed(options.output)}")
+    console.say(f"{shown(target)} is written; try: pointcoord validate {typed(target)}")
     console.warn(*warnings_of(found.scene, found.stands.closing), of=name)
     if found.drawing.others:
         others = some_of([*map(shown, found.drawing.others)], NAMED)
@@ -53,18 +54,37 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def _report(name: str, found: Imported) -> Iterator[str]:
     """The lines of the report: the format of the file, its points and its angles."""
-    part = found.scene.mechanism
-    width = max(len(point.name) for point in found.drawing.points)
-    wide = max(len(point.written) for point in found.drawing.points)
+    part, points = found.scene.mechanism, found.drawing.points
+    width, wide = (max(map(len, texts)) for texts in zip(*((p.name, p.written) for p in points), strict=True))
     kind = f"a {part.type} of the {part.side} wheel" if part.type else "a new mechanism"
     yield f"{name}: {found.format.words}, read as {kind}"
     yield from (f"  {fact}" for fact in found.drawing.facts)
-    for point in found.drawing.points:
-        yield f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"
+    yield from (f"  {p.name.ljust(width)}  {p.written.ljust(wide)}  {shown(p.source)}" for p in points)
     yield from (f"  point not recognised: {shown(source)}" for source in found.drawing.others)
     for check in found.angles:
         there = f"the file prints {check.printed:g} deg, its points give {check.drawn:z.4f}"
         yield f"  {check.name}: {there}: {check.verdict}"
+
+
+def run_export(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Write the model.
+
+    Returns:
+        NO_VERDICT if the drawing cannot be closed, since the model then has no home pose.
+    """
+    needed("export", "mujoco")
+    from validate.peers.mjcf import mjcf_of
+
+    with named_scene(options.scene) as (scene, name):
+        drawing = closed_drawing(scene)
+    if not drawing.places:
+        console.complain(f"{name}: {drawing.words}; nothing is written")
+        return ExitStatus.NO_VERDICT
+    console.warn(*warnings_of(scene, drawing.closing), of=name)
+    target = options.mjcf
+    console.put(target, mjcf_of(closed_mechanism(drawing), scene.title or name), "the model")
+    console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={typed(target)}")
+    return ExitStatus.AGREE
 
 
 WORDS = {
@@ -74,4 +94,4 @@ WORDS = {
     "directions": ", ".join(DIRECTIONS),
     "units": ", ".join(LENGTHS),
 }
-COMMANDS = {"import": Command(run, WORDS)}
+COMMANDS = {"import": Command(run_import, WORDS), "export": Command(run_export)}

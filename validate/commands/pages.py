@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 import re
-from argparse import ArgumentParser
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -46,30 +45,31 @@ def _read(name: str) -> str:
     return (PAGES / f"{name}.txt").read_text(encoding="utf-8")
 
 
-def whole(least: int) -> Callable[[str], int]:
-    """A reader of whole numbers that are not below `least`."""
+def reader(
+    allowed: str, kind: Callable[[str], Any], least: float, most: float = math.inf
+) -> Callable[..., Any]:
+    """A reader of numbers between `least` and `most`; `allowed` says what they are."""
 
-    def read(word: str) -> int:
-        if word.isascii() and word.isdigit() and int(word) >= least:
-            return int(word)
-        raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: a whole number, {least} or more")
+    def read(word: str) -> Any:
+        with suppress(ValueError):
+            if least <= (value := kind(word)) <= most:
+                return value
+        raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: {allowed}")
 
     return read
 
 
-def positive(word: str) -> float:
-    """Read a positive, finite number."""
-    with suppress(ValueError):
-        if 0.0 < (value := float(word)) < math.inf:
-            return value
-    raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: a positive, finite number")
-
-
-def number(word: str) -> float:
-    """Read a number; its user checks the range."""
-    with suppress(ValueError):
-        return float(word)
-    raise argparse.ArgumentTypeError(f"is {shown(word)!r}; allowed: a number, such as 1e-6")
+# Readers of an option's value by its placeholder: counts, seconds, factors, sizes, accuracies.
+_positive = reader(
+    "a positive, finite number", float, math.nextafter(0.0, 1.0), math.nextafter(math.inf, 0.0)
+)
+_number = reader("a number, such as 1e-6", float, -math.inf)
+TYPES: Mapping[str, Callable[[str], Any]] = {
+    "N": reader("a whole number, 1 or more", int, 1),
+    "K": reader("a whole number, 0 or more", int, 0),
+    **dict.fromkeys(("S", "F", "MM"), _positive),
+    **dict.fromkeys(("A", "DEG"), _number),
+}
 
 
 def result_file(word: str, endings: Sequence[str]) -> str:
@@ -85,45 +85,36 @@ def result_file(word: str, endings: Sequence[str]) -> str:
     return word
 
 
-TYPES: Mapping[str, Callable[[str], Any]] = {
-    "N": whole(1),
-    "K": whole(0),
-    **dict.fromkeys(("S", "F", "MM"), positive),
-    **dict.fromkeys(("A", "DEG"), number),
-}
-"""Reader of an option's value by its placeholder: counts, seconds, factors, accuracies, sizes."""
-
-
 @dataclass(frozen=True)
 class Command:
     """A command of the program. Its page in `help/` describes its options.
 
     An entry of an option begins at the start of a line: its names and the placeholder of its value (see
-    `TYPES`), then two blanks and the help text. `NAME ...` may be given again, `NAME = 1` has a default, and
-    `[NAME ...]` takes any number of values. The placeholder of a result has the endings that its file may
-    have: `FILE.csv|.md`. A positional argument is `name=WORD`, an optional one `name=[WORD]`, and any number
-    of them `name=[WORD ...]`.
+    `TYPES`), then two blanks and the help text. `NAME ...` may be given again, `NAME = 1` has a default,
+    `NAME!` is required, `{A,B}` are the values to choose from, and `[NAME ...]` takes any number of values.
+    The placeholder of a result has the endings that its file may have: `FILE.csv|.md`. A positional argument
+    is `name=WORD`, an optional one `name=[WORD]`, and any number of them `name=[WORD ...]`.
 
     Attributes:
         run: the function that runs the command.
         words: the replacement of each `$name` in the page.
-        more: further settings of an option for `argparse`, which an entry cannot express.
         inner: subcommands; the command then has no options itself.
     """
 
     run: Callable[[argparse.Namespace, Console], ExitStatus]
     words: Mapping[str, object] = field(default_factory=dict)
-    more: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     inner: Mapping[str, Command] = field(default_factory=dict)
 
-    def declare(self, parser: ArgumentParser, name: str) -> None:
+    def declare(self, parser: argparse.ArgumentParser, name: str) -> None:
         """Add the description and the options of the command to a parser."""
         head, _, options = filled(name, self.words).partition("\noptions:\n")
         parser.description, parser.epilog = head.partition("\n")[2].strip(), HELP
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
         for entry in re.split(r"\n(?=\S)", options.strip()) if options else ():
-            names, about = _argument(entry)
-            parser.add_argument(*names, **{**about, **self.more.get(names[-1], {})})
+            head, words = re.split(r"\s{2,}", entry, maxsplit=1)
+            names, settings = _option(head) if head.startswith("-") else _positional(head)
+            settings["help"] = " ".join(words.replace("%", "%%").split())
+            parser.add_argument(*names, **settings)
         if self.inner:
             inner = parser.add_subparsers(required=True, metavar=name.upper(), dest=name)
             for one, command in self.inner.items():
@@ -132,26 +123,28 @@ class Command:
         parser.set_defaults(run=self.run)
 
 
-def _argument(entry: str) -> tuple[list[str], dict[str, Any]]:
-    """The names of an option or an argument, and its settings for `argparse`."""
-    head, words = re.split(r"\s{2,}", entry, maxsplit=1)
-    about: dict[str, Any] = {"help": " ".join(words.replace("%", "%%").split())}
-    if not head.startswith("-"):
-        name, _, value = head.partition("=")
-        if value.startswith("["):
-            about["nargs"] = "*" if value.endswith("...]") else "?"
-        return [name], about | {"metavar": value.strip("[].").strip()}
+def _positional(head: str) -> tuple[list[str], dict[str, Any]]:
+    """The name of a positional argument, and its settings for `argparse`."""
+    name, _, value = head.partition("=")
+    many = {"nargs": "*" if value.endswith("...]") else "?"} if value.startswith("[") else {}
+    return [name], {**many, "metavar": value.strip("[].").strip()}
+
+
+def _option(head: str) -> tuple[list[str], dict[str, Any]]:
+    """The names of an option, and its settings for `argparse`."""
     head, _, default = head.partition(" = ")
     names = [word for word in head.split() if word.startswith("-")]
     value = " ".join(word for word in head.split() if word not in names)
     if not value:
-        return names, about | {"action": "store_true"}
-    known = TYPES.get(value)
+        return names, {"action": "store_true"}
+    if value.startswith("{"):
+        return names, {"choices": value.strip("{}").split(","), "default": default or None}
+    read = TYPES.get(value)
     if names[-1] in ("--output", "--mjcf"):
-        known = partial(result_file, endings=value[value.index(".") :].split("|"))
-    about |= {"type": known, "default": default or None, "metavar": value.strip("[].").strip()}
+        read = partial(result_file, endings=value[value.index(".") :].split("|"))
+    about: dict[str, Any] = {"type": read, "default": default or None, "metavar": value.strip("[].!").strip()}
     if value.startswith("["):
         about |= {"nargs": "+", "default": []}
     elif value.endswith("..."):
         about |= {"action": "append", "default": []}
-    return names, about
+    return names, about | {"required": value.endswith("!")}

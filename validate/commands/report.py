@@ -6,12 +6,10 @@ import argparse
 import os
 import shlex
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from pointcoord import built_in_scenes
-from validate.commands.comparison import PAGE_WORDS, require_sense
-from validate.commands.comparison import run as compare
+from validate.commands import comparison
 from validate.commands.pages import Command
 from validate.cost.report import Report
 from validate.errors import UsageError
@@ -38,19 +36,19 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             f"report DIR {shown(folder)}; for a folder of that name, give "
             f"{shown(os.path.join(os.curdir, folder, ''))}"
         )
-    require_sense(options)
+    comparison.require_sense(options)
     hard = None if options.hard is None else read_hard_cases(options.hard)
     cost = None if options.cost is None else Report.of_file(options.cost)
-    options.report, options.with_more = folder, partial(_with_more, hard, cost, console)
-    return compare(options, console)
 
+    def with_more(run: Run) -> Run:
+        """The run with hard cases and cost; a run of all built-in scenes also has printed tables."""
+        if not run.record.paper:
+            return replace(run, hard=hard, cost=cost)
+        some, first = hard or _some_hard_cases(run, console), cost or _first_look_at_cost(run, console)
+        return replace(run, hard=some, cost=first, published=compare_published())
 
-def _with_more(hard: HardCases | None, cost: Report | None, console: Console, run: Run) -> Run:
-    """The run with hard cases and cost added; a run of all built-in scenes also has printed tables."""
-    if not run.record.paper:
-        return replace(run, hard=hard, cost=cost)
-    hard, cost = hard or _some_hard_cases(run, console), cost or _first_look_at_cost(run, console)
-    return replace(run, hard=hard, cost=cost, published=compare_published())
+    options.report, options.with_more = folder, with_more
+    return comparison.run(options, console)
 
 
 def _some_hard_cases(run: Run, console: Console) -> HardCases:
@@ -79,4 +77,4 @@ def _first_look_at_cost(run: Run, console: Console) -> Report:
     return Report("in this run", command, tuple(rows))
 
 
-COMMANDS = {"report": Command(run, PAGE_WORDS)}
+COMMANDS = {"report": Command(run, comparison.PAGE_WORDS)}

@@ -1,33 +1,36 @@
-"""`pointcoord plan`, `draw` and `scenes`: what is known about a scene before its motion is solved."""
+"""`pointcoord scenes`, `new`, `draw` and `plan`: a scene before its motion is solved."""
 
 from __future__ import annotations
 
 import argparse
+import os
+import re
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
-from pointcoord import AssemblyError, PointcoordError, Scene, built_in_scenes, standing
+from pointcoord import AssemblyError, PointcoordError, Scene, UnknownName, built_in_scenes, standing
 from pointcoord.drawing_stands import Standing
 from pointcoord.effects.registry import ALWAYS, EFFECTS, Plan, plan_effects
+from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.mechanism.structure import joints_in_words
 from pointcoord.method import MAP
 from pointcoord.results.closing import ALLOWED
+from pointcoord.scene.scene_file import SCENES
 from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
-from validate.commands.pages import Command
+from validate.commands.pages import Command, parts
 from validate.commands.usage import named_scene, place_of_picture
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
+from validate.output.files import require_writable
 from validate.output.picture import svg
-from validate.plain_text import gathered, shown
+from validate.plain_text import shown, typed
+from validate.toml_written import value_of
 
-# Names of the quantities by order of time derivative: positions, velocities and so on.
-STATES = tuple(
-    f"{effect.quantities[0].words}s".replace("ys", "ies")
-    for effect in (*ALWAYS, *EFFECTS.values())
-    if effect.reports_states
-)
+TYPE = re.compile(r'^(type *= *)"(\w+)"', re.MULTILINE)
 
 
 def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -35,6 +38,36 @@ def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
     names = built_in_scenes()
     width = max(map(len, names))
     console.say("\n".join(f"{name.ljust(width)}  {Scene.load(name).title}" for name in names))
+    return ExitStatus.AGREE
+
+
+def run_new(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Write a copy of a built-in scene, and of its mechanism."""
+    name, copied = options.name.removesuffix(".toml"), vars(options)["from"]
+    if os.path.basename(name) in ("", "-"):
+        raise UsageError(
+            f"NAME is {shown(options.name)!r}, which names no file; allowed: the name of the new files, "
+            "without .toml"
+        )
+    if copied not in built_in_scenes():
+        raise UnknownName("built-in scene", copied, built_in_scenes())
+    text, notes = (SCENES / f"{copied}.toml").read_text(encoding="utf-8"), parts("new-files")
+    kind = value_of(f"{Path(name).name}-mechanism.toml")
+    own = TYPE.sub(lambda found: found[1] + kind, text)
+    files = {f"{name}.toml": f"{notes['scene'].replace('$name', shown(name))}\n{own}"}
+    if (found := TYPE.search(text)) is not None:
+        tables = (MECHANISMS / f"{found[2]}.toml").read_text(encoding="utf-8")
+        files[f"{name}-mechanism.toml"] = f"{notes['mechanism']}\n{tables}"
+    for target in files:
+        if os.path.exists(target):
+            raise UsageError(f"{shown(target)} exists already; allowed: the name of a new file")
+        require_writable(target)
+    for target, content in files.items():
+        console.put(target, content, "the scene or its mechanism")
+    console.say(
+        f"{' and '.join(map(shown, files))} written, copied from {shown(copied)}\n"
+        f"to copy another (pointcoord scenes): --from SCENE; try: pointcoord plan {typed(f'{name}.toml')}"
+    )
     return ExitStatus.AGREE
 
 
@@ -91,11 +124,10 @@ def _mechanism(scene: Scene, name: str) -> Iterator[str]:
 
 
 def _computed(scene: Scene, plan: Plan) -> Iterator[str]:
-    """What is computed, what is left out, and up to which time derivative the points are solved."""
-    silent, topology = scene.unreported_points, scene.mechanism.topology
+    """The instants, what is computed, and what is left out."""
     yield f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s"
     yield from (f"computed: {effect.gives}" for effect in ALWAYS)
-    if silent:
+    if silent := scene.unreported_points:
         points, more = ", ".join(scene.reported_points), ", ".join(silent)
         yield f"points reported: {points}; to report {more}, add them to points"
     yield from (f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects)
@@ -105,18 +137,6 @@ def _computed(scene: Scene, plan: Plan) -> Iterator[str]:
         more = f"; {len(made)} derivatives, such as {made[0]} and {made[-1]}" if made else ""
         how = "to compute one, name it under effects (pointcoord help effects)"
         yield f"left out: {', '.join(plain)}{more}; {how}"
-    derivatives = sorted(plan.derivatives(topology).items(), key=lambda item: -item[1])
-    groups = gathered((_up_to(order), name) for name, order in derivatives)
-    every = len(derivatives) == len(topology.points) and len(groups) == 1
-    yield f"solved for: {_up_to(plan.derivative)}"
-    each = (f"{words} of {'every point' if every else ', '.join(names)}" for words, names in groups.items())
-    yield f"evaluated: {'; '.join(each)}"
-
-
-def _up_to(order: int) -> str:
-    """Names of the position and its time derivatives up to an order, such as `positions and velocities`."""
-    *first, last = STATES[: order + 1]
-    return " and ".join(filter(None, (", ".join(first), last)))
 
 
 def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
@@ -134,10 +154,7 @@ def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
     yield f"accuracy: positions to {found.tolerance:.3g} mm{rates}"
     if orders:
         few, many = min(orders), max(orders)
-        unknowns = [f"{found.unknowns} unknowns"]
-        if found.not_needed:
-            unknowns.append(f"the {found.not_needed} of {', '.join(task.unsolved)} are not needed")
-        yield f"solved {'on each patch' if by_map else 'at each step'}: {'; '.join(unknowns)}"
+        yield f"solved {'on each patch' if by_map else 'at each step'}: {found.unknowns} unknowns"
         series = "1 power series" if len(orders) == 1 else f"{len(orders)} power series"
         series += " in the inputs, each proven on a patch of their path," if by_map else ""
         yield (
@@ -152,22 +169,23 @@ def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
 def _where_it_stands(scene: Scene, stands: Standing) -> Iterator[str]:
     """The drawn inputs, the range of each, the wheel angles, and how far closing moves the points."""
     topology = scene.mechanism.topology
-    units = topology.input_units
     yield "as drawn:"
     for one, value in stands.inputs.items():
-        ends = stands.reach[one]
-        here = f"  {one} is {_in_unit(value, units[one])}; with the other inputs as drawn it"
+        ends, unit = stands.reach[one], topology.input_units[one]
+        here = f"  {one} is {_in_unit(value, unit)}; with the other inputs as drawn it"
         if all(np.isinf(end.value) for end in ends):
             yield f"{here} goes all the way round"
             continue
         yield f"{here} reaches"
         for word, end in zip(("from", "to  "), ends, strict=True):
             stop = f", stopped by {', '.join(end.limits[:3])}" if end.limits else ""
-            yield f"    {word} {_in_unit(end.value, units[one])}{stop}"
+            yield f"    {word} {_in_unit(end.value, unit)}{stop}"
     for angle, value in stands.angles.items():
         yield f"  {angle} is {round(float(np.degrees(value)), 3):zg} deg"
     if topology.wheel_axis:
-        inner, centre = (f"{end}{_default(scene, end)}" for end in topology.wheel_axis)
+        left_out = {n: point for n, point in topology.stand_ins.items() if n not in topology.points}
+        defaults = {point: f"{point} (the default of {n})" for n, point in reversed(left_out.items())}
+        inner, centre = (defaults.get(end, end) for end in topology.wheel_axis)
         yield f"  the wheel turns about the line from {inner} to {centre}"
     yield f"  {stands.closing.words}"
 
@@ -183,16 +201,14 @@ def _out_of_reach(scene: Scene, stands: Standing) -> Iterator[str]:
             yield f"{driven}, beyond its range with the other inputs as drawn"
 
 
-def _default(scene: Scene, point: str) -> str:
-    """A remark on a point that is used in place of one that the scene leaves out; empty for other points."""
-    topology = scene.mechanism.topology
-    names = [n for n, other in topology.stand_ins.items() if other == point and n not in topology.points]
-    return f" (the default of {names[0]})" if names else ""
-
-
 def _in_unit(value: float, unit: str) -> str:
     """A value with its unit; an angle also in degrees."""
     return f"{value:.6g} {unit}" + (f" ({np.degrees(value):.5g} deg)" if unit == "rad" else "")
 
 
-COMMANDS = {"plan": Command(run_plan), "draw": Command(run_draw), "scenes": Command(run_scenes)}
+COMMANDS = {
+    "scenes": Command(run_scenes),
+    "new": Command(run_new),
+    "draw": Command(run_draw),
+    "plan": Command(run_plan),
+}

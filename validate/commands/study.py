@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from validate.studies.study import Findings, Study
 
 LOCAL = "local"
-SOON = 2.0  # seconds to the first line of progress, since a study may wait for other processes
-
-
 # The function in `validate.studies` that makes each study; its arguments are command-line options.
 STUDIES = {
     "random": "random_cars.random_cars",
@@ -36,37 +33,26 @@ STUDIES = {
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Run the tasks that are not recorded yet, and print the findings of all tasks."""
-    folder = Path(options.records or f"pointcoord-{options.study}")
     if options.records is not None and not options.records.strip():
         raise UsageError(f"--records {options.records!r} names no folder")
     if not options.scheduler.strip():
         raise UsageError(f"--scheduler {options.scheduler!r}: allowed: local, or an address")
-    if options.workers is not None and options.scheduler != LOCAL:
+    local = options.scheduler == LOCAL
+    if options.workers is not None and not local:
         raise UsageError(
             f"--workers {options.workers} is for processes on this machine only; the cluster at --scheduler "
             "has its own workers; leave one of the two options out"
         )
     for package in ("mpmath", "flint", "pinocchio"):
         needed("study", package)
-    module, _, function = STUDIES[options.study].partition(".")
-    make = getattr(import_module(f"validate.studies.{module}"), function)
-    values = {name: getattr(options, name, None) for name in signature(make).parameters}
-    study: Study = make(**{name: value for name, value in values.items() if value is not None})
-    if not study.tasks:
-        raise UsageError(f"the study has no {study.noun}; allowed: 1 or more")
-    return _run_study(study, folder, options, console)
-
-
-def _run_study(study: Study, folder: Path, options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Run the missing tasks, and print the findings of all tasks of the study."""
+    study = _study(options)
     # Imported here: Dask may be missing, and is missed before the folder is made.
-    from validate.studies.cluster import opened, quiet_dask
-    from validate.studies.cluster import run as run_tasks
+    from validate.studies import cluster
     from validate.studies.store import records
 
-    quiet_dask()
+    cluster.quiet_dask()
+    folder = Path(options.records or f"pointcoord-{options.study}")
     where = shown(str(folder))
-    local = options.scheduler == LOCAL
     who = "processes of this machine" if local else f"the scheduler {shown(options.scheduler)}"
     with ExitStack() as stack:
         store = records(folder, study)
@@ -86,28 +72,34 @@ def _run_study(study: Study, folder: Path, options: argparse.Namespace, console:
             there = before + done
             if there:
                 console.written[where] = f"{held()}; the same command continues"
-            progress(f"{study.noun}s, {who}", there, len(study.tasks))
+                progress(f"{study.noun}s, {who}", there, len(study.tasks))
 
         if missing:
             starting = f"{who} start" if local else f"connecting to {who}"
-            progress = stack.enter_context(console.progress(starting, SOON))
-            client = stack.enter_context(opened(options.scheduler, options.workers))
+            progress = stack.enter_context(console.progress(starting, everywhere=True))
+            client = stack.enter_context(cluster.opened(options.scheduler, options.workers))
         console.note(f"{where} holds {held()}; to continue a stopped study, give the same command again")
         results, what = (lambda: found().data), (lambda: held() if there else "")
-        journal = Journal.of(options, console, options.study, results, what)
-        with journal.closing():
+        with Journal.of(options, console, options.study, results, what) as journal:
             if missing:
                 tell(0)
-                run_tasks(study, missing, store, client, tell)
+                cluster.run(study, missing, store, client, tell)
             findings = found()
             journal.status = findings.status
     console.show(findings.parts)
     return journal.status
 
 
-FORMULATIONS = {"formulations": ", ".join(NAMES)}, {"--formulation": {"choices": NAMES}}
-COMMANDS = {
-    "study": Command(
-        run, inner={name: Command(run, *(FORMULATIONS if name == "claims" else ())) for name in STUDIES}
-    )
-}
+def _study(options: argparse.Namespace) -> Study:
+    """The study that the options describe."""
+    module, _, function = STUDIES[options.study].partition(".")
+    make = getattr(import_module(f"validate.studies.{module}"), function)
+    values = {name: getattr(options, name, None) for name in signature(make).parameters}
+    study: Study = make(**{name: value for name, value in values.items() if value is not None})
+    if not study.tasks:
+        raise UsageError(f"the study has no {study.noun}; allowed: 1 or more")
+    return study
+
+
+INNER = {name: Command(run, {"formulations": ",".join(NAMES)}) for name in STUDIES}
+COMMANDS = {"study": Command(run, inner=INNER)}

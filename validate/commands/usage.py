@@ -1,26 +1,21 @@
-"""What commands share: reads scenes, and checks where results are written."""
+"""What commands share: scenes and values of the command line, and checks of the files that it names."""
 
 from __future__ import annotations
 
 import argparse
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 from typing import Any
 
-from pointcoord import (
-    AssemblyError,
-    InputOutOfRange,
-    MechanismError,
-    NotCovered,
-    NotFollowed,
-    Scene,
-    SceneError,
-    SingularConfiguration,
-)
+import numpy as np
+
+import pointcoord as pc
+from pointcoord import Scene, SceneError, WrongArgument
+from validate.arrays import Array
 from validate.errors import NotSolved, UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
@@ -32,9 +27,14 @@ STANDARD_INPUT_NAME = "standard input"
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
 RESULTS = ("-o", "--mjcf", "--json", "--csv", "--junit", "--summary", "--save-baseline")
 """The options that name a result, of any command."""
-READ_OPTIONS = ("--scenes-dir", "--data", "--map", "--designs", "--baseline", "--names", "--hard", "--cost")
-READ = ("scene", "scenes", "file", *READ_OPTIONS)
-"""The options and arguments that name what a command reads, of any command."""
+READ = ("--scenes-dir", "--data", "--map", "--designs", "--baseline", "--names", "--hard", "--cost")
+"""The options that name what a command reads, of any command."""
+MOST_VALUES = 10_000_000
+# The errors of a scene that is well written, and whose mechanism cannot follow its inputs.
+STOPS = (
+    *(pc.AssemblyError, pc.InputOutOfRange, pc.MechanismError),
+    *(pc.NotCovered, pc.NotFollowed, pc.SingularConfiguration),
+)
 
 
 def value_of(options: argparse.Namespace, name: str) -> Any:
@@ -62,51 +62,47 @@ def require_files(options: argparse.Namespace, console: Console) -> None:
         raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
     if STANDARD_INPUT in (value_of(options, "--data"), value_of(options, "--map")):
         raise UsageError("--data and --map read files; standard input (-) can be the scene only")
-    for option in READ_OPTIONS:
+    for option in given(options, *READ):
         # As by the variable of a script that is not set; '' would be the current folder.
-        if (place := value_of(options, option)) is not None and not place.strip():
+        if not (place := value_of(options, option)).strip():
             raise UsageError(f"{option} {place!r} names nothing to read; allowed: a path")
     # The rows of `cost` are measured, or read with --from-rows; those of `table` are a number.
     results = RESULTS if getattr(options, "from_rows", True) else (*RESULTS, "--rows")
-    found = {option: value_of(options, option) for option in results}
-    wanted: dict[str, str] = {option: target for option, target in found.items() if target is not None}
     places: dict[str, str] = {}
-    for option, target in wanted.items():
+    for option in given(options, *results):
+        target = value_of(options, option)
         if not target.strip():
             raise UsageError(
                 f"{option} {target!r} names no file; allowed: the path of a file, or - for standard output"
             )
-        if any(_is_that(target, file) for file in _read(options, option)):
+        if _is_read(target, option, options):
             raise UsageError(
                 f"{option} {target} would overwrite a scene or file that is read; give another file"
             )
         other = places.setdefault(target if target == "-" else os.path.realpath(target), option)
         if other != option:
             raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
-    console.quiet, console.mute = getattr(options, "quiet", False), "-" in wanted.values()
-    for target in wanted.values():
-        if target != "-":
+    console.quiet, console.mute = getattr(options, "quiet", False), "-" in places
+    for option in places.values():
+        if (target := value_of(options, option)) != "-":
             require_writable(target)
 
 
-def _read(options: argparse.Namespace, option: str) -> Iterator[str]:
-    """The files, scenes and folders that a run reads and that the result of `option` must not overwrite."""
-    for one in READ:
-        value = value_of(options, one) or []
-        # A new baseline may replace the one that the run is compared with.
-        if (one, option) != ("--baseline", "--save-baseline") or value != value_of(options, option):
-            yield from [value] if isinstance(value, str) else value
-    if getattr(options, "from_rows", False):
-        yield options.rows
-
-
-def _is_that(target: str, read: str) -> bool:
-    """Whether a target is a file that is read, or a scene in a folder that is read."""
-    if not os.path.isfile(target):
-        return False
-    if os.path.isdir(read):
-        return target.endswith(".toml") and Path(read).resolve() in Path(target).resolve().parents
-    return os.path.isfile(read) and os.path.samefile(target, read)
+def _is_read(target: str, option: str, options: argparse.Namespace) -> bool:
+    """Whether the result of an option would overwrite a file that the run reads, or a scene of its folder."""
+    # A new baseline may replace the one that the run is compared with.
+    others = [one for one in READ if (one, option) != ("--baseline", "--save-baseline")]
+    rows = ["--rows"] if getattr(options, "from_rows", False) else []
+    for one in given(options, "scene", "scenes", "file", *others, *rows) if os.path.isfile(target) else ():
+        value = value_of(options, one)
+        for read in [value] if isinstance(value, str) else value:
+            if os.path.isdir(read):
+                same = target.endswith(".toml") and Path(read).resolve() in Path(target).resolve().parents
+            else:
+                same = os.path.isfile(read) and os.path.samefile(target, read)
+            if same:
+                return True
+    return False
 
 
 def place_of_picture(options: argparse.Namespace, console: Console) -> str:
@@ -148,10 +144,6 @@ def name_of(scene: str) -> str:
     return STANDARD_INPUT_NAME if scene == STANDARD_INPUT else shown(scene)
 
 
-# The errors of a scene that is well written, and whose mechanism cannot follow its inputs.
-STOPS = AssemblyError, InputOutOfRange, MechanismError, NotCovered, NotFollowed, SingularConfiguration
-
-
 @contextmanager
 def named_scene(given: str, read: Callable[[str], Scene] | None = None) -> Iterator[tuple[Scene, str]]:
     """A scene that the command line names, and its name in messages.
@@ -187,3 +179,40 @@ def load_scene(name: str) -> Scene:
     if sys.stdin is None:
         raise SceneError(STANDARD_INPUT_NAME, "", "cannot be read (it is closed)", SCENE_HELP)
     return Scene.read(sys.stdin.buffer, STANDARD_INPUT_NAME)
+
+
+def values_of(what: str, text: str, examples: str) -> Array:
+    """START:STOP:COUNT or A,B,C as finite numbers.
+
+    Args:
+        what: the option that gives them, for messages.
+        examples: what is allowed, for messages.
+    Raises:
+        WrongArgument: the text is neither.
+    """
+    parts = text.split(":")
+    if len(parts) == 1:
+        return finite(what, text.split(","), examples)
+    start, stop = finite(what, parts[:2], examples).tolist()
+    number, least = parts[-1].strip(), 1 if start == stop else 2
+    if len(parts) != 3 or not (number.isdecimal() and least <= int(number) <= MOST_VALUES):
+        allowed = f"START:STOP:COUNT, with a COUNT of {least} to {MOST_VALUES}"
+        raise WrongArgument(what, "is not a range", allowed)
+    return np.linspace(start, stop, int(number))
+
+
+def finite(what: str, texts: Sequence[str], examples: str) -> Array:
+    """Finite numbers from their texts, see `values_of`.
+
+    Raises:
+        WrongArgument: a text is not a finite number.
+    """
+    found = []
+    for text in texts:
+        try:
+            found.append(float(text))
+        except ValueError:
+            raise WrongArgument(what, f"has {shown(text)!r}, which is not a number", examples) from None
+    if not np.isfinite(found).all():
+        raise WrongArgument(what, "has a number that is not finite", examples)
+    return np.array(found)

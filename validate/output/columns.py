@@ -52,7 +52,6 @@ def put_table(target: str, blocks: Iterator[Block], what: str, console: Console,
     if target == "-":
         for text in csv_lines(blocks):
             console.write(text)
-        console.flush()
     else:
         write_table(target, blocks, group)
         console.written[target] = what

@@ -1,19 +1,23 @@
-"""Prints results on standard output, and messages as single lines on standard error."""
+"""Prints results on standard output, and messages and progress as single lines on standard error."""
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 
 from validate.errors import NotFinished
 from validate.output.files import unwritable, write_content
-from validate.output.progress import PATIENCE, PAUSE, Progress, Told
 from validate.output.table import Part, is_terminal, text_for
 from validate.plain_text import one_line
 
 STANDARD_OUTPUT = "standard output"
+PATIENCE, PAUSE = 2.0, 10.0  # seconds until the first line of progress, and from line to line
+Told = Callable[..., None]
+"""Called with what is being done, the amount done, and the total amount if it has changed."""
 
 
 class Console:
@@ -43,11 +47,11 @@ class Console:
         """Print lines; nothing if the run is quiet or mute."""
         if not self.quiet and not self.mute:
             self.write(text + "\n")
-            self.flush()
 
-    def show(self, parts: Sequence[Part]) -> None:
+    def show(self, parts: Iterable[Part]) -> None:
         """Print lines and tables, fitted to a terminal; nothing if the run is quiet or mute."""
-        self.say(text_for(sys.stdout, parts))
+        if found := [*parts]:
+            self.say(text_for(sys.stdout, found))
 
     def put(self, target: str | None, content: str | bytes, what: str) -> None:
         """Write a whole result to its file, or to standard output for `-` or None.
@@ -58,7 +62,6 @@ class Console:
         if target is None or target == "-":
             target = STANDARD_OUTPUT
             self.write(content if isinstance(content, str) else content.decode())
-            self.flush()
         else:
             write_content(target, content)
         self.written[target] = what
@@ -69,38 +72,22 @@ class Console:
         After the reader of a pipe has closed it, as `head` does, the text is dropped, but the run continues:
         its verdict and its files are still wanted.
         """
-        if not self._reader_gone:
-            try:
-                code = getattr(sys.stdout, "encoding", None) or "utf-8"
-                sys.stdout.write(text.encode(code, "backslashreplace").decode(code))
-            except (OSError, ValueError, AttributeError) as error:
-                self._lose(error)
-
-    def flush(self) -> None:
-        """Flush standard output."""
-        if self._reader_gone or sys.stdout is None:
+        if self._reader_gone:
             return
         try:
+            code = getattr(sys.stdout, "encoding", None) or "utf-8"
+            sys.stdout.write(text.encode(code, "backslashreplace").decode(code))
             sys.stdout.flush()
-        except (OSError, ValueError) as error:
-            self._lose(error)
-
-    def _lose(self, error: Exception) -> None:
-        """Redirect standard output to the null device, so that flushing its buffer at exit cannot fail again.
-
-        Raises:
-            NotFinished: the error is not just a broken pipe.
-        """
-        self._reader_gone = True
-        with suppress(OSError, ValueError, AttributeError):
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, sys.stdout.fileno())
-            os.close(nowhere)
-        if isinstance(error, BrokenPipeError):
-            return
-        if isinstance(error, OSError):
-            raise unwritable(STANDARD_OUTPUT, error) from None
-        raise NotFinished(STANDARD_OUTPUT, "is closed; use --quiet, and name files for results") from None
+        except (OSError, ValueError, AttributeError) as error:
+            self._reader_gone = True
+            # To the null device, so that flushing the buffer at exit cannot fail again.
+            with suppress(OSError, ValueError, AttributeError):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            if isinstance(error, OSError) and not isinstance(error, BrokenPipeError):
+                raise unwritable(STANDARD_OUTPUT, error) from None
+            if not isinstance(error, OSError):
+                problem = "is closed; use --quiet, and name files for results"
+                raise NotFinished(STANDARD_OUTPUT, problem) from None
 
     def complain(self, message: str) -> None:
         """One line on standard error."""
@@ -123,27 +110,65 @@ class Console:
         self.note(*messages, of=of, kind="warning")
 
     @contextmanager
-    def progress(
-        self, message: str, first: float = PAUSE, total: int | None = None, lines: bool = True
-    ) -> Iterator[Told]:
-        """Print the progress of the block, unless the run is quiet. A nested block uses the outer progress.
+    def progress(self, message: str, total: int | None = None, everywhere: bool = False) -> Iterator[Told]:
+        """Print the progress of the block. A nested block uses the progress of the outer one.
+
+        A thread prints, so that lines also come while the run waits.
 
         Args:
-            message: what is being done, until the next call of the yielded function.
-            first: seconds before the first line if standard error is no terminal.
-            total: the total amount, if known.
-            lines: whether lines are printed if standard error is no terminal.
+            message, total: what is being done, and the total amount, until the next call of the yielded
+                function.
+            everywhere: whether lines are printed if standard error is no terminal.
         """
-        outer, terminal = self._progress, is_terminal(sys.stderr)
-        if outer is not None:
-            outer.told(message, 0, total)
-            yield outer.told
-        elif self.quiet or sys.stderr is None or not (terminal or lines):
-            yield lambda message, done, total=None: None
-        else:
-            self._progress = shown = Progress(self.note, message, total, PATIENCE if terminal else first)
-            try:
-                yield shown.told
-            finally:
-                self._progress = None
-                shown.end()
+        if self._progress is not None:
+            self._progress.told(message, 0, total)
+            yield self._progress.told
+            return
+        self._progress, over = Progress(message, total), threading.Event()
+        shown = self._progress
+
+        def run() -> None:
+            wait = PATIENCE
+            while not over.wait(wait):
+                self.note(shown.line())
+                wait = PAUSE
+
+        printer = threading.Thread(target=run, daemon=True)
+        if everywhere or is_terminal(sys.stderr):
+            printer.start()
+        try:
+            yield shown.told
+        finally:
+            self._progress = None
+            over.set()
+            if printer.is_alive():
+                printer.join()
+
+
+class Progress:
+    """How far a run is, and how long the rest takes at its pace.
+
+    Args:
+        message, total: what is being done, and the total amount, until `told` is called.
+    """
+
+    def __init__(self, message: str, total: int | None = None) -> None:
+        self._message, self._done, self._total = message, 0, total
+        self._began = time.monotonic()
+        # The amount done before this run and the start time, so that the pace counts this run's work only.
+        self._before, self._since = 0, self._began
+
+    def told(self, message: str, done: int, total: int | None = None) -> None:
+        """Set what is being done, the amount done, and the total amount if it has changed."""
+        if not self._done or done < self._done:
+            self._before, self._since = done, time.monotonic()
+        self._message, self._done, self._total = message, done, total or self._total
+
+    def line(self) -> str:
+        """The line to print, with the estimated time left at the pace of this run."""
+        now, share = time.monotonic(), ""
+        if self._total:
+            new, left = self._done - self._before, self._total - self._done
+            rest = f", {(now - self._since) / new * left:,.0f} s left" if new > 0 < left else ""
+            share = f", {self._done:,} of {self._total:,} done{rest}"
+        return f"after {now - self._began:.0f} s: {self._message}{share}"

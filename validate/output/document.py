@@ -11,8 +11,7 @@ import os
 import shlex
 import time
 from argparse import Namespace
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
@@ -31,6 +30,7 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB
 COMPARES_NOTHING = ("cost", "fit", "fit-suspects", "hard-list")
 # Kinds of runs whose document has the times of its start and its end; others have them with --timings only.
 TIMED = ("cost", "hard", "hard-list", "random", "bounds", "claims")
+NOT_FINISHED = ExitStatus.NOT_FINISHED
 PAUSE = 9.0  # pause after a journal is written, in multiples of the time that writing took
 
 
@@ -55,9 +55,7 @@ def code_digest(places: Sequence[str]) -> str:
 
     root, digest = Path(__file__).parents[2], hashlib.sha256()
     for place in places:
-        top = root / place
-        files = [top] if top.is_file() else (f for f in top.rglob("*") if f.suffix in (".py", ".toml"))
-        for file in sorted(files):
+        for file in sorted(f for f in (root / place).rglob("*") if f.suffix in (".py", ".toml")):
             digest.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
     return digest.hexdigest()[:12]
 
@@ -149,14 +147,16 @@ def _plain(data: Any) -> Any:
 class Journal:
     """The JSON of a run. It is written again after each part, so that a killed run loses very little.
 
-    To standard output the document is written once, at the end.
+    As a context, it writes the document when the block ends, also after an exception; to standard output the
+    document is written only then.
 
     Attributes:
         target: the file, - for standard output, None if no JSON is asked for.
         results: returns all results so far, as plain data.
         what: returns the results in words, such as `3 of 20 scenes`; empty while there are none.
-        status: exit status of the run; the block of `closing` sets it.
-        complete: whether the block of `closing` ended without an exception.
+        leave: called before the document is written at the end; writes the other files of the run.
+        status: exit status of the run; the block sets it.
+        complete: whether the block ended without an exception.
     """
 
     target: str | None
@@ -164,6 +164,7 @@ class Journal:
     console: Console
     results: Callable[[], Mapping[str, Any]]
     what: Callable[[], str]
+    leave: Callable[[Journal], None] = lambda journal: None
     status: ExitStatus = ExitStatus.AGREE
     complete: bool = False
     _next: float = 0.0
@@ -176,10 +177,11 @@ class Journal:
         kind: str,
         results: Callable[[], Mapping[str, Any]],
         what: Callable[[], str],
+        leave: Callable[[Journal], None] = lambda journal: None,
     ) -> Journal:
         """The JSON that the option --json of a command asks for, of a run that begins now."""
-        timed = getattr(options, "timings", kind in TIMED)
-        return cls(options.json, Head.of(kind, options.command, timed), console, results, what)
+        head = Head.of(kind, options.command, getattr(options, "timings", kind in TIMED))
+        return cls(options.json, head, console, results, what, leave)
 
     def keep(self) -> None:
         """Write the results so far, unless the last writing was too recent.
@@ -192,27 +194,20 @@ class Journal:
             # Writing takes longer the more results there are; the pause keeps it below a tenth of the run.
             self._next = time.monotonic() + PAUSE * (time.monotonic() - began)
 
-    @contextmanager
-    def closing(self, write: Callable[[], None] | None = None) -> Iterator[None]:
-        """Write the document when a block ends, also after an exception.
+    def __enter__(self) -> Journal:
+        return self
 
-        Args:
-            write: called instead of writing the document.
-        Raises:
-            NotFinished: the document cannot be written; also any exception of the block.
-        """
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        self.complete = error is None
+        if error is not None:
+            self.status = of_interruption(error) if isinstance(error, KeyboardInterrupt) else NOT_FINISHED
         try:
-            yield
-            self.complete = True
-        except BaseException as error:
-            ended = of_interruption(error) if isinstance(error, KeyboardInterrupt) else None
-            self.status = ended or ExitStatus.NOT_FINISHED
-            self.complete = False
+            self.leave(self)
+        except BaseException:
+            self.complete, self.status = False, NOT_FINISHED
             raise
         finally:
-            if write is not None:
-                write()
-            elif self.complete or self.what():
+            if self.complete or self.what():
                 self.write(self.status, self.complete)
 
     def write(self, status: ExitStatus | None, complete: bool = True) -> None:

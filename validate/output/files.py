@@ -6,20 +6,15 @@ After a full disk, a kill or Ctrl-C the old file is still there, unchanged.
 from __future__ import annotations
 
 import errno
-import glob
 import os
 import secrets
 import stat
-import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from validate.errors import NotFinished, UsageError
-
-TOKEN = 8  # digits that tell the temporary files of runs at the same time apart
-LEFT = 3600.0  # s without a write, after which a temporary file is taken for that of a killed run
 
 
 def require_known_ending(target: str, endings: Iterable[str]) -> None:
@@ -41,8 +36,6 @@ def unwritable(target: str, error: OSError) -> NotFinished:
 def require_writable(target: str) -> None:
     """Refuse a file that cannot be written, before anything is solved; an old file is not changed.
 
-    Temporary files that killed runs left for this target are removed.
-
     Raises:
         NotFinished: the file cannot be written.
     """
@@ -51,7 +44,6 @@ def require_writable(target: str) -> None:
             beside = _beside(target)
             beside.touch(exist_ok=False)
             beside.unlink()
-            _remove_left_over(target)
     except OSError as error:
         raise unwritable(target, error) from None
 
@@ -59,7 +51,8 @@ def require_writable(target: str) -> None:
 def write_whole(target: str, write: Callable[[BinaryIO], object]) -> None:
     """Write a file under a temporary name, sync it to the disk, and rename it to the target.
 
-    A pipe or a device cannot be replaced by renaming, and is written directly.
+    The new file has the permissions of the old one; a symbolic link is kept. A pipe or a device cannot be
+    replaced by renaming, and is written directly.
 
     Raises:
         NotFinished: the file cannot be written; an old file is unchanged.
@@ -69,18 +62,25 @@ def write_whole(target: str, write: Callable[[BinaryIO], object]) -> None:
             with open(target, "wb") as stream:
                 write(stream)
             return
-        beside = _beside(target)
+        beside, place = _beside(target), Path(os.path.realpath(target))
         try:
             with beside.open("wb") as stream:
                 write(stream)
                 stream.flush()
                 os.fsync(stream.fileno())
-            _replace(beside, Path(os.path.realpath(target)))
+            if place.exists():
+                beside.chmod(stat.S_IMODE(place.stat().st_mode))
+            os.replace(beside, place)
         except BaseException:
             # Also after Ctrl-C: no temporary file stays behind.
             with suppress(OSError):
                 beside.unlink()
             raise
+        with suppress(OSError):
+            # Sync the folder too, so that the new name is on the disk; some systems cannot open a folder.
+            folder = os.open(place.parent, os.O_RDONLY)
+            os.fsync(folder)
+            os.close(folder)
     except OSError as error:
         raise unwritable(target, error) from None
 
@@ -94,20 +94,6 @@ def write_content(target: str, content: str | bytes) -> None:
     # The content may quote a file name with bytes that are not valid text.
     data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
     write_whole(target, lambda stream: stream.write(data))
-
-
-def _replace(beside: Path, place: Path) -> None:
-    """Rename a file to its target, with the permissions of the old file; a symbolic link is kept."""
-    if place.exists():
-        beside.chmod(stat.S_IMODE(place.stat().st_mode))
-    os.replace(beside, place)
-    with suppress(OSError):
-        # Sync the folder too, so that the new name is on the disk; some systems cannot open a folder.
-        folder = os.open(place.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
 
 
 def _is_special(target: str) -> bool:
@@ -133,19 +119,4 @@ def _beside(target: str) -> Path:
         raise FileNotFoundError(errno.ENOENT, f"there is no folder {str(place.parent)!r}")
     with suppress(FileNotFoundError):
         os.stat(place)  # raises OSError if the name is too long
-    return place.with_name(f"{_begun(place)}{secrets.token_hex(TOKEN // 2)}.part")
-
-
-def _remove_left_over(target: str) -> None:
-    """Remove the temporary files of a target that killed runs have left."""
-    place = Path(os.path.realpath(target))
-    for path in place.parent.glob(f"{glob.escape(_begun(place))}{'?' * TOKEN}.part"):
-        # Another run may have removed it, or it belongs to another user.
-        with suppress(OSError):
-            if time.time() - path.stat().st_mtime > LEFT:
-                path.unlink()
-
-
-def _begun(place: Path) -> str:
-    """The part of the names of a target's temporary files before the token of a run."""
-    return f".pointcoord-{place.name[:200]}-"
+    return place.with_name(f".pointcoord-{secrets.token_hex(4)}.part")

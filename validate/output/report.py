@@ -30,11 +30,6 @@ OF_EVERYTHING = ("agrees", "not tested", "not given", "disagrees")
 OF_WHAT_IS_GIVEN = ("not given", "agrees", "not tested", "disagrees")
 
 
-def with_unit(value: float, unit: str, digits: int = 1) -> str:
-    """A number with two significant digits, or `digits` + 1, and its unit."""
-    return f"{value:.{digits}e} {unit}".rstrip() if math.isfinite(value) else "not a number"
-
-
 def in_degrees(value: float, unit: str) -> str:
     """A number with two significant digits and its unit, angles in degrees; a dash for no number."""
     factor, unit = degrees_of(unit)
@@ -97,15 +92,11 @@ def worst_rows(outcome: Outcome) -> list[Comparison]:
 
 def worst_of(rows: Iterable[Comparison], order: Sequence[str] = OF_WHAT_IS_GIVEN) -> dict[str, Comparison]:
     """By heading, the row with the last verdict in an order; among equal verdicts, the largest share."""
-    worst: dict[str, Comparison] = {}
-    for row in rows:
-        key = heading(row.quantity, row.name)
-        if key not in worst or severity(row, order) > severity(worst[key], order):
-            worst[key] = row
-    return worst
+    of_one = gathered((heading(row.quantity, row.name), row) for row in rows)
+    return {words: max(some, key=lambda row: severity(row, order)) for words, some in of_one.items()}
 
 
-def severity(row: Comparison, order: Sequence[str] = OF_EVERYTHING) -> tuple[int, float]:
+def severity(row: Comparison, order: Sequence[str]) -> tuple[int, float]:
     """The sort key of the worst row: the place of its verdict in an order, then its share."""
     return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
 
@@ -122,25 +113,23 @@ def share_of_all(done: Sized, every: Sized, noun: str) -> str:
     return f"{len(done)} of {counted_as(len(every), noun)}" if done else ""
 
 
-def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) -> tuple[Part, ...]:
+def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) -> Iterator[Part]:
     """A comparison as a table with a heading and notes; angles are in degrees.
 
     Args:
         over: for a file of results: the abscissa of its rows, such as time.
         absent: for a file of results: the numbers that the scene asks for and the file lacks.
     """
-    rows = [*quantity_rows(outcome)]
-    rows += [(words, "", "-", "-", "-", "-", "-", Cell("not given")) for words in absent]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
     times = len(outcome.solutions[0].times)
     count = rows_over(times, over) if over else counted_as(times, "instant")
+    yield f"{outcome.scene}: {pair_of(outcome)}, {count}{factor}"
+    lacking: list[str | Cell] = ["", *["-"] * 5, Cell("not given")]
+    yield Table(HEAD, (*quantity_rows(outcome), *((words, *lacking) for words in absent)))
+    yield from (f"  {line}" for line in silent_lines(outcome))
     remarks = (*outcome.missing, *(note for note in outcome.notes if note not in outcome.faults))
-    lines = (*silent_lines(outcome), *(f"note: {note}" for note in remarks), *explained_lines(outcome))
-    return (
-        f"{outcome.scene}: {pair_of(outcome)}, {count}{factor}",
-        Table(HEAD, tuple(rows)),
-        *(f"  {line}" for line in lines),
-    )
+    yield from (f"  note: {note}" for note in remarks)
+    yield from (f"  {line}" for line in explained_lines(outcome))
 
 
 def rows_over(rows: int, over: str) -> str:
@@ -172,17 +161,16 @@ def quantity_rows(outcome: Outcome) -> Iterator[tuple[str | Cell, ...]]:
         yield words, name, *numbers, Cell(text, verdict=worst.verdict)
 
 
-def file_parts(found: DataOutcome) -> tuple[Part, ...]:
+def file_parts(found: DataOutcome) -> Iterator[Part]:
     """The table of a file of results, and how many numbers were compared."""
-    verdicts = [row.verdict for row in found.outcome.rows]
+    yield from outcome_parts(found.outcome, found.over, found.absent)
+    verdicts = Counter(row.verdict for row in found.outcome.rows)
     # Singular and plural: 1 agrees, 2 agree.
-    counts = ", ".join(
-        f"{n} {one if n == 1 else one.removesuffix('s')}" for one, n in Counter(verdicts).items()
-    )
+    counts = (f"{n} {one if n == 1 else one.removesuffix('s')}" for one, n in verdicts.items())
     # A number is not tested if nothing can be compared with it, or if its tolerance hides any error.
-    tested = counted_as(len(verdicts) - verdicts.count("not tested"), "number")
-    total = f"{tested} compared" if {*verdicts} - {"not tested"} else "Nothing was compared"
-    return *outcome_parts(found.outcome, found.over, found.absent), f"{total}: {counts}."
+    tested = verdicts.total() - verdicts["not tested"]
+    total = f"{counted_as(tested, 'number')} compared" if tested else "Nothing was compared"
+    yield f"{total}: {', '.join(counts)}."
 
 
 def silent_lines(outcome: Outcome) -> Iterator[str]:
@@ -200,22 +188,20 @@ def explained_lines(outcome: Outcome) -> Iterator[str]:
 def printed_parts(examined: Sequence[Examined], findings: Sequence[Finding]) -> Iterator[Part]:
     """The errors of the paper's formulas as printed, with their errata, and the scenes they cannot solve."""
     if findings:
-        rows = tuple(
-            (
-                f.scene,
-                QUANTITIES[f.quantity].words,
-                Cell(with_unit(f.worst.difference, f.worst.unit), f.worst.name),
-                f.erratum,
-            )
-            for f in findings
-        )
         head = ("scene", "wrong quantity", "largest difference", "erratum")
-        yield Table(head, rows, caption="The paper's formulas as printed, against the corrected ones.")
+        rows = []
+        for one in findings:
+            worst, words = one.worst, QUANTITIES[one.quantity].words
+            size = (
+                f"{worst.difference:.1e} {worst.unit}" if math.isfinite(worst.difference) else "not a number"
+            )
+            rows.append((one.scene, words, Cell(size, worst.name), one.erratum))
+        yield Table(head, tuple(rows), caption="The paper's formulas as printed, against the corrected ones.")
     elif tried := [one.name for one in examined if one.printed is not None]:
         yield f"The paper's formulas as printed agree in {', '.join(tried)}."
-    for one in examined:
-        if one.unprinted is not None:
-            yield f"The paper's formulas as printed cannot solve {one.name}: {one.unprinted.message}"
+    for scene in examined:
+        if scene.unprinted is not None:
+            yield f"The paper's formulas as printed cannot solve {scene.name}: {scene.unprinted.message}"
 
 
 def paper_tables(rows: Sequence[PaperRow]) -> Iterator[Table]:
@@ -223,14 +209,10 @@ def paper_tables(rows: Sequence[PaperRow]) -> Iterator[Table]:
     for number, label in ((2, "theta [deg]"), (3, "S [mm]")):
         lines = tuple(
             (
-                f"{row.printed.time:.2f}",
-                f"{row.printed.input:g}",
-                f"{row.input:.2f}",
-                _vector(row.printed.wheel_centre, "{:g}"),
-                _vector(row.wheel_centre, "{:.1f}"),
-                f"{row.position_gap:.1f}",
-                f"{row.omega_gap:.2f}",
-                f"{row.alpha_gap:.2f}",
+                *(f"{row.printed.time:.2f}", f"{row.printed.input:g}", f"{row.input:.2f}"),
+                "({:g}, {:g}, {:g})".format(*row.printed.wheel_centre),
+                "({:.1f}, {:.1f}, {:.1f})".format(*row.wheel_centre),
+                *(f"{row.position_gap:.1f}", f"{row.omega_gap:.2f}", f"{row.alpha_gap:.2f}"),
                 row.printed.slip,
             )
             for row in rows
@@ -244,10 +226,6 @@ def paper_tables(rows: Sequence[PaperRow]) -> Iterator[Table]:
 def paper_sentence(rows: Sequence[PaperRow]) -> str:
     """The r.m.s. difference between the printed tables and the motion of the paper's own hardpoints."""
     return f"Wheel centre, both tables: difference {root_mean_square(rows):.1f} mm r.m.s. per coordinate."
-
-
-def _vector(vector: Sequence[float], form: str) -> str:
-    return "(" + ", ".join(form.format(component) for component in vector) + ")"
 
 
 def examined_data(examined: Examined, file: DataOutcome | None = None) -> dict[str, Any]:

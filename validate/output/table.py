@@ -10,7 +10,7 @@ import io
 import os
 import re
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, TextIO
@@ -65,7 +65,7 @@ class Table:
         """The rows, with every cell as a `Cell`."""
         return tuple(tuple(Cell(c) if isinstance(c, str) else c for c in row) for row in self.rows)
 
-    @cached_property
+    @property
     def texts(self) -> tuple[tuple[str, ...], ...]:
         """The texts of the rows, without small print."""
         return tuple(tuple(cell.text for cell in row) for row in self.cells)
@@ -76,50 +76,47 @@ class Table:
         Columns that do not fit into `room` characters are split into bands, one below the other. Each band
         begins with the first columns.
         """
-        columns = [(name, *(row[i] for row in self.texts)) for i, name in enumerate(self.head)]
-        widths = [max(map(len, column)) for column in columns]
-        bands = [[*range(self.kept)]]
-        for i in range(self.kept, len(columns)):
-            wide = self.indent + sum(widths[j] + 2 for j in (*bands[-1], i)) - 2
+        columns, texts = [], self.texts
+        for i, name in enumerate(self.head):
+            cells = [row[i] for row in texts]
+            width = max(map(len, (name, *cells)))
+            words = not i or not all(map(NUMBER.match, cells))
+            column = (name, "-" * width, *cells)
+            columns.append([cell.ljust(width) if words else cell.rjust(width) for cell in column])
+        first = columns[: self.kept]
+        bands = [[*first]]
+        for one in columns[self.kept :]:
+            wide = self.indent + sum(len(other[0]) + 2 for other in (*bands[-1], one)) - 2
             if room is not None and wide > room and len(bands[-1]) > self.kept:
-                bands.append([*range(self.kept)])
-            bands[-1].append(i)
+                bands.append([*first])
+            bands[-1].append(one)
         found = [self.caption] if self.caption else []
         for band in bands:
-            padded = [
-                [cell.ljust(widths[i]) if self.to_left(i) else cell.rjust(widths[i]) for cell in columns[i]]
-                for i in band
-            ]
-            head, *rows = zip(*padded, strict=True)
-            rule = ["-" * widths[i] for i in band]
             found += [""] * (band is not bands[0])
-            found += [(" " * self.indent + "  ".join(row)).rstrip() for row in (head, rule, *rows)]
+            found += [(" " * self.indent + "  ".join(row)).rstrip() for row in zip(*band, strict=True)]
         return found
 
     @property
     def markdown(self) -> str:
         """The table in Markdown, with cells escaped; cells that disagree or have moved are bold."""
-        bold = dict.fromkeys(("disagrees", "moved"), "**")
-        marked = ([(bold.get(one.verdict, ""), markdown(one.text)) for one in row] for row in self.cells)
-        rows = ([f"{mark}{text}{mark}" for mark, text in row] for row in marked)
+        marked = (
+            [(markdown(one.text), one.verdict in ("disagrees", "moved")) for one in row] for row in self.cells
+        )
+        rows = ([f"**{text}**" if bold else text for text, bold in row] for row in marked)
         lines = [[markdown(name) for name in self.head], ["---"] * len(self.head), *rows]
         return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-    def to_left(self, column: int) -> bool:
-        """Whether a column is aligned to the left: the first, and columns of words."""
-        return column == 0 or not all(NUMBER.match(row[column]) for row in self.texts)
 
 
 Part = str | Table
 """Lines of text, or a table."""
 
 
-def text_of(parts: Sequence[Part], room: int | None = None) -> str:
+def text_of(parts: Iterable[Part], room: int | None = None) -> str:
     """Parts as plain text, one below the other, at most `room` characters wide."""
     return "\n".join(part if isinstance(part, str) else "\n".join(part.lines(room)) for part in parts)
 
 
-def text_for(stream: TextIO | None, parts: Sequence[Part]) -> str:
+def text_for(stream: TextIO | None, parts: Iterable[Part]) -> str:
     """Parts as text for a stream: on a terminal fitted to its width, with verdicts in colours."""
     if not is_terminal(stream):
         return text_of(parts)

@@ -86,8 +86,7 @@ def test_writing_on_the_way_takes_a_small_part_of_the_time(
         return {"cases": []}
 
     head = Head.of("hard-list", ["pointcoord"])
-    journal = Journal(str(target), head, Console(), results, lambda: "some")
-    with journal.closing():
+    with Journal(str(target), head, Console(), results, lambda: "some") as journal:
         for _ in range(100):
             clock[0] += 0.5
             journal.keep()
