@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from itertools import combinations
 
 from pointcoord.linkage.directions import DIRECTIONS
-from pointcoord.mechanism.faults import TableFault, known_name, no_such
-from pointcoord.mechanism.inputs import CHASSIS
+from pointcoord.mechanism.faults import TableFault, known_name, no_such, under
+from pointcoord.mechanism.inputs import CHASSIS, check_apart
 from pointcoord.mechanism.structure import Structure
-
-A_POINT = "point of a body, rod or slide"
 
 
 def check(structure: Structure) -> None:
@@ -20,12 +19,23 @@ def check(structure: Structure) -> None:
     """
     _bodies(structure)
     _rods(structure)
-    _slides(structure)
-    _inputs(structure)
+    known: dict[str, Collection[str]] = {
+        "body": structure.bodies,
+        "slide": structure.slides,
+        "point": structure.points,
+        "direction": DIRECTIONS,
+        "direction or point": (*DIRECTIONS, *structure.points),
+    }
+    for table, entries in (("slides", structure.slides), ("inputs", structure.inputs)):
+        for name, entry in entries.items():
+            with under(table, name):
+                for key, kind, each in entry.names():
+                    known_name(kind, each, known[kind], (key,))
+                entry.check(structure.bodies)
     _roles(structure)
     for point, other in structure.stand_ins.items():
         for name in (point, other):
-            known_name(A_POINT, name, structure.points, ("stand_ins", point))
+            known_name("point", name, structure.points, ("stand_ins", point))
         if point == other:
             raise TableFault(("stand_ins", point), f"is {other!r}, the omitted point itself", "another point")
 
@@ -34,14 +44,6 @@ def _bodies(structure: Structure) -> None:
     if not structure.bodies.get(CHASSIS):
         problem = f"the body {CHASSIS!r}, the ground, is missing or has no points"
         raise TableFault(("bodies",), problem, f"a body {CHASSIS!r}")
-    for body, points in structure.moving_bodies.items():
-        if len(points) < 3:
-            hint = "; write it in [rods]" if len(points) == 2 else ""
-            raise TableFault(
-                ("bodies", body),
-                f"has {len(points)} point{'' if len(points) == 1 else 's'}{hint}",
-                "three points or more, not all in one line",
-            )
     for (one, points), (other, others) in combinations(structure.bodies.items(), 2):
         both = [name for name in points if name in others]
         if len(both) > 2:
@@ -50,114 +52,47 @@ def _bodies(structure: Structure) -> None:
                 f"shares {', '.join(both)} with {one}: three shared points make the two one rigid body",
                 "one shared point (a ball joint) or two (a hinge); or write the two as one body",
             )
-    held = {end for ends in structure.rods.values() for end in ends}
-    held |= {name for slide in structure.slides.values() for name in (*slide.points, slide.through)}
     for body, points in structure.moving_bodies.items():
-        shared = (name for name in points if len(structure.bodies_of(name)) > 1)
-        if held.isdisjoint(points) and not any(shared):
-            raise TableFault(
-                ("bodies", body),
-                "nothing holds this body: none of its points is shared with another body, a rod or a slide",
-                "a point that it shares with another body, a rod or a slide",
-            )
+        if len(points) < 3:
+            allowed = "three points or more, not all in one line; a body of two points is written in [rods]"
+            raise TableFault(("bodies", body), f"has the points {', '.join(points) or 'none'}", allowed)
+        if structure.attached.isdisjoint(points) and all(
+            len(structure.bodies_of(name)) == 1 for name in points
+        ):
+            allowed = "a point that it shares with another body, a rod or a slide"
+            raise TableFault(("bodies", body), "nothing holds this body", allowed)
 
 
 def _rods(structure: Structure) -> None:
     ends = [end for pair in structure.rods.values() for end in pair]
     sliding = {point for slide in structure.slides.values() for point in slide.points}
     for rod, pair in structure.rods.items():
-        for body in structure.bodies_of(pair[0]):
-            if pair[1] in structure.bodies[body]:
-                raise TableFault(
-                    ("rods", rod), f"joins two points of {body}, whose distance is fixed", "two bodies"
-                )
+        with under("rods", rod):
+            check_apart(pair, structure.bodies)
         for end in pair:
-            free = not structure.bodies_of(end) and end not in sliding
-            if free and ends.count(end) < 2:
-                raise no_such(
-                    "point of a body or slide",
-                    end,
-                    (name for name in structure.points if name != end),
-                    ("rods", rod),
-                )
-
-
-def _slides(structure: Structure) -> None:
-    for name, slide in structure.slides.items():
-        place = ("slides", name)
-        known_name("body", slide.body, structure.bodies, (*place, "body"))
-        own = structure.bodies[slide.body]
-        known_name(f"point of {slide.body}", slide.through, own, (*place, "through"))
-        if slide.along not in DIRECTIONS:
-            known = (*DIRECTIONS, *structure.points)
-            known_name("direction or point", slide.along, known, (*place, "along"))
-            if slide.along == slide.through:
-                raise TableFault(
-                    (*place, "along"),
-                    f"is {slide.along!r}, the same point as through, so the line has no direction",
-                    "a direction, or another point",
-                )
-        for point in slide.points:
-            if point in own:
-                raise TableFault(
-                    (*place, "points"),
-                    f"{point!r} is a point of {slide.body}, so it cannot slide on a line of {slide.body}",
-                    f"points that {slide.body} does not have",
-                )
-        if not slide.turns:
-            _one_body(structure, slide.points, place)
-
-
-def _one_body(structure: Structure, points: tuple[str, ...], place: tuple[str, ...]) -> None:
-    if len(points) < 2:
-        raise TableFault((*place, "turns"), "a single point cannot be kept from turning", "two points")
-    bodies = set(structure.bodies_of(points[0])).intersection(structure.bodies_of(points[1]))
-    if len(bodies) != 1:
-        raise TableFault(
-            (*place, "points"),
-            f"{points[0]} and {points[1]} are of {' and of '.join(sorted(bodies)) or 'no common body'}, so "
-            "the body kept from turning is not defined",
-            "with turns = false, first two points that one body alone shares",
-        )
-
-
-def _inputs(structure: Structure) -> None:
-    for name, one in structure.inputs.items():
-        place = ("inputs", name)
-        for body in one.named("body"):
-            known_name("body", body, structure.bodies, place)
-        for slide in one.named("slide"):
-            known_name("slide", slide, structure.slides, (*place, one.kind))
-        for point in one.named("point"):
-            known_name(A_POINT, point, structure.points, place)
-        try:
-            one.check(structure.bodies)
-        except TableFault as fault:
-            raise fault.under(*place) from None
+            if not structure.bodies_of(end) and end not in sliding and ends.count(end) < 2:
+                known = (name for name in structure.points if name != end)
+                raise no_such("point of a body or slide", end, known, ("rods", rod))
 
 
 def _roles(structure: Structure) -> None:
     """Check names in roles, and that points of some roles belong to the chassis or the wheel's carrier."""
     for part in structure.sides:
         if not any(name.startswith(f"{part}.") for name in (*structure.bodies, *structure.roles)):
-            raise TableFault(
-                ("parts", part), "has no mechanism and no role", f'a mechanism, or "{part}.knuckle"'
-            )
+            allowed = f'a mechanism, or "{part}.knuckle"'
+            raise TableFault(("parts", part), "has no mechanism and no role", allowed)
     for role, who in structure.roles.items():
         place, (prefix, dot, last) = ("roles", role), role.rpartition(".")
         if prefix and prefix not in structure.sides:
             known = ", ".join(structure.sides) or 'none yet: write [parts] with PART = { side = "left" }'
             raise TableFault(place, f"is a role of {prefix!r}, which is no part", f"a part: {known}")
         if last == "knuckle":
-            known_name("body", who, structure.bodies, place)
-            if who == CHASSIS:
-                raise TableFault(place, "is the chassis, which carries no wheel", "a moving body")
+            known_name("moving body", who, structure.moving_bodies, place)
             continue
-        names, body, words = (who,) if isinstance(who, str) else who, str(CHASSIS), "the chassis"
-        if last == "wheel_axis":
-            body = structure.knuckles.get(f"{prefix}{dot}knuckle", "")
-            words = f"{body}, which carries the wheel,"
-        for name in names:
-            known_name(A_POINT, name, structure.points, place)
-            if last in ("wheel_axis", "front_and_rear", "inboard") and body in structure.bodies:
+        knuckle = structure.knuckles.get(f"{prefix}{dot}knuckle", "")
+        body = {"wheel_axis": knuckle, "front_and_rear": CHASSIS, "inboard": CHASSIS}.get(last)
+        for name in structure.role(role):
+            known_name("point", name, structure.points, place)
+            if body in structure.bodies:
+                words = f"{body}, which carries the wheel" if body == knuckle else body
                 known_name(f"point of {words}", name, structure.bodies[body], place)

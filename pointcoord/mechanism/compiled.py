@@ -8,7 +8,7 @@ already is not made a link again, so a hinge of two shared points adds no redund
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Iterator, KeysView, Mapping
+from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -42,16 +42,17 @@ from pointcoord.mechanism.inputs import (
     Height,
     Input,
     Moves,
+    Slide,
     Steers,
     Travel,
     Turn,
     Turns,
 )
-from pointcoord.mechanism.structure import Slide, Structure
+from pointcoord.mechanism.structure import Structure
 from pointcoord.numerics.arrays import Array
 
 Place = tuple[float, float, float]
-Made = tuple[list[Constraint], list[Drive]]
+Made = Constraint | Drive
 
 # Sine of the smallest angle of a triangle. The first triangle above this stands for its body; if all are
 # flatter, the least flat one does.
@@ -94,20 +95,16 @@ class Compiler:
             puts_in_place: whether closing a drawing moves points on purpose.
         """
         structure, triangles, chassis = self.structure, self.triangles, self.chassis
-        constraints = [*self._bodies(), *self._points_in_bodies()]
-        constraints += [one for slide in structure.slides for one in self._slide(slide)]
-        driving: list[Drive] = []
-        for input in self.driven:
-            rows, own = self._input(input, structure.inputs[input])
-            constraints += rows
-            driving += own
+        made: list[Made] = [*self._bodies(), *self._points_in_bodies()]
+        made += [row for slide in structure.slides for row in self._slide(slide)]
+        made += [part for name in self.driven for part in self._input(name, structure.inputs[name])]
         roles = {role: structure.role(role) for role in structure.roles}
         roles |= {role: triangles[body] for role, body in structure.knuckles.items()}
         moves = {name: (one.along, "") for name, one in structure.inputs.items() if isinstance(one, Moves)}
         turns = {n: (one.along, one.about) for n, one in structure.inputs.items() if isinstance(one, Turns)}
         return Topology(
             name=name,
-            chassis=tuple(chassis),
+            chassis=chassis,
             moving=tuple(point for point in self.solved if point not in chassis),
             bodies={body: triangles[body] for body in structure.knuckles.values()},
             carried={
@@ -118,8 +115,8 @@ class Compiler:
             },
             directions=self._directions(),
             # Several heights may be measured from one ground.
-            constraints=tuple(dict.fromkeys(constraints)),
-            drives=tuple(dict.fromkeys(driving)),
+            constraints=tuple(dict.fromkeys(part for part in made if isinstance(part, Constraint))),
+            drives=tuple(dict.fromkeys(part for part in made if isinstance(part, Drive))),
             roles=roles,
             sides=structure.sides,
             rods=structure.rods,
@@ -148,38 +145,35 @@ class Compiler:
     # Points that represent the bodies.
 
     @cached_property
-    def chassis(self) -> KeysView[str]:
-        return dict.fromkeys(self.structure.bodies[CHASSIS]).keys()
+    def chassis(self) -> tuple[str, ...]:
+        return self.structure.bodies[CHASSIS]
 
     @cached_property
-    def needed(self) -> Collection[str]:
-        """The points that something is joined to or driven by, in the order of the bodies."""
+    def needed(self) -> frozenset[str]:
+        """The points that something is joined to or driven by."""
         structure = self.structure
-        joined = {end for ends in structure.rods.values() for end in ends}
-        for slide in structure.slides.values():
-            joined |= {*slide.points, slide.through}
-            if slide.along in structure.bodies[slide.body] and slide.body != CHASSIS:
-                joined.add(slide.along)
-        for name in self.driven:
-            joined |= {*structure.inputs[name].named("point")}
-        return {p: None for p in structure.points if p in joined or len(structure.bodies_of(p)) != 1}.keys()
+        shared = (point for point in structure.points if len(structure.bodies_of(point)) != 1)
+        driven = (point for name in self.driven for point in structure.inputs[name].named("point"))
+        lines = (
+            slide.along
+            for slide in structure.slides.values()
+            if slide.body != CHASSIS and slide.along in structure.bodies[slide.body]
+        )
+        return structure.attached.union(shared, driven, lines)
 
     @cached_property
-    def solved(self) -> Collection[str]:
+    def solved(self) -> tuple[str, ...]:
         """The points that are solved for, including those of the chassis among them.
 
         A point that is fixed to a body is carried where the body's triangle moves; where the triangle has a
         point of the chassis, the point is solved for.
         """
-        found = dict.fromkeys(
-            name
-            for body, names in self.structure.moving_bodies.items()
-            for name in names
-            if name in self.needed
-            or name in self.triangles[body]
-            or not self.chassis.isdisjoint(self.triangles[body])
-        )
-        return {**found, **{n: None for n in self.needed if not self.structure.bodies_of(n)}}.keys()
+        structure, found = self.structure, list[str]()
+        for body, points in structure.moving_bodies.items():
+            held = not {*self.chassis}.isdisjoint(self.triangles[body])
+            found += [p for p in points if held or p in self.needed or p in self.triangles[body]]
+        free = (point for point in structure.points if not structure.bodies_of(point))
+        return tuple(dict.fromkeys((*found, *free)))
 
     @cached_property
     def triangles(self) -> dict[str, Triangle]:
@@ -356,46 +350,46 @@ class Compiler:
 
     # Rows and drives of inputs
 
-    def _input(self, name: str, one: Input) -> Made:
+    def _input(self, name: str, one: Input) -> Iterator[Made]:
         """Rows and drives of a driven input; none for a chassis input."""
         value, cosine, sine = (f"{what} {name}" for what in ("value of", "cosine of", "sine of"))
         match one:
             case Arm(of=of, about=about, from_=direction):
-                rise, edge = f"{name} rise", (of, about)
-                row = scalar_product(f"rise of {of} over {about}", edge, (direction, ""), "", rise)
-                return [row], [drives.arm_angle(rise, name, about, of, direction)]
+                rise = f"{name} rise"
+                yield scalar_product(f"rise of {of} over {about}", (of, about), (direction, ""), "", rise)
+                yield drives.arm_angle(rise, name, about, of, direction)
             case Turn(angle=body, on=on):
                 tail, head = self.structure.shared(body, on)
                 point = next(corner for corner in self.triangles[body] if corner not in (tail, head))
                 carrier = None if on == CHASSIS else (on, self.triangles[on])
-                row = turn(f"turn of {body} by {name}", point, (tail, head), (cosine, sine), carrier)
-                return [row], [drives.turned_by(cosine, name, 0), drives.turned_by(sine, name, 1)]
+                yield turn(f"turn of {body} by {name}", point, (tail, head), (cosine, sine), carrier)
+                yield from (drives.turned_by(cosine, name, 0), drives.turned_by(sine, name, 1))
             case Travel(travel=slides):
-                return [], self._travels(name, slides)
+                yield from self._travels(name, slides)
             case Steers(steers=slides):
                 per_turn = self._length(one.length, name)
-                return [], [drives.steered(each, per_turn) for each in self._travels(name, slides)]
+                yield from (drives.steered(each, per_turn) for each in self._travels(name, slides))
             case Height(height=point, along=along):
                 drawn, what = f"drawn height of {point} {along}", f"height of {point}"
-                row = scalar_product(what, (point, ""), (along, ""), drawn, value)
-                return [row], [drives.travel(value, name, point, point, along, slides=False)]
+                yield scalar_product(what, (point, ""), (along, ""), drawn, value)
+                yield drives.travel(value, name, point, point, along, slides=False)
             case Contact(contact=(inner, centre), over=over):
                 ground, moves = self._ground if over == "ground" else (Ground(), [])
-                row = contact_height(inner, centre, value, self._length(one.length, name), ground)
-                driving = drives.travel(value, name, centre, centre, "up", slides=False)
-                return [*ground.constraints, row], [driving, *moves]
+                yield from ground.constraints
+                yield contact_height(inner, centre, value, self._length(one.length, name), ground)
+                yield drives.travel(value, name, centre, centre, "up", slides=False)
+                yield from moves
             case Distance(distance=edge):
-                row = scalar_product(f"distance of {edge[0]} and {edge[1]}", edge, edge, "", value)
-                return [row], [drives.distance_of(value, name, *edge)]
-        return [], []
+                yield scalar_product(f"distance of {edge[0]} and {edge[1]}", edge, edge, "", value)
+                yield drives.distance_of(value, name, *edge)
 
-    def _travels(self, name: str, slides: Collection[str]) -> list[Drive]:
+    def _travels(self, name: str, slides: Collection[str]) -> Collection[Drive]:
         found: dict[str, Drive] = {}
         for slide in slides:
             point, place = self.structure.slides[slide].points[0], self._travel_of(slide)
             # Several slides along one direction of the car share one travel.
             found.setdefault(place, drives.travel_along(place, name, self._lines[slide], point))
-        return list(found.values())
+        return found.values()
 
     @cached_property
     def travels(self) -> dict[str, str]:
@@ -448,12 +442,9 @@ class Compiler:
             MechanismError: the scene does not give this length.
         """
         if name not in self.lengths:
-            what, usual = LENGTHS[name]
-            raise MechanismError(
-                f"input {input!r} is {what}, and the mechanism has no {name}; allowed: {name} under "
-                f"[mechanism], such as {name} = {usual} in a scene in mm",
-                (input,),
-            )
+            usual = f"{name} = {LENGTHS[name]} in a scene in mm"
+            problem = f"input {input!r} needs the mechanism's {name}, which is not given"
+            raise MechanismError(f"{problem}; allowed: {name} under [mechanism], such as {usual}", (input,))
         return self.lengths[name]
 
 

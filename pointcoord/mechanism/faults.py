@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 
 from pydantic import BaseModel, ValidationError
-from pydantic_core import ErrorDetails
 
 from pointcoord.errors import SceneError
 from pointcoord.wording import meant, shown, shown_key
@@ -16,13 +15,13 @@ WORDS = {
     "missing": "this key is missing",
     "dataclass_type": "Input should be a table",
     "dict_type": "Input should be a table",
+    "extra_forbidden": "another key gives this already",
     "model_type": "Input should be a table",
     "string_too_short": "Input should be a name",
     "tuple_type": "Input should be a list",
 }
 # Errors whose message contains the value already.
 COMPLETE = ("missing", "too_short", "too_long", "value_error")
-MOST_KEYS = 3  # of further errors, in a message
 
 
 class TableFault(ValueError):
@@ -36,21 +35,25 @@ class TableFault(ValueError):
         self.place, self.problem, self.allowed = tuple(place), problem, allowed
         super().__init__(problem)
 
-    def under(self, *place: str | int) -> TableFault:
-        """The same error in tables that are part of larger tables, at `place`."""
-        return TableFault((*place, *self.place), self.problem, self.allowed)
+    def of_file(self, source: str) -> SceneError:
+        """This error as an error of a file."""
+        key = ".".join(shown_key(one) for one in self.place if one != "")
+        return SceneError(source, key, self.problem, self.allowed)
 
-    @property
-    def key(self) -> str:
-        """The place as dotted keys."""
-        return ".".join(shown_key(one) for one in self.place if one != "")
 
-    def of_file(self, source: str, others: Sequence[TableFault] = ()) -> SceneError:
-        """This error as an error of a file; `others` are further errors in it, named by their keys."""
-        keys = list(dict.fromkeys(one.key for one in others))
-        rest = f" and {len(keys) - MOST_KEYS} more" if len(keys) > MOST_KEYS else ""
-        more = f" (also look at: {', '.join(keys[:MOST_KEYS])}{rest})" if keys else ""
-        return SceneError(source, self.key, self.problem + more, self.allowed)
+@contextmanager
+def under(*place: str | int) -> Iterator[None]:
+    """Errors of what is read within this context, with the place where it stands in larger tables.
+
+    Raises:
+        TableFault: the error, from the top of the larger tables.
+    """
+    try:
+        yield
+    except ValidationError as error:
+        raise fault_of(error, place) from None
+    except TableFault as fault:
+        raise TableFault((*place, *fault.place), fault.problem, fault.allowed) from None
 
 
 def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str | int] = ()) -> TableFault:
@@ -84,35 +87,16 @@ def known_keys(table: object, known: Collection[str]) -> object:
     return table
 
 
-def faults_of(
-    error: ValidationError, place: Sequence[str | int] = (), written: object = None
-) -> list[TableFault]:
-    """Pydantic's errors in a table at a place.
-
-    Args:
-        written: the table before lengths were converted to mm; messages show its values.
-    """
-    return [_fault(found, place, written) for found in error.errors(include_url=False)]
-
-
-def _fault(found: ErrorDetails, place: Sequence[str | int], written: object) -> TableFault:
-    where, value = (*place, *found["loc"]), _value_at(written, found["loc"], found["input"])
+def fault_of(error: ValidationError, place: tuple[str | int, ...] = ()) -> TableFault:
+    """The first of pydantic's errors in a table at a place."""
+    found = error.errors(include_url=False)[0]
+    where, value, kind = (*place, *found["loc"]), found["input"], found["type"]
     cause: object = found.get("ctx", {}).get("error")
     if isinstance(cause, TableFault):
-        return cause.under(*where)
-    if found["type"] == "missing" and isinstance(where[-1], int):
+        return TableFault((*where, *cause.place), cause.problem, cause.allowed)
+    if kind == "missing" and isinstance(where[-1], int):
         return TableFault(where, f"a number is missing: {where[-1]} given where three are needed")
     message = str(cause) if cause else found["msg"].replace("Tuple", "List").replace(" after validation", "")
-    words = WORDS.get(found["type"]) or message
-    complete = found["type"] in COMPLETE or isinstance(value, Mapping | BaseModel)
+    words = WORDS.get(kind) or message
+    complete = kind in COMPLETE or isinstance(value, Mapping | BaseModel)
     return TableFault(where, words if complete else f"{words}, not {shown(value)}")
-
-
-def _value_at(table: Any, keys: Sequence[str | int], otherwise: object) -> object:
-    """The value under keys in nested tables and lists; `otherwise` if there is none."""
-    for key in keys:
-        try:
-            table = table[key]
-        except (TypeError, LookupError):
-            return otherwise
-    return table

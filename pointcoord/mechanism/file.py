@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
+from collections.abc import Collection, Hashable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, partial
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, StrictBool
+from pydantic import AfterValidator, Field, StrictBool
 
 from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
 from pointcoord.mechanism.compiled import Compiler, Place
-from pointcoord.mechanism.faults import TableFault, known_keys, no_such
+from pointcoord.mechanism.faults import TableFault, known_keys, no_such, under
 from pointcoord.mechanism.freedoms import Freedoms, settled
-from pointcoord.mechanism.inputs import CHASSIS, Name
-from pointcoord.mechanism.structure import CLOSING, TABLES, Structure, read
+from pointcoord.mechanism.inputs import CHASSIS, Entry, Name
+from pointcoord.mechanism.structure import CLOSING, Structure, read
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import shown
 
@@ -34,14 +34,6 @@ NO_LENGTHS: Mapping[str, float] = {}
 def shipped() -> tuple[str, ...]:
     """Names of the mechanisms that come with the package."""
     return tuple(sorted(path.stem for path in MECHANISMS.glob(f"*{ENDING}")))
-
-
-def _of_part(mechanism: object) -> MechanismFile:
-    if isinstance(mechanism, Mapping):
-        return MechanismFile.of(mechanism, "part")
-    if not isinstance(mechanism, str):
-        raise TableFault((), f"is {shown(mechanism)}", "the name of a mechanism, or its tables")
-    return mechanism_file(mechanism)
 
 
 @dataclass(frozen=True)
@@ -84,46 +76,34 @@ class MechanismFile:
             axes: `up` and `right` of the car.
             lengths: further lengths that inputs need, by name, mm.
         """
-        inputs, linkage = (
-            self.structures[closure].inputs,
-            partial(self._linkage, closure, points, axes, lengths),
-        )
+        inputs = self.structures[closure].inputs
+        car = Compiler(self.structures[closure].drawn_with(points), (), points, axes, lengths)
         if driven is None:
-            free = linkage(())
-            driven = tuple(
-                name
-                for name, one in inputs.items()
-                if not one.moves_the_chassis and (not one.length or one.length in lengths)
-            )
-            if free.layout.unknowns > len(free.labels):
-                driven = _first_driven(driven, linkage)
-            else:
-                driven = driven[: max(Freedoms.of(free, points, axes).count, 0)]
-        topology = linkage(tuple(name for name in inputs if name in driven))
+            driven, free = (), self.freedoms(points, closure, axes)
+            for name, one in inputs.items():
+                if free and not one.moves_the_chassis and one.length in ("", *lengths):
+                    tried = self._linkage(closure, replace(car, driven=(*driven, name)))
+                    left = Freedoms.of(tried, points, axes).count
+                    if left == free - one.holds:
+                        driven, free = (*driven, name), left
+        topology = self._linkage(closure, replace(car, driven=tuple(n for n in inputs if n in driven)))
         spare = len(topology.labels) > topology.layout.unknowns
         return settled(topology, points, axes) if spare else topology
-
-    def _linkage(
-        self,
-        closure: str,
-        points: Mapping[str, Place],
-        axes: Mapping[str, Place],
-        lengths: Mapping[str, float],
-        driven: tuple[str, ...],
-    ) -> Topology:
-        """The linkage with all its rows, redundant ones included."""
-        compiler = Compiler(self.structures[closure].drawn_with(points), driven, points, axes, lengths)
-        key = closure, compiler.key
-        if key not in self._compiled:
-            named = f"{self.name}, {closure}" if closure != AS_DRAWN else self.name
-            self._compiled[key] = compiler.topology(named, closure != AS_DRAWN)
-        return self._compiled[key]
 
     def freedoms(
         self, points: Mapping[str, Place], closure: str = AS_DRAWN, axes: Mapping[str, Place] = AXES
     ) -> int:
         """Number of freedoms of a drawing without driven inputs: coordinates less independent equations."""
-        return Freedoms.of(self._linkage(closure, points, axes, NO_LENGTHS, ()), points, axes).count
+        car = Compiler(self.structures[closure].drawn_with(points), (), points, axes, NO_LENGTHS)
+        return Freedoms.of(self._linkage(closure, car), points, axes).count
+
+    def _linkage(self, closure: str, car: Compiler) -> Topology:
+        """The linkage of a car with all its rows, redundant ones included."""
+        key = closure, car.key
+        if key not in self._compiled:
+            named = f"{self.name}, {closure}" if closure != AS_DRAWN else self.name
+            self._compiled[key] = car.topology(named, closure != AS_DRAWN)
+        return self._compiled[key]
 
     @cached_property
     def _compiled(self) -> dict[Hashable, Topology]:
@@ -136,64 +116,36 @@ class MechanismFile:
         Raises:
             TableFault: the first fault.
         """
-        known_keys(tables, (*TABLES, "title"))
-        title = tables.get("title")
-        if not isinstance(title, str | None):
-            raise TableFault(("title",), f"is {shown(title)}", "text")
         given = {key: value for key, value in tables.items() if value is not None}
-        # Absent tables are not read: most files have neither, and building a reader takes time.
-        changed = read(dict[Name, CHANGES], given["closures"], "closures") if "closures" in given else {}
-        parts = read(dict[Name, PART], given["parts"], "parts") if "parts" in given else {}
-        closures = {AS_DRAWN: {}, **changed}
-        for part in parts.values():
-            closures |= {closure: {} for closure in part.mechanism.closures if closure not in closures}
+        head = read(_Head, {key: value for key, value in given.items() if key not in CLOSING})
+        closures = dict.fromkeys((AS_DRAWN, *head.closures))
+        closures |= dict.fromkeys(c for part in head.parts.values() for c in part.mechanism.closures)
         structures = {}
-        for closure, changes in closures.items():
+        for closure in closures:
+            changes = head.closures.get(closure, {})
             put_in = {table: {**given.get(table, {}), **entries} for table, entries in changes.items()}
-            try:
-                structures[closure] = _closed({**given, **put_in}, parts, closure)
-            except TableFault as fault:
-                if closure == AS_DRAWN or not fault.place:
-                    raise
-                raise fault.under("closures", closure) from None
-        mirrored = {f"{part}.": one.mirrored for part, one in parts.items()}
-        for part, one in parts.items():
-            inner = one.mechanism.mirrored.items()
-            mirrored |= {f"{part}.{prefix}": one.mirrored != other for prefix, other in inner}
-        return cls(title or name, structures, mirrored)
+            with under(*(("closures", closure) if changes else ())):
+                structures[closure] = head.joined({**given, **put_in}, closure)
+        mirrored = {
+            f"{part}.{prefix}": one.mirrored != own
+            for part, one in head.parts.items()
+            for prefix, own in {"": False, **one.mechanism.mirrored}.items()
+        }
+        return cls(head.title or name, structures, mirrored)
 
 
-def _first_driven(inputs: Iterable[str], linkage: Callable[[tuple[str, ...]], Topology]) -> tuple[str, ...]:
-    """The first inputs that together hold every freedom of a linkage with freedoms.
-
-    An input is skipped if, in every drawing, it drives what the inputs before it already hold.
-    """
-    taken: tuple[str, ...] = ()
-    for name in inputs:
-        topology = linkage((*taken, name))
-        free = topology.layout.unknowns - len(topology.labels)
-        if free >= 0 and not topology.fighting:
-            taken = (*taken, name)
-            if free == 0:
-                break
-    return taken
+def _of_part(mechanism: object) -> MechanismFile:
+    if isinstance(mechanism, Mapping):
+        return MechanismFile.of(mechanism, "part")
+    if not isinstance(mechanism, str):
+        raise TableFault((), f"is {shown(mechanism)}", "the name of a mechanism, or its tables")
+    return mechanism_file(mechanism)
 
 
-def _closed(tables: Mapping[str, Any], parts: Mapping[str, _Part], closure: str) -> Structure:
-    """The tables joined with those of the parts (each in this closure if it has it), and checked."""
-    if "bodies" not in tables and not parts:
-        raise TableFault(("bodies",), "this table is missing", "bodies with their points")
-    whole = Structure({CHASSIS: ()})
-    for part, one in parts.items():
-        of_part = one.mechanism.structures
-        own = of_part[closure if closure in of_part else AS_DRAWN].prefixed(f"{part}.")
-        whole = whole.joined(own if own.sides else replace(own, sides={part: one.side}))
-    whole = whole.joined(read(Structure, {table: tables[table] for table in CLOSING if table in tables}))
-    check(whole)
-    return whole
+CHANGES = Annotated[dict[Name, dict[Name, Any]], AfterValidator(lambda changes: known_keys(changes, CLOSING))]
 
 
-class _Part(BaseModel, defer_build=True):
+class _Part(Entry):
     """A part: another mechanism, or without one a wheel that this mechanism's own bodies carry."""
 
     mechanism: Annotated[Any, AfterValidator(_of_part)] = MechanismFile("", {AS_DRAWN: Structure()}, {})
@@ -201,8 +153,27 @@ class _Part(BaseModel, defer_build=True):
     mirrored: StrictBool = False
 
 
-CHANGES = Annotated[dict[Name, dict[Name, Any]], AfterValidator(lambda changes: known_keys(changes, CLOSING))]
-PART = Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields))]
+class _Head(Entry):
+    """What a mechanism's tables contain besides the tables of its own structure."""
+
+    more_keys = CLOSING
+
+    title: Annotated[str, Field(strict=True)] = ""
+    closures: dict[Name, CHANGES] = Field(default_factory=dict)
+    parts: dict[Name, _Part] = Field(default_factory=dict)
+
+    def joined(self, tables: Mapping[str, Any], closure: str) -> Structure:
+        """The tables joined with those of the parts (each in this closure if it has it), and checked."""
+        if "bodies" not in tables and not self.parts:
+            raise TableFault(("bodies",), "this table is missing", "bodies with their points")
+        whole = Structure({CHASSIS: ()})
+        for part, one in self.parts.items():
+            of_part = one.mechanism.structures
+            own = of_part.get(closure, of_part[AS_DRAWN]).prefixed(f"{part}.")
+            whole = whole.joined(own if own.sides else replace(own, sides={part: one.side}))
+        whole = whole.joined(read(Structure, {table: tables[table] for table in CLOSING if table in tables}))
+        check(whole)
+        return whole
 
 
 @cache

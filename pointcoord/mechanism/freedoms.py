@@ -7,13 +7,14 @@ one is violated there, the mechanism is locked; a compromise between its rows is
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
 from pointcoord.errors import MechanismError
+from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.hardpoints import dominant, drawn_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
@@ -77,13 +78,8 @@ class Freedoms:
 
 def _rows_of_inputs(topology: Topology) -> list[int]:
     """Numbers of the rows that only inputs add; a driven slide's row also holds its point on the line."""
-    driven = set(topology.driven)
-    return [
-        row
-        for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True)
-        for row in rows
-        if not (constraint.slide or driven.isdisjoint(topology.map.reads[row]))
-    ]
+    driven, reads = set(topology.driven), topology.map.reads
+    return _rows(topology, lambda one, row: not (one.slide or driven.isdisjoint(reads[row])))
 
 
 def _rows_of_rods(topology: Topology) -> list[int]:
@@ -93,12 +89,12 @@ def _rows_of_rods(topology: Topology) -> list[int]:
     where the rods lie across it, the other rows do not determine it.
     """
     rods = {frozenset(ends) for ends in topology.rods.values()}
-    return [
-        row
-        for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True)
-        for row in rows
-        if any(frozenset(ends) in rods for ends in constraint.squared_lengths)
-    ]
+    return _rows(topology, lambda one, _: any(frozenset(ends) in rods for ends in one.squared_lengths))
+
+
+def _rows(topology: Topology, wanted: Callable[[Constraint, int], bool]) -> list[int]:
+    each = zip(topology.constraints, topology.rows_of, strict=True)
+    return [row for constraint, rows in each for row in rows if wanted(constraint, row)]
 
 
 def _independent(matrix: Array, last: Sequence[list[int]]) -> list[int]:

@@ -1,24 +1,30 @@
-"""The kinds of inputs, each with its keys and what the keys may name.
+"""The entries of a mechanism's tables that have keys: slides, and each kind of input.
 
-Rows and drives of inputs are made in `compiled`.
+The types of the keys say what a name belongs to. Rows and drives of inputs are made in `compiled`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import (
+    AfterValidator,
+    AliasChoices,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StrictBool,
+    model_validator,
+)
 
-from pointcoord.linkage.directions import DIRECTIONS, axis_along
+from pointcoord.linkage.directions import axis_along
 from pointcoord.mechanism.faults import TableFault, known_keys, known_name, no_such
 from pointcoord.wording import shown
 
-LENGTHS = {
-    "wheel_radius": ("the height of the wheel's contact point", 300.0),
-    "rack_per_turn": ("the turn of a steering wheel", 50.0),
-}
-"""Further lengths that inputs may need: the kind of input, for messages, and a typical value, mm."""
+LENGTHS = {"wheel_radius": 300.0, "rack_per_turn": 50.0}
+"""Further lengths that inputs may need, each with a typical value, mm."""
 CHASSIS: Literal["chassis"] = "chassis"
 
 
@@ -30,17 +36,10 @@ def _once(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _pair(names: object) -> object:
-    if isinstance(names, list | tuple) and len(names) != 2:
-        counted = f"has {len(names)} point{'' if len(names) == 1 else 's'}"
-        raise TableFault((), counted, "two different points, such as [P, Q]")
-    if isinstance(names, list | tuple) and names[0] == names[1]:
-        raise TableFault((), f"goes from {shown(names[0])} to itself, so it has no length", "two points")
+    if isinstance(names, list | tuple) and (len(names) != 2 or names[0] == names[1]):
+        why = ", so it has no length" if len(names) == 2 else ""
+        raise TableFault((), f"is {shown(names)}{why}", "two different points, such as [P, Q]")
     return names
-
-
-def _direction(name: str) -> str:
-    known_name("direction", name, DIRECTIONS)
-    return name
 
 
 Name = Annotated[str, Field(strict=True, min_length=1)]
@@ -48,35 +47,93 @@ Ends = tuple[Name, Name]
 Role = Name | Ends
 Distinct = Annotated[tuple[Name, ...], AfterValidator(_once)]
 Names = Annotated[tuple[Name, ...], Field(min_length=1), AfterValidator(_once)]
-# The last word says what kind of object the name belongs to.
+# The last word is the kind of object that the name belongs to.
 Point = Annotated[Name, "point"]
 Pair = Annotated[Ends, BeforeValidator(_pair), "point"]
 Body = Annotated[Name, "body"]
-SlideNames = Annotated[Names, BeforeValidator(lambda v: (v,) if isinstance(v, str) else v), "slide"]
-Direction = Annotated[Name, AfterValidator(_direction), "direction"]
+OneOrMore = Annotated[Names, BeforeValidator(lambda v: (v,) if isinstance(v, str) else v)]
+SlideNames = Annotated[OneOrMore, "slide"]
+Direction = Annotated[Name, "direction"]
+Towards = Annotated[Name, "direction or point"]
 Chassis = Literal["chassis"]
 
 Bodies = Mapping[str, Sequence[str]]
+Rename = Callable[[str, str], str]
+"""A kind of object, and a name -> the new name."""
 
 
 class Entry(BaseModel):
     """An entry of a table; its field types say which values name points, bodies, slides or directions."""
 
-    model_config = ConfigDict(frozen=True, defer_build=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
-    def named(self, what: str) -> tuple[str, ...]:
-        """The names of points, bodies, slides or directions in the entry."""
-        values = [getattr(self, key) for key in self._naming(what)]
-        return tuple(n for value in values for n in (value if isinstance(value, tuple) else (value,)))
+    more_keys: ClassVar[tuple[str, ...]] = ()
+    """Keys that a table may have besides the entry's own: second spellings, and what is read elsewhere."""
 
-    def renamed(self, rename: Mapping[str, Mapping[str, str]]) -> Self:
-        """The entry with other names for points, bodies or slides."""
-        keys = ((key, names) for what, names in rename.items() for key in self._naming(what))
-        return self.model_copy(update={key: renamed(getattr(self, key), names) for key, names in keys})
+    @model_validator(mode="before")
+    @classmethod
+    def _of_known_keys(cls, table: object) -> object:
+        keys = (own.alias or key for key, own in cls.model_fields.items())
+        return known_keys(table, (*keys, *cls.more_keys))
 
     @classmethod
-    def _naming(cls, what: str) -> list[str]:
-        return [key for key, own in cls.model_fields.items() if what in own.metadata]
+    def naming(cls) -> list[tuple[str, str]]:
+        """Keys whose values are names, each with the kind of object that has the name."""
+        fields = cls.model_fields.items()
+        return [(key, kind) for key, own in fields for kind in own.metadata if isinstance(kind, str)]
+
+    def names(self) -> Iterator[tuple[str, str, str]]:
+        """Every name in the entry: its key, the kind of object that has it, and the name."""
+        for key, kind in self.naming():
+            value = getattr(self, key)
+            for name in (value,) if isinstance(value, str) else value:
+                yield key.removesuffix("_"), kind, name
+
+    def named(self, kind: str) -> tuple[str, ...]:
+        """The names of points, bodies, slides or directions in the entry."""
+        return tuple(name for _, own, name in self.names() if own == kind)
+
+    def renamed(self, new: Rename) -> Self:
+        """The entry with other names for points, bodies and slides."""
+        changes = {key: renamed(getattr(self, key), kind, new) for key, kind in self.naming()}
+        return self.model_copy(update=changes)
+
+    def check(self, bodies: Bodies) -> None:
+        """Check that the names, which exist, fit together.
+
+        Raises:
+            TableFault: they do not; its place is relative to the entry's place.
+        """
+
+
+class Slide(Entry):
+    """Points on a line of a body, through one of the body's points, along a direction or towards a point."""
+
+    more_keys = ("point",)
+
+    points: Annotated[OneOrMore, "point"] = Field(validation_alias=AliasChoices("points", "point"))
+    through: Point
+    along: Towards
+    body: Body = CHASSIS
+    turns: StrictBool = True
+
+    def check(self, bodies: Bodies) -> None:
+        own = bodies[self.body]
+        known_name(f"point of {self.body}", self.through, own, ("through",))
+        if self.along == self.through:
+            problem = f"is {self.along!r}, the same point as through, so the line has no direction"
+            raise TableFault(("along",), problem, "a direction, or another point")
+        for point in self.points:
+            if point in own:
+                problem = f"{point!r} is a point of {self.body}, so it cannot slide on a line of {self.body}"
+                raise TableFault(("points",), problem, f"points that {self.body} does not have")
+        if self.turns:
+            return
+        both = [body for body, points in bodies.items() if {*self.points[:2]} <= {*points}]
+        if len(self.points) < 2 or len(both) != 1:
+            found = f"{' and '.join(self.points)} belong together to {' and '.join(both) or 'no body'}"
+            problem = f"{found}, so the body kept from turning is not defined"
+            raise TableFault(("turns",), problem, "first two points that one body alone shares")
 
 
 class Input(Entry):
@@ -107,13 +164,6 @@ class Input(Entry):
         """Number of freedoms that it holds when driven: one for each of its slides, otherwise one."""
         return max(len(self.named("slide")), 1)
 
-    def check(self, bodies: Bodies) -> None:
-        """Check that the names, which exist, fit together.
-
-        Raises:
-            TableFault: the names make no input; its place is relative to the input's place.
-        """
-
 
 class Arm(Input):
     """The angle between an arm of a body and a direction of the car, rad."""
@@ -129,8 +179,8 @@ class Arm(Input):
             raise TableFault(("of",), f"is {self.of!r}, the same point as about", "two different points")
         if self.angle == CHASSIS:
             raise TableFault(("angle",), "is the chassis, which does not turn", "a moving body")
-        for key, point in (("of", self.of), ("about", self.about)):
-            known_name(f"point of {self.angle}", point, bodies[self.angle], (key,))
+        for key in ("of", "about"):
+            known_name(f"point of {self.angle}", getattr(self, key), bodies[self.angle], (key,))
 
 
 class Turn(Input):
@@ -144,9 +194,9 @@ class Turn(Input):
     def check(self, bodies: Bodies) -> None:
         shared = [point for point in bodies[self.angle] if point in bodies[self.on]]
         if self.angle in (CHASSIS, self.on) or len(shared) != 2:
-            points = ", ".join(shared if self.angle != self.on else ()) or "no point"
+            points = ", ".join(shared) or "no point"
             problem = f"{self.angle} and {self.on} share {points}, which is not a hinge"
-            raise TableFault((), problem, "two bodies that share two points")
+            raise TableFault((), problem, "a moving body, and another that shares two points with it")
 
 
 class Travel(Input):
@@ -187,12 +237,11 @@ class Contact(Input):
         return ("up",)
 
     def check(self, bodies: Bodies) -> None:
-        if not any({*self.contact} <= {*points} for points in bodies.values()):
-            problem = f"{' and '.join(self.contact)} do not belong to one body, so they are no wheel axis"
-            raise TableFault((), problem, "two points of one body")
-        if {*self.contact} <= {*bodies[CHASSIS]}:
-            problem = f"{' and '.join(self.contact)} are points of the chassis, whose height is fixed"
-            raise TableFault((), problem, "two points of a moving body")
+        both = [body for body, points in bodies.items() if {*self.contact} <= {*points}]
+        if not both or CHASSIS in both:
+            of = "points of the chassis" if both else "not points of one body"
+            problem = f"{' and '.join(self.contact)} are {of}, so they are no wheel axis"
+            raise TableFault(("contact",), problem, "two points of one moving body")
 
 
 class Distance(Input):
@@ -201,9 +250,7 @@ class Distance(Input):
     distance: Pair
 
     def check(self, bodies: Bodies) -> None:
-        for body, points in bodies.items():
-            if {*self.distance} <= {*points}:
-                raise TableFault((), f"joins two points of {body}, whose distance is fixed", "two bodies")
+        check_apart(self.distance, bodies)
 
 
 class Moves(Input):
@@ -239,22 +286,30 @@ def input_of(table: object) -> object:
     """A table as an input of the kind that one of its keys indicates.
 
     Raises:
-        TableFault: no key or several keys indicate a kind, or a key does not belong to that kind.
+        TableFault: no key or several keys indicate a kind, or the table is not one of that kind.
     """
     if not isinstance(table, Mapping):
-        raise TableFault((), f"is {shown(table)}", 'a table, such as { height = "a" }')
+        return table
     found = [key for key in TELLING if key in table]
-    if len(found) != 1:
-        hint = next((key for key in table if key not in ("along", "about")), "")
-        if not found and hint:
-            raise no_such("kind of input", hint, TELLING, (hint,))
-        counted = f"has keys of {len(found)} kinds" if found else "has no key of a known kind"
-        raise TableFault((), counted, f"one of {', '.join(TELLING)}")
+    if not found:
+        raise no_such("kind of input", next(iter(table), ""), TELLING, (next(iter(table), ""),))
+    if len(found) > 1:
+        raise TableFault((), f"is of several kinds: {', '.join(found)}", f"one of {', '.join(TELLING)}")
     kind = KINDS[found[0]] if found[0] != "angle" else Turn if table.get("from") == "drawing" else Arm
-    known_keys(table, [own.alias or key for key, own in kind.model_fields.items()])
     return kind.model_validate(table)
 
 
-def renamed(value: Any, names: Mapping[str, str]) -> Any:
-    """A name, or a tuple of names, with those in `names` replaced."""
-    return tuple(names.get(n, n) for n in value) if isinstance(value, tuple) else names.get(value, value)
+def check_apart(ends: Ends, bodies: Bodies) -> None:
+    """Check that no body fixes the distance of two points.
+
+    Raises:
+        TableFault: a body has both.
+    """
+    for body, points in bodies.items():
+        if {*ends} <= {*points}:
+            raise TableFault((), f"joins two points of {body}, whose distance is fixed", "two bodies")
+
+
+def renamed(names: Any, kind: str, new: Rename) -> Any:
+    """A name of a kind, or a tuple of such names, with new names."""
+    return tuple(new(kind, name) for name in names) if isinstance(names, tuple) else new(kind, names)

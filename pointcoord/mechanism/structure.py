@@ -11,33 +11,26 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from itertools import combinations
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    StrictBool,
-    TypeAdapter,
-    ValidationError,
-    model_validator,
-)
+from pydantic import AfterValidator, BaseModel, BeforeValidator, TypeAdapter
 
 from pointcoord.linkage.directions import DIRECTIONS
-from pointcoord.mechanism.faults import TableFault, faults_of, known_keys, no_such
+from pointcoord.mechanism.faults import no_such, under
 from pointcoord.mechanism.inputs import (
     CHASSIS,
-    Body,
     Distinct,
-    Entry,
     Input,
     Name,
-    Names,
     Pair,
-    Point,
+    Rename,
     Role,
+    Slide,
     input_of,
     renamed,
 )
+
+T = TypeVar("T")
 
 CLOSING = ("bodies", "rods", "slides", "inputs", "roles", "stand_ins")
 """Tables of named entries, which a closure may replace."""
@@ -58,30 +51,10 @@ def read(kind: Any, value: object, *key: str) -> Any:
     Raises:
         TableFault: the value is not of this type.
     """
-    try:
-        return _reader(kind).validate_python(value)
-    except ValidationError as error:
-        raise faults_of(error, key)[0] from None
-
-
-class Slide(Entry):
-    """Points on a line of a body, through one of the body's points, along a direction or towards a point."""
-
-    points: Annotated[Names, "point"]
-    through: Point
-    along: Point
-    body: Body = CHASSIS
-    turns: StrictBool = True
-
-    @model_validator(mode="before")
-    @classmethod
-    def _point_or_points(cls, table: object) -> object:
-        known_keys(table, ("point", *cls.model_fields))
-        if not isinstance(table, Mapping):
-            return table
-        if ("point" in table) == ("points" in table):
-            raise TableFault((), "needs a point", "either point or points")
-        return {"points": (table["point"],), **table} if "point" in table else table
+    with under(*key):
+        # A reader of a model would be a second one.
+        known = isinstance(kind, type) and issubclass(kind, BaseModel)
+        return kind.model_validate(value) if known else _reader(kind).validate_python(value)
 
 
 def _roles(roles: Mapping[str, Any]) -> dict[str, Role]:
@@ -126,6 +99,12 @@ class Structure:
     def required_points(self) -> tuple[str, ...]:
         return tuple(name for name in self.points if name not in self.stand_ins)
 
+    @cached_property
+    def attached(self) -> frozenset[str]:
+        """The points that rods and slides are attached to."""
+        ends = {end for ends in self.rods.values() for end in ends}
+        return frozenset(ends.union(*((*one.points, one.through) for one in self.slides.values())))
+
     def bodies_of(self, point: str) -> tuple[str, ...]:
         return tuple(body for body, points in self.bodies.items() if point in points)
 
@@ -151,8 +130,7 @@ class Structure:
         Joints are left out where a rod, a slide or an input acts on the point too, or an input turns the
         hinge: how the force is shared is not determined there.
         """
-        others = {end for ends in self.rods.values() for end in ends}
-        others |= {point for one in self.slides.values() for point in (*one.points, one.through, one.along)}
+        others = self.attached | {one.along for one in self.slides.values()}
         inputs = [self.inputs[name] for name in driven if not self.inputs[name].moves_the_chassis]
         others |= {p for one in inputs if not one.named("body") for p in one.named("point")}
         turned = {body for one in inputs for body in one.named("body")}
@@ -193,51 +171,47 @@ class Structure:
         return knuckle or next(body for body in bodies if body != CHASSIS)
 
     def drawn_with(self, given: Collection[str]) -> Structure:
-        """The structure of a drawing with these points: stand-ins replace omitted points of moving bodies."""
+        """The structure of a drawing with these points: stand-ins replace omitted points of moving bodies.
+
+        `stand_ins` keeps its entries, since messages name them.
+        """
         gone = {
             name: other
             for name, other in self.stand_ins.items()
             if name not in given and name not in self.bodies[CHASSIS]
         }
-        return self.renamed(points=gone) if gone else self
+        return self.renamed(lambda kind, n: gone.get(n, n) if kind.endswith("point") else n) if gone else self
 
-    def renamed(
-        self,
-        points: Mapping[str, str] | None = None,
-        bodies: Mapping[str, str] | None = None,
-        slides: Mapping[str, str] | None = None,
-        prefix: str = "",
-    ) -> Structure:
+    def placed(self, points: Mapping[str, T]) -> dict[str, T]:
+        """Drawn places, with the omitted points of the chassis where their stand-ins are drawn."""
+        omitted = ((name, other) for name, other in self.stand_ins.items() if name in self.bodies[CHASSIS])
+        return {name: points[other] for name, other in omitted if other in points} | dict(points)
+
+    def prefixed(self, prefix: str) -> Structure:
+        """The structure with a prefix before every name except the chassis' and directions."""
+        fixed = {"body": (CHASSIS,), "direction": DIRECTIONS, "direction or point": DIRECTIONS}
+        return self.renamed(lambda kind, name: name if name in fixed.get(kind, ()) else prefix + name)
+
+    def renamed(self, new: Rename) -> Structure:
         """The structure with other names; a name that then occurs twice in a body is listed once.
 
-        `stand_ins` keeps its entries, since messages name them.
-
-        Args:
-            prefix: put before the names of rods, inputs, roles and parts.
+        Names that only serve as keys are of the kind `entry`.
         """
-        p, b, s = points or {}, bodies or {}, slides or {}
-        rename = {"point": p, "body": b, "slide": s}
         return replace(
             self,
             bodies={
-                b.get(body, body): tuple(dict.fromkeys(renamed(names, p)))
-                for body, names in self.bodies.items()
+                new("body", body): tuple(dict.fromkeys(renamed(points, "point", new)))
+                for body, points in self.bodies.items()
             },
-            rods={prefix + rod: renamed(ends, p) for rod, ends in self.rods.items()},
-            slides={s.get(name, name): slide.renamed(rename) for name, slide in self.slides.items()},
-            inputs={prefix + name: one.renamed(rename) for name, one in self.inputs.items()},
-            roles={prefix + role: renamed(who, {**p, **b}) for role, who in self.roles.items()},
-            stand_ins={prefix + point: prefix + other for point, other in self.stand_ins.items()},
-            sides={prefix + part: side for part, side in self.sides.items()},
-        )
-
-    def prefixed(self, prefix: str) -> Structure:
-        """The structure with a prefix before every name except the chassis'."""
-        return self.renamed(
-            {n: prefix + n for n in self.points},
-            {n: prefix + n for n in self.bodies if n != CHASSIS},
-            {n: prefix + n for n in self.slides},
-            prefix,
+            rods={new("entry", rod): renamed(ends, "point", new) for rod, ends in self.rods.items()},
+            slides={new("slide", name): slide.renamed(new) for name, slide in self.slides.items()},
+            inputs={new("entry", name): one.renamed(new) for name, one in self.inputs.items()},
+            roles={
+                new("entry", role): renamed(who, "body" if role in self.knuckles else "point", new)
+                for role, who in self.roles.items()
+            },
+            stand_ins={new("entry", one): new("entry", other) for one, other in self.stand_ins.items()},
+            sides={new("entry", part): side for part, side in self.sides.items()},
         )
 
     def joined(self, other: Structure) -> Structure:
@@ -275,18 +249,11 @@ def joints_in_words(structure: Structure) -> Iterator[str]:
         if len(shared) == 2:
             yield f"hinge of {one} and {other} about {shared[0]} - {shared[1]}"
     for name, slide in structure.slides.items():
-        yield _slide_in_words(name, slide)
-    for rod, (start, end) in structure.rods.items():
-        yield f"rod {rod} from {_end(structure, start)} to {_end(structure, end)}"
-
-
-def _slide_in_words(name: str, slide: Slide) -> str:
-    line = slide.along if slide.along in DIRECTIONS else f"towards {slide.along} as drawn"
-    turns = "" if slide.turns else ", and does not turn"
-    points = " and ".join(slide.points)
-    return f"slide {name}: {points} on the line of {slide.body} through {slide.through} {line}{turns}"
-
-
-def _end(structure: Structure, point: str) -> str:
-    bodies = structure.bodies_of(point)
-    return f"{point} ({', '.join(bodies)})" if bodies else point
+        line = slide.along if slide.along in DIRECTIONS else f"towards {slide.along} as drawn"
+        turns = "" if slide.turns else ", and does not turn"
+        points = " and ".join(slide.points)
+        yield f"slide {name}: {points} on the line of {slide.body} through {slide.through} {line}{turns}"
+    for rod, ends in structure.rods.items():
+        bodies = (", ".join(structure.bodies_of(end)) for end in ends)
+        start, end = (f"{n} ({of})" if of else n for n, of in zip(ends, bodies, strict=True))
+        yield f"rod {rod} from {start} to {end}"

@@ -24,59 +24,49 @@ ACROSS = 0.1
 FAR = 20.0
 
 
-def drawing_doubts(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> tuple[str, ...]:
-    """Warnings about one drawing, the one with the largest consequences first.
-
-    Args:
-        topology: linkage of a car with these points.
-        points: hardpoints, each (3,), mm.
-    """
-    return tuple(doubt.words(()) for doubt in doubts_of_drawings(topology, points, axes) if doubt.where)
-
-
 def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> tuple[Doubt, ...]:
     """Every check of drawings, and the drawings that fail it, the one with the largest consequences first.
 
     Args:
         points: hardpoints, each (..., 3), mm, with the same leading dimensions.
     """
-    every = np.stack(list(points.values()), axis=-2)
-    size = np.ptp(every, axis=-2).max(axis=-1)
-    doubts = [
-        Doubt(
-            ~((size >= SMALLEST) & (size <= LARGEST)),
-            lambda one: (
-                f"the car is {float(size[one]):.3g} mm long; if its points are in another unit than the "
-                'scene states, write units = "mm", "m" or "in" at its top (mm if not given)'
-            ),
-        ),
-        _far_from_the_others(points),
+    wheels = [
+        angle.doubt(wheel, points, axes.on(wheel.side))
+        for wheel in wheels_of(topology, ())
+        for angle in ANGLES.values()
+        if wheel.role(angle.line)
+    ]
+    return (
+        *_of_size(points),
         *_front_behind_rear(topology, points, axes),
         *_racks_outboard(topology, points, axes),
         _alone_across(topology, points, axes),
-    ]
-    for wheel in wheels_of(topology, ()):
-        angles = (angle for angle in ANGLES.values() if wheel.role(angle.line))
-        doubts += [angle.doubt(wheel, points, axes.on(wheel.side)) for angle in angles]
-    return tuple(doubts)
+        *wheels,
+    )
 
 
-def _far_from_the_others(points: Mapping[str, Array]) -> Doubt:
-    """A point much farther from the middle (the median) of all points than half of them: another unit."""
+def _of_size(points: Mapping[str, Array]) -> Iterator[Doubt]:
+    """A car too small or large, or a point much farther from the median of all than half of them: units."""
     names, places = [*points], np.stack(list(points.values()), axis=-2)
+    size = np.ptp(places, axis=-2).max(axis=-1)
     # Points so far off that this overflows are refused with their mechanism.
     with np.errstate(over="ignore"):
         away = np.linalg.norm(places - np.median(places, axis=-2, keepdims=True), axis=-1)
     near = np.median(away, axis=-1)
-
-    def words(one: tuple[int, ...]) -> str:
-        at = int(away[one].argmax())
-        return (
-            f"{names[at]} lies {float(away[one][at]):.5g} mm from the middle of the points, and half of them "
-            f"lie within {float(near[one]):.4g} mm of it: is it drawn in another unit?"
-        )
-
-    return Doubt(away.max(axis=-1) > FAR * near, words)
+    yield Doubt(
+        ~((size >= SMALLEST) & (size <= LARGEST)),
+        lambda one: (
+            f"the car is {float(size[one]):.3g} mm long; if its points are in another unit than the scene "
+            'states, write units = "mm", "m" or "in" at its top (mm if not given)'
+        ),
+    )
+    yield Doubt(
+        away.max(axis=-1) > FAR * near,
+        lambda one: (
+            f"{names[int(away[one].argmax())]} lies {float(away[one].max()):.5g} mm from the middle of the "
+            f"points, and half of them within {float(near[one]):.4g} mm of it: is it drawn in another unit?"
+        ),
+    )
 
 
 def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
@@ -85,16 +75,15 @@ def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: Ca
         return
     front, rear = topology.role("front_and_rear")
     ahead = axes.component(points[front] - points[rear], "forward")
-
-    def words(one: tuple[int, ...]) -> str:
-        forward = np.round(np.cross(axes.up, axes.right), 6) + 0.0
-        return (
+    forward = (np.round(np.cross(axes.up, axes.right), 6) + 0.0).tolist()
+    yield Doubt(
+        ahead < 0.0,
+        lambda one: (
             f"{front} is drawn {-float(ahead[one]):.4g} mm behind {rear}: by up and right, in right-handed "
-            f"axes, the car's front lies towards {forward.tolist()}; are the two points swapped, is right "
-            "reversed, or are your axes left-handed? Angles along the car may have the wrong sign"
-        )
-
-    yield Doubt(ahead < 0.0, words)
+            f"axes, the car's front lies towards {forward}; are the two points swapped, is right reversed, "
+            "or are your axes left-handed? Angles along the car may have the wrong sign"
+        ),
+    )
 
 
 def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
@@ -106,10 +95,10 @@ def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAx
     links = (ends for constraint in topology.constraints for ends in constraint.squared_lengths)
     for inner, outer in ((one, two) for a, b in links for one, two in ((a, b), (b, a)) if one in pushed):
         one, other = (axes.component(points[name], "outboard") for name in (inner, outer))
-        yield _farther_out(inner, outer, one - other, np.maximum(one, other) < 0.0)
+        yield _swapped(inner, outer, one - other, np.maximum(one, other) < 0.0)
 
 
-def _farther_out(inner: str, outer: str, out: Array, across: Flags) -> Doubt:
+def _swapped(inner: str, outer: str, out: Array, across: Flags) -> Doubt:
     return Doubt(
         (out > 0.0) & ~across,
         lambda one: f"{inner} lies {float(out[one]):.4g} mm outboard of {outer}: are they swapped?",
@@ -125,13 +114,10 @@ def _alone_across(topology: Topology, points: Mapping[str, Array], axes: CarAxes
     names = [name for name in topology.required_points if name in points]
     out = np.stack([axes.component(points[name], "outboard") for name in names], axis=-1)
     clearly = ACROSS * out.max(axis=-1, keepdims=True)
-    alone = ((out < -clearly).sum(axis=-1) == 1) & ((out > clearly).sum(axis=-1) == len(names) - 1)
-
-    def words(one: tuple[int, ...]) -> str:
-        at = int(out[one].argmin())
-        return (
-            f"{names[at]} lies {-float(out[one][at]):.4g} mm beyond the middle of the car, and no other "
-            "point of this wheel does: has its coordinate to the right the wrong sign?"
-        )
-
-    return Doubt(alone, words)
+    return Doubt(
+        ((out < -clearly).sum(axis=-1) == 1) & ((out > clearly).sum(axis=-1) == len(names) - 1),
+        lambda one: (
+            f"{names[int(out[one].argmin())]} lies {-float(out[one].min()):.4g} mm beyond the middle of the "
+            "car, and no other point of this wheel does: has its coordinate to the right the wrong sign?"
+        ),
+    )

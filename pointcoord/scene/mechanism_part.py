@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import cached_property, lru_cache
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
@@ -17,7 +16,7 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.directions import CarAxes
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.mechanism.faults import TableFault, no_such
+from pointcoord.mechanism.faults import TableFault, known_name, under
 from pointcoord.mechanism.file import (
     MechanismFile,
     is_path,
@@ -26,21 +25,27 @@ from pointcoord.mechanism.file import (
     shipped,
     whole_tables,
 )
-from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
+from pointcoord.mechanism.inputs import LENGTHS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.numerics.arrays import Array
 from pointcoord.numerics.rounding import EPS
-from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.own_units import in_directions
-from pointcoord.scene.scene_part import NotZero, Part, PlainTable, Positive, Share, Text, Vector
+from pointcoord.scene.drawing_doubts import doubts_of_drawings
+from pointcoord.scene.reading import now
+from pointcoord.scene.scene_part import Part, PerTurn, Place, Share, Size, SpringRate, Text, Vector
 from pointcoord.wording import shown
 
 # Largest error in products of directions: ROUNDED for directions that were rotated in doubles, SLIP for those
 # printed with 12 digits. A larger error is a mistake.
 ROUNDED, SLIP = 16.0 * EPS, 1e-12
-NO_DIRECTION = (0.0, 0.0, 0.0)
 # Position of an axle along the car, seen from the middle.
 AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
+AXES = {
+    "rearward-right-up": {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)},
+    "iso": {"up": (0.0, 0.0, 1.0), "right": (0.0, -1.0, 0.0)},
+    "sae": {"up": (0.0, 0.0, -1.0), "right": (0.0, 1.0, 0.0)},
+}
+"""Named axes: the default; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
+Table = dict[str, Any]
 
 
 class CarPart(Part):
@@ -52,12 +57,12 @@ class CarPart(Part):
     """
 
     axle: Literal["front", "rear"] | None = None
-    wheelbase: Positive | None = None
-    centre_of_gravity_height: Positive | None = None
+    wheelbase: Size | None = None
+    centre_of_gravity_height: Size | None = None
     brake_share: Share | None = None
     drive_share: Share | None = None
-    spring_rate: Positive | None = None
-    spring_free_length: Positive | None = None
+    spring_rate: SpringRate | None = None
+    spring_free_length: Size | None = None
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -70,7 +75,7 @@ class LoadPart(Part):
     """The load on a wheel at its contact point, along the scene's axes: force, N, and moment, N mm."""
 
     force: Vector
-    moment: Vector = (0.0, 0.0, 0.0)
+    moment: Place = (0.0, 0.0, 0.0)
 
 
 class MechanismPart(Part):
@@ -84,23 +89,23 @@ class MechanismPart(Part):
 
     type: Text | None = None
     title: Text = ""
-    bodies: PlainTable | None = None
-    rods: PlainTable | None = None
-    slides: PlainTable | None = None
-    inputs: PlainTable | None = None
-    roles: PlainTable | None = None
-    stand_ins: PlainTable | None = None
-    closures: PlainTable | None = None
-    parts: PlainTable | None = None
+    bodies: Table | None = None
+    rods: Table | None = None
+    slides: Table | None = None
+    inputs: Table | None = None
+    roles: Table | None = None
+    stand_ins: Table | None = None
+    closures: Table | None = None
+    parts: Table | None = None
     closure: Text = "drawn"
     side: Literal["left", "right"] = "left"
     up: Vector = (0.0, 0.0, 1.0)
     right: Annotated[Vector, Field(validate_default=True)] = (0.0, 1.0, 0.0)
-    wheel_radius: Positive | None = None
-    rack_per_turn: NotZero | None = None
+    wheel_radius: Size | None = None
+    rack_per_turn: PerTurn | None = None
     car: CarPart | None = None
     loads: dict[str, LoadPart] = Field(default_factory=dict)
-    points: dict[str, Vector]
+    points: dict[str, Place]
 
     short_forms = ("axes",)
 
@@ -108,47 +113,45 @@ class MechanismPart(Part):
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
-        """The content with mechanism files in place of their paths, and points by their dotted names.
+        """The content with mechanism files in place of their paths, `up` and `right` in place of named axes,
+        and points by their dotted names.
 
         Raises:
             SceneError: a mechanism file cannot be read, or something in it is wrong.
-            TableFault: the tables are wrong, or are given together with a type.
+            TableFault: axes or tables are given twice, or unknown.
         """
-        content = in_directions(content)
-        given = [name for name in TABLES if content.get(name) is not None]
+        if "axes" in content:
+            axes = content.pop("axes")
+            known_name("kind of axes", axes, [*AXES], ("axes",))
+            if twice := [name for name in AXES[axes] if name in content]:
+                problem = f"is given together with {twice[0]}"
+                raise TableFault(("axes",), problem, "axes by their name, or up and right")
+            content |= AXES[axes]
+        given = {name: content[name] for name in TABLES if content.get(name) is not None}
         if content.get("type") is not None and given:
-            problem = f"{given[0]} is given together with type = {shown(content['type'])}"
-            raise TableFault((given[0],), problem, "a type, or the mechanism's tables and then no type")
+            problem = f"is given together with type = {shown(content['type'])}"
+            raise TableFault((next(iter(given)),), problem, "a type, or the mechanism's tables")
         if is_path(content.get("type")):
-            content |= read_tables(Path(content.pop("type")))
+            content |= read_tables(now().folder / content.pop("type"))
         elif given:
-            content |= whole_tables({name: content[name] for name in given}, Path())
-            MechanismFile.of({name: content[name] for name in given}, "mechanism")
+            content |= whole_tables(given, now().folder)
         loads = content.get("loads")
-        if isinstance(loads, Mapping) and any(
-            key in LoadPart.model_fields or not isinstance(one, Mapping | LoadPart)
-            for key, one in loads.items()
+        if isinstance(loads, Mapping) and not all(
+            isinstance(one, Mapping | LoadPart) for one in loads.values()
         ):
-            content["loads"] = {"": loads}
+            content["loads"] = {"": loads}  # of the one wheel
         if "points" in content:
             content["points"] = by_dotted_name(content["points"], lambda table: False)
         return content
-
-    @field_validator("type")
-    @classmethod
-    def _known_type(cls, type: str | None) -> str | None:
-        if type is not None:
-            mechanism_file(type)
-        return type
 
     @field_validator("up", "right")
     @classmethod
     def _to_rounding(cls, direction: Vector, others: ValidationInfo) -> Vector:
         """The direction, corrected to full digits: models would each complete a printed one differently.
 
-        `agree` refuses larger errors.
+        `agreed` refuses larger errors.
         """
-        given, up = np.array(direction), np.array(others.data.get("up", NO_DIRECTION))
+        given, up = np.array(direction), np.array(others.data.get("up", (0.0, 0.0, 0.0)))
         with np.errstate(over="ignore", invalid="ignore"):
             off = max(abs(float(given @ given) - 1.0), abs(float(given @ up)))
         if not ROUNDED < off <= SLIP:
@@ -157,46 +160,22 @@ class MechanismPart(Part):
         size = float(np.linalg.norm(across))
         return float(x) / size, float(y) / size, float(z) / size
 
-    @field_validator("closure")
-    @classmethod
-    def _known_closure(cls, closure: str, others: ValidationInfo) -> str:
-        file = _file_of(others.data)
-        if file is not None and closure not in file.closures:
-            raise no_such(f"closure of a {file.name}", closure, file.closures)
-        return closure
+    def agreed(self) -> Self:
+        """The part with the points that its drawing omits, checked.
 
-    @field_validator("points")
-    @classmethod
-    def _known_points(cls, points: dict[str, Vector], others: ValidationInfo) -> dict[str, Vector]:
-        file = _file_of(others.data)
-        if file is None or not {"closure", "right"} <= others.data.keys():
-            return points
-        structure = file.structures[others.data["closure"]]
-        points = _of_every_part(points, file, structure, others.data["right"])
-        for name in points:
-            if name not in structure.points:
-                raise no_such(f"point of a {file.name}", name, structure.points)
-        for name in structure.required_points:
-            if name not in points:
-                raise ValueError(f"{name!r} is missing; needed: {', '.join(structure.required_points)}")
-        standing = {
-            name: points[other]
-            for name, other in structure.stand_ins.items()
-            if name in structure.bodies[CHASSIS] and other in points
-        }
-        return standing | points
-
-    def agree(self) -> None:
-        if _file_of(self.__dict__) is None:
-            raise TableFault(("type",), "this key is missing", f"{', '.join(shipped())}, a path, or tables")
-        up, right = np.array(self.up), np.array(self.right)
+        Raises:
+            ValueError: axes, points, sides or loads do not fit the mechanism.
+        """
+        known_name(f"closure of a {self.name}", self.closure, self.file.closures, ("closure",))
+        self._complete_points()
+        axes = np.array([self.up, self.right])
         with np.errstate(over="ignore", invalid="ignore"):
-            worst = np.max(np.abs([up @ up - 1.0, right @ right - 1.0, up @ right]))
+            worst = np.abs(axes @ axes.T - np.eye(2)).max()
         if not worst <= SLIP:
+            usual = "up = [0.0, 0.0, 1.0] and right = [0.0, 1.0, 0.0]"
             raise ValueError(
-                f"up {self.up} and right {self.right} are not unit vectors at right angles: a product "
-                f"is {worst:.3g} off; allowed: at most {SLIP:g}, as for up = [0.0, 0.0, 1.0] and right = "
-                "[0.0, 1.0, 0.0]"
+                f"up {self.up} and right {self.right} are not unit vectors at right angles: a product is "
+                f"{worst:.3g} off; allowed: at most {SLIP:g}, as with {usual}"
             )
         sides = self._whole.sides
         if sides and self.side != "left":  # the default, which a written scene has too
@@ -209,7 +188,25 @@ class MechanismPart(Part):
         for part in self.loads:
             if part not in sides and (part or sides):
                 known = f"a table for one of its parts, {', '.join(sides)}" if sides else "force and moment"
-                raise TableFault(("loads", part) if part else ("loads",), "names no wheel", known)
+                raise TableFault(("loads", part), "names no wheel", known)
+        return self
+
+    def _complete_points(self) -> None:
+        """Add the points that the drawing leaves to other parts of the car, and to stand-ins.
+
+        Raises:
+            TableFault: a point is unknown or missing.
+        """
+        whole = self._whole
+        points = _of_every_part(self.points, self.file, whole, self.right)
+        for name in points:
+            known_name(f"point of a {self.name}", name, whole.points, ("points",))
+        for name in whole.required_points:
+            if name not in points:
+                needed = ", ".join(whole.required_points)
+                raise TableFault(("points",), f"{name!r} is missing; needed: {needed}")
+        self.points.clear()
+        self.points.update(whole.placed(points))
 
     def _check_wheel(self, prefix: str, side: str) -> None:
         """Check that a wheel lies outboard, and that its spin axis has a direction.
@@ -227,17 +224,13 @@ class MechanismPart(Part):
             with np.errstate(over="ignore", invalid="ignore"):
                 inboard = float(self.axes.on(side).component(across, "outboard"))
             if inboard >= 0.0:
-                other = "right" if side == "left" else "left"
-                advice = (
-                    f"its part needs side = {other!r}, or to be mirrored"
-                    if prefix
-                    else f"try side = {other!r}"
-                )
+                outwards, other = ("-right", "right") if side == "left" else ("+right", "left")
+                of_part, opposite = " for its part" if prefix else "", [0.0 - x for x in self.right]
                 raise ValueError(
                     f"{wheel} lies {inboard:.6g} mm inboard of {inner} for side = {side!r}; allowed: "
-                    f"{wheel} outboard of {inner}, here towards {'-' if side == 'left' else '+'}right "
-                    f"{self.right}; if this points to the left in your axes, say so with right = "
-                    f"{[0.0 - number for number in self.right]}; if it is a wheel of the other side, {advice}"
+                    f"{wheel} outboard of {inner}, here towards {outwards} {self.right}; if this points to "
+                    f"the left in your axes, say so with right = {opposite}; if it is a wheel of the other "
+                    f"side, try side = {other!r}{of_part}"
                 )
         if self.points[axis[0]] == self.points[wheel]:
             own = self._whole.roles[f"{prefix}wheel_axis"][0]
@@ -265,9 +258,18 @@ class MechanismPart(Part):
 
     @cached_property
     def file(self) -> MechanismFile:
-        found = _file_of(self.__dict__)
-        assert found is not None  # such a part fails its checks
-        return found
+        """The mechanism's checked tables.
+
+        Raises:
+            TableFault: they are wrong, or there are none.
+        """
+        if self.type is not None:
+            with under("type"):
+                return mechanism_file(self.type)
+        tables = {name: getattr(self, name) for name in TABLES if getattr(self, name) is not None}
+        if not tables:
+            raise TableFault(("type",), "this key is missing", f"{', '.join(shipped())}, a path, or tables")
+        return _inline(json.dumps({"title": self.title, **tables}, default=str))
 
     @cached_property
     def structure(self) -> Structure:
@@ -289,18 +291,13 @@ class MechanismPart(Part):
             side, the wheel's radius and the rack's travel per turn (mm, or None), the given data of the
             whole car, and the loads (N, N mm).
         """
-        structure = self.structure
+        given = {"up", "right", "side", "wheel_radius", "rack_per_turn", "loads"}
         return {
-            **structure.plain(driven),
+            **self.structure.plain(driven),
+            **self.model_dump(mode="json", include=given),
             "name": self.name,
-            "points": {name: list(self.points[name]) for name in structure.points},
-            "up": list(self.up),
-            "right": list(self.right),
-            "side": self.side,
-            "wheel_radius": self.wheel_radius,
-            "rack_per_turn": self.rack_per_turn,
+            "points": {name: list(self.points[name]) for name in self.structure.points},
             "car": {} if self.car is None else self.car.model_dump(exclude_none=True),
-            "loads": {part: {n: list(v) for n, v in load} for part, load in self.loads.items()},
         }
 
     @cached_property
@@ -342,24 +339,19 @@ class MechanismPart(Part):
         return ", ".join(f"{name} ({count} slides)" if count > 1 else name for name, count in held)
 
     @property
-    def axis_point(self) -> str:
-        """The optional point for the inner end of the spin axis; empty without a wheel axis."""
-        axis = self._whole.roles.get("wheel_axis")
-        return axis[0] if axis else ""
-
-    @property
     def defaults_taken(self) -> tuple[str, ...]:
         """Notes on defaults that affect the results."""
-        axis = self.structure.roles.get("wheel_axis")
-        if not axis or axis[0] == self.axis_point:
+        given, taken = (one.role("wheel_axis") for one in (self._whole, self.structure))
+        if given == taken:
             return ()
-        return (f"{self.axis_point} is not given: the wheel's spin axis starts at {axis[0]}",)
+        return (f"{given[0]} is not given: the wheel's spin axis starts at {taken[0]}",)
 
     @property
     def doubts(self) -> tuple[str, ...]:
         """Warnings about what looks wrong in the drawing although it can be solved."""
         points = {name: np.array(place) for name, place in self.points.items()}
-        return drawing_doubts(self.topology, points, self.axes)
+        found = doubts_of_drawings(self.topology, points, self.axes)
+        return tuple(doubt.words(()) for doubt in found if doubt.where)
 
     @property
     def axes(self) -> CarAxes:
@@ -398,16 +390,13 @@ def _of_every_part(
     found: dict[str, Vector] = {}
     for name, place in sorted(points.items(), key=lambda item: item[0].count(".")):
         head, dot, own = name.rpartition(".")
+        as_given = file.mirrored.get(head + dot, False)
         of_parts = {
-            f"{prefix}{own}": _mirrored(place, right)
-            if mirrored != file.mirrored.get(head + dot, False)
-            else place
+            prefix + own: place if mirrored == as_given else _mirrored(place, right)
             for prefix, mirrored in file.mirrored.items()
-            if name not in structure.points
-            and prefix.startswith(head + dot)
-            and prefix + own in structure.points
+            if prefix.startswith(head + dot) and prefix + own in structure.points
         }
-        found |= of_parts or {name: place}
+        found |= {name: place} if name in structure.points else of_parts or {name: place}
     return found
 
 
@@ -418,30 +407,17 @@ def _mirrored(place: Vector, right: Vector) -> Vector:
     return x, y, z
 
 
-def _file_of(keys: Mapping[str, Any]) -> MechanismFile | None:
-    """The mechanism described by a part's keys; None if they do not describe one."""
-    if "type" not in keys or any(name not in keys for name in TABLES):
-        return None
-    if keys["type"] is not None:
-        return mechanism_file(keys["type"])
-    tables = {name: keys[name] for name in TABLES if keys[name] is not None}
-    return _inline(json.dumps({"title": keys.get("title", ""), **tables})) if tables else None
-
-
 @lru_cache(maxsize=64)
 def _inline(tables: str) -> MechanismFile:
     return MechanismFile.of(json.loads(tables), "mechanism")
 
 
-def by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -> object:
+def by_dotted_name(table: Any, whole: Callable[[Mapping[str, Any]], bool]) -> Any:
     """A nested table with dotted names: TOML reads left.wheel_centre as a table within a table."""
     if not isinstance(table, Mapping):
         return table
     found: dict[Any, Any] = {}
     for name, value in table.items():
-        inner = by_dotted_name(value, whole) if isinstance(value, Mapping) and not whole(value) else None
-        if isinstance(name, str) and isinstance(inner, Mapping) and inner:
-            found |= {f"{name}.{own}": each for own, each in inner.items()}
-        else:
-            found[name] = value
+        inner = by_dotted_name(value, whole) if isinstance(value, Mapping) and not whole(value) else {}
+        found |= {f"{name}.{own}": each for own, each in inner.items()} or {name: value}
     return found

@@ -9,24 +9,24 @@ import os
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import IO, Annotated, Any
+from typing import IO, Annotated, Any, Self
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field
 
 from pointcoord.effects.numbers import ConventionName
 from pointcoord.effects.point_states import FIRST_NUMBERED, NAMED, STATES
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import MechanismError, SceneError
-from pointcoord.mechanism.faults import TableFault, no_such
-from pointcoord.mechanism.file import is_path, whole_tables
+from pointcoord.mechanism.faults import TableFault, known_name, no_such
 from pointcoord.mechanism.freedoms import Freedoms, askew_hinges
 from pointcoord.mechanism.inputs import Names
+from pointcoord.mechanism.structure import read
 from pointcoord.numerics.arrays import Array
 from pointcoord.results.even_instants import even_instants
-from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of, read_in, swept, with_drawn
+from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of
 from pointcoord.scene.mechanism_part import MechanismPart, by_dotted_name
-from pointcoord.scene.own_units import MM, law_scaled, mm_of, scaled
-from pointcoord.scene.scene_part import AS_LIST, Number, Part, Positive, Text, Whole
+from pointcoord.scene.reading import MM, UNITS, reading
+from pointcoord.scene.scene_part import AS_LIST, Number, Part, Positive, Size, Text, Whole
 from pointcoord.time_functions import TimeFunction
 from pointcoord.toml_text import parsed, read_file, read_stream
 from pointcoord.wording import meant, shown
@@ -54,13 +54,11 @@ class TimePart(Part):
     stop: Instant
     samples: Annotated[Whole, Field(ge=1, le=MOST_SAMPLES)]
 
-    def agree(self) -> None:
-        if self.samples == 1 and self.start != self.stop:
-            raise ValueError(
-                f"one sample from {self.start} to {self.stop}; allowed: start = stop, or at least 2 samples"
-            )
-        if self.samples > 1 and not self.start < self.stop:
-            raise ValueError(f"start {self.start} is not before stop {self.stop}; allowed: start < stop")
+    def agreed(self) -> Self:
+        if not (self.start < self.stop if self.samples > 1 else self.start == self.stop):
+            given = f"{self.samples} samples from {self.start} to {self.stop}"
+            raise ValueError(f"{given}; allowed: start < stop, or one sample with start = stop")
+        return self
 
 
 class Scene(Part):
@@ -73,7 +71,7 @@ class Scene(Part):
 
     title: Text = ""
     effects: Annotated[tuple[Text, ...], AS_LIST] = ()
-    tolerance: Positive = 1e-9
+    tolerance: Positive = 1e-9  # mm, once it is read
     convention: ConventionName = "iso"
     mechanism: MechanismPart
     inputs: dict[str, InputPart]
@@ -84,103 +82,58 @@ class Scene(Part):
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
-        """The content in mm, with inputs by dotted names (they may be in a table for each part), and sweeps
-        as polynomials.
+        """The content with its lengths in mm, and the parts that later ones depend on read before these.
 
         Raises:
-            SceneError: a table's file cannot be read.
-            TableFault: a sweep is not a pair of numbers or has no time span; a unit is unknown.
+            SceneError: a file cannot be read.
+            TableFault: a unit is unknown, or a part is wrong.
         """
-        units, inputs = content.pop("units", MM), content.pop("inputs", None)
-        if inputs is not None:
-            inputs = read_in(by_dotted_name(inputs, _is_no_part), units)
-        if (factor := mm_of(units)) != 1.0:
-            content = scaled(content, factor)
-        if inputs is None:
-            return content
-        if not isinstance(inputs, Mapping):
-            return {**content, "inputs": inputs}
-        # Checked here and taken as it is by the scene's own checks, which report an invalid one.
-        part = _part_of(content.get("mechanism"))
-        if part is not None:
-            content["mechanism"] = part = part.driven_by(inputs)
-        known = {} if part is None else part.structure.inputs
-        kinds = set().union(*map(kinds_of, inputs.values()))
-        if SWEEP in kinds:
-            content.setdefault("time", PLAIN_TIME)
-        elif kinds == {"constant"}:
-            content.setdefault("time", ONE_POSE)
-        content["inputs"] = laws = {}
-        for name, law in inputs.items():
-            if name in known and known[name].unit == "mm":
-                law = law_scaled(law, factor)
-            law = with_drawn(law, float if part is None else partial(part.drawn_value, name))
-            laws[name] = swept(law, content.get("time"), ("inputs", name))
+        unit = content.pop("units", MM)
+        if not isinstance(unit, str) or unit not in UNITS:
+            raise TableFault(("units",), f"is {shown(unit)}", ", ".join(UNITS))
+        with reading(unit=unit):
+            for key, kind in (("tolerance", Size), ("mechanism", MechanismPart)):
+                if key in content:
+                    content[key] = read(kind, content[key], key)
+            laws = by_dotted_name(content.get("inputs"), _is_no_part)
+            if isinstance(laws, Mapping):
+                kinds = set().union(*map(kinds_of, laws.values()))
+                if SWEEP in kinds:
+                    content.setdefault("time", PLAIN_TIME)
+                elif kinds == {"constant"}:
+                    content.setdefault("time", ONE_POSE)
+                if "time" in content:
+                    content["time"] = read(TimePart, content["time"], "time")
+                if "mechanism" in content:
+                    content["mechanism"] = content["mechanism"].driven_by(laws)
+                content["inputs"] = {name: _law(name, law, content) for name, law in laws.items()}
         return content
 
-    @field_validator("effects")
-    @classmethod
-    def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
-        for name in effects:
-            if name not in EFFECTS:
-                givers = [
-                    effect.name for effect in EFFECTS.values() if name.rpartition(".")[2] in effect.own_names
-                ]
-                if (order := name.removeprefix("derivative_")) in map(str, range(1, len(NAMED))):
-                    hint = f" ({STATES[int(order)]!r} is its name)"
-                else:
-                    hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
-                allowed = [name for name, effect in EFFECTS.items() if not effect.base]
-                more = f"{FIRST_NUMBERED} to {STATES[-1]}, and gradients"
-                raise TableFault(
-                    (),
-                    f"no effect is called {shown(name)}{hint}",
-                    ", ".join((*allowed, more)),
-                )
-        return effects
-
-    @field_validator("points")
-    @classmethod
-    def _points_of_the_car(
-        cls, points: tuple[str, ...] | None, others: ValidationInfo
-    ) -> tuple[str, ...] | None:
-        if points is None or "mechanism" not in others.data:
-            return points
-        there = others.data["mechanism"].structure.points
-        for name in points:
-            if name not in there:
-                raise no_such("point of this car", name, there)
-        return points
-
-    def agree(self) -> None:
-        self._inputs_fit()
-        self._effects_have_a_meaning()
-
-    def _effects_have_a_meaning(self) -> None:
+    def agreed(self) -> Self:
+        part = self.mechanism
         for name in self.effects:
-            problem = self.mechanism.refusal(EFFECTS[name])
-            if problem:
-                raise TableFault(("effects",), problem)
-
-    def _inputs_fit(self) -> None:
-        known = self.mechanism.structure.inputs
+            if name not in EFFECTS:
+                raise _no_such_effect(name)
+        for name in self.points or ():
+            known_name("point of this car", name, part.structure.points, ("points",))
         for name in self.inputs:
-            if name not in known:
-                fault = no_such("input", name, known, ("inputs",))
+            if name not in part.structure.inputs:
+                fault = no_such("input", name, part.structure.inputs, ("inputs",))
                 if name in TURNS:
                     turn = f'{name} = {{ turns = "chassis", about = "POINT", along = "{TURNS[name]}" }}'
                     fault.allowed += f"; to define it, write {turn} under [inputs] of your own mechanism file"
                 raise fault
         self._inputs_hold_the_mechanism()
+        start, stop = self.time.start, self.time.stop
         for name, law in self.inputs.items():
-            for table in law.tables:
-                if table.times[0] <= self.time.start and self.time.stop <= table.times[-1]:
-                    continue
-                raise TableFault(
-                    ("inputs", name),
-                    f"the table of input {name!r} covers {table.times[0]} to {table.times[-1]} s",
-                    f"all of time, {self.time.start} to {self.time.stop} s",
-                )
+            for times in (table.times for table in law.tables):
+                if not times[0] <= start <= stop <= times[-1]:
+                    covers = f"the table of input {name!r} covers {times[0]} to {times[-1]} s"
+                    raise TableFault(("inputs", name), covers, f"all of time, {start} to {stop} s")
+        for name in self.effects:
+            if problem := part.refusal(EFFECTS[name]):
+                raise TableFault(("effects",), problem)
+        return self
 
     def _inputs_hold_the_mechanism(self) -> None:
         """Check that as many inputs are driven as there are freedoms; building checks that they hold them.
@@ -198,43 +151,35 @@ class Scene(Part):
         except MechanismError as error:
             of_points = ("points",) if set(error.names) <= set(part.points) else ()
             raise TableFault(("mechanism", *of_points), error.problem) from None
-        names = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
-        given = [name for name in names if name in self.inputs]
-        count = sum(part.structure.inputs[name].holds for name in given)
+        known = {n: one for n, one in part.structure.inputs.items() if not one.moves_the_chassis}
+        given = [name for name in known if name in self.inputs]
+        others = ", ".join(name for name in known if name not in given) or "your own in [mechanism.inputs]"
+        count = sum(known[name].holds for name in given)
         listed = f": {part.inputs_in_words(given)}" if given else ""
-        driven = f"and {count} {'is' if count == 1 else 'are'} driven{listed}"
+        words = (
+            f"the {part.name} has {freedoms or 'no'} freedom{'' if freedoms == 1 else 's'}, and "
+            f"{count} {'is' if count == 1 else 'are'} driven{listed}"
+        )
         if not freedoms:
             askew = askew_hinges(part.structure, part.points)
             exact = f"; if the hinges {', '.join(askew)} are meant to be parallel, draw them exactly so"
-            raise TableFault(
-                ("mechanism",),
-                f"the {part.name} is locked: it has no freedom as drawn, "
-                f"{driven if given else 'a structure that nothing moves'}",
-                f"at least one freedom: leave out a rod or a slide{exact if askew else ''}",
-            )
-        words = f"the {part.name} has {freedoms} freedom{'' if freedoms == 1 else 's'}, {driven}"
-        more = freedoms - count
+            allowed = f"at least one freedom: leave out a rod or a slide{exact if askew else ''}"
+            raise TableFault(("mechanism",), f"{words}; it is locked as drawn", allowed)
+        allowed, more = "as many inputs as freedoms:", freedoms - count
         if more < 0:
-            raise TableFault(("inputs",), words, f"as many inputs as freedoms: leave out {-more}")
-        others = (
-            ", ".join(name for name in names if name not in given)
-            or "your own, to be written in [mechanism.inputs]"
-        )
+            raise TableFault(("inputs",), words, f"{allowed} leave out {-more}")
         try:
             found = Freedoms.of(topology, part.points, part.directions)
-            free, lost = ", ".join(found.free), ", ".join(found.redundant)
+            words += f"; free: {', '.join(found.free)}"
+            words += f"; redundant: {', '.join(found.redundant)}" if found.redundant else ""
         except MechanismError:
-            free, lost = "unknown, since the drawing does not close", ""
+            words += "; the drawing does not close"
         if more and missing:
-            allowed = f"as many inputs as freedoms: drive {more} more of {others}, or add a missing rod"
-            raise TableFault(("inputs",), f"{words}; free: {free}", allowed)
-        same = ", ".join(topology.fighting or given)
-        words = (
-            f"the inputs {same} drive the same freedoms of the {part.name}, so that others stay free: {free}"
-        )
-        if lost:
-            words += f"; redundant in the drawing: {lost}"
-        raise TableFault(("inputs",), words, f"one of them less, and one of {others} instead")
+            raise TableFault(
+                ("inputs",), words, f"{allowed} drive {more} more of {others}, or add a missing rod"
+            )
+        same = f"; the inputs {', '.join(topology.fighting or given)} drive the same freedoms"
+        raise TableFault(("inputs",), words + same, f"one of them less, and one of {others} instead")
 
     @property
     def reported_points(self) -> tuple[str, ...]:
@@ -274,17 +219,16 @@ class Scene(Part):
             SceneError: there is no such scene, its content is wrong, or the path is not a regular file of at
                 most 64 MB.
         """
+        allowed = f"a path, or one of {', '.join(built_in_scenes())}"
         if not isinstance(name, str | os.PathLike):
-            allowed = f"a path, or one of {', '.join(built_in_scenes())}"
-            raise SceneError(
-                shown(name), "", f"is of type {type(name).__name__}, not the name of a scene", allowed
-            )
+            problem = f"is of type {type(name).__name__}, not the name of a scene"
+            raise SceneError(shown(name), "", problem, allowed)
         if str(name) in built_in_scenes():
             written = (SCENES / f"{name}.toml").read_bytes()
         else:
-            hint = meant(str(name), built_in_scenes())
-            written = read_file(name, f"a path, or one of {', '.join(built_in_scenes())}{hint}")
-        return cls.from_mapping(_found_beside(parsed(written, str(name)), Path(name).parent), str(name))
+            written = read_file(name, f"{allowed}{meant(str(name), built_in_scenes())}")
+        with reading(folder=Path(name).parent):
+            return cls.from_mapping(parsed(written, str(name)), str(name))
 
     @classmethod
     def read(cls, stream: IO[bytes], source: str = "standard input") -> Scene:
@@ -296,31 +240,32 @@ class Scene(Part):
         return cls.from_mapping(parsed(read_stream(stream, source), source), source)
 
 
-def _part_of(mechanism: object) -> MechanismPart | None:
-    """A scene's mechanism; None if it is invalid, which the scene's checks report."""
-    try:
-        return MechanismPart.checked(mechanism, "scene")
-    except SceneError:
-        return None
+def _law(name: str, law: object, content: Mapping[str, Any]) -> InputPart:
+    """The law of an input, read with the mechanism and the time in a scene's content."""
+    part, time = content.get("mechanism"), content.get("time")
+    changes: dict[str, Any] = {} if time is None else {"span": (time.start, time.stop)}
+    if part is not None and name in part.structure.inputs:
+        changes["drawn"] = partial(part.drawn_value, name)
+        if part.structure.inputs[name].unit != MM:
+            changes["unit"] = part.structure.inputs[name].unit
+    with reading(**changes):
+        found: InputPart = read(InputPart, law, "inputs", name)
+        return found
+
+
+def _no_such_effect(name: str) -> TableFault:
+    of = next((one.name for one in EFFECTS.values() if name.rpartition(".")[2] in one.own_names), "")
+    hint = f" ({of!r} gives it)" if of else meant(name, EFFECTS)
+    if (order := name.removeprefix("derivative_")) in map(str, range(1, len(NAMED))):
+        hint = f" ({STATES[int(order)]!r} is its name)"
+    single = ", ".join(name for name, effect in EFFECTS.items() if not effect.base)
+    allowed = f"{single}, {FIRST_NUMBERED} to {STATES[-1]}, and gradients"
+    return TableFault(("effects",), f"no effect is called {shown(name)}{hint}", allowed)
 
 
 def _is_no_part(table: Mapping[str, Any]) -> bool:
     """Whether a table of inputs is not a part's table: one of its entries is not an input."""
-    return not all(
-        isinstance(law, Mapping) and not law.keys().isdisjoint((*LAWS, SWEEP)) for law in table.values()
-    )
-
-
-def _found_beside(content: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """A scene's content with paths of mechanism files counted from a folder, and its tables read."""
-    if "inputs" in content:
-        content = {**content, "inputs": read_in(content["inputs"], content.get("units", MM), folder)}
-    mechanism = content.get("mechanism")
-    if not isinstance(mechanism, dict):
-        return content
-    if is_path(mechanism.get("type")):
-        return {**content, "mechanism": {**mechanism, "type": str(folder / mechanism["type"])}}
-    return {**content, "mechanism": whole_tables(mechanism, folder)}
+    return not all(isinstance(law, Mapping) and not law.keys().isdisjoint(LAWS) for law in table.values())
 
 
 def built_in_scenes() -> tuple[str, ...]:

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Self, SupportsFloat
+from contextlib import suppress
+from numbers import Real
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import (
@@ -23,33 +25,16 @@ from pydantic import (
     model_validator,
 )
 
-from pointcoord.mechanism.faults import faults_of, known_keys
-
-Place = tuple[int | str, ...]
-
-
-def own_number(value: object) -> object:
-    """A numpy number or a fraction as a Python number; booleans and arrays are left as they are."""
-    # Compares the exact type: a numpy float is an instance of `float` as well.
-    if type(value) in (float, int) or isinstance(value, bool | np.ndarray | np.complexfloating):
-        return value
-    if isinstance(value, np.bool_):
-        return bool(value)
-    try:
-        return float(value) if isinstance(value, SupportsFloat) else value
-    except (OverflowError, TypeError, ValueError):
-        return value
+from pointcoord.mechanism.faults import fault_of, known_keys
+from pointcoord.scene.reading import in_mm, per_mm
 
 
-def _own_whole(value: object) -> object:
-    return int(value) if isinstance(value, np.integer) else value
-
-
-def own_list(value: object) -> object:
-    """Any iterable as a tuple; text and tables are left as they are."""
-    if isinstance(value, str | bytes | bytearray | Mapping) or not hasattr(value, "__iter__"):
-        return value
-    return tuple(value)
+def _own_number(value: object) -> object:
+    """A number of numpy or a fraction as a Python float; other values are left to pydantic."""
+    if isinstance(value, Real) and not isinstance(value, int):
+        with suppress(OverflowError):
+            return float(value)
+    return value
 
 
 def _not_zero(value: float) -> float:
@@ -58,22 +43,23 @@ def _not_zero(value: float) -> float:
     return value
 
 
-def _own_table(value: object) -> object:
-    """A table of plain data, with tuples for its lists."""
-    if isinstance(value, Mapping):
-        return {name: _own_table(each) for name, each in value.items()}
-    return tuple(map(_own_table, value)) if isinstance(value, list | tuple) else value
-
-
-AS_LIST = BeforeValidator(own_list)
+IN_MM = AfterValidator(in_mm)
+AS_LIST = BeforeValidator(lambda value: value.tolist() if hasattr(value, "tolist") else value)
 Text = Annotated[str, Field(strict=True)]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False), BeforeValidator(own_number)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False), BeforeValidator(_own_number)]
 Positive = Annotated[Number, Field(gt=0.0)]
-NotZero = Annotated[Number, AfterValidator(_not_zero)]
 Share = Annotated[Number, Field(ge=0.0, le=1.0)]
-Whole = Annotated[int, Field(strict=True), BeforeValidator(_own_whole)]
+Length = Annotated[Number, IN_MM]
+Size = Annotated[Positive, IN_MM]
+PerTurn = Annotated[Number, AfterValidator(_not_zero), IN_MM]
+SpringRate = Annotated[Positive, AfterValidator(per_mm)]
+Whole = Annotated[
+    int,
+    Field(strict=True),
+    BeforeValidator(lambda value: int(value) if isinstance(value, np.integer) else value),
+]
 Vector = Annotated[tuple[Number, Number, Number], AS_LIST]
-PlainTable = Annotated[dict[str, Any], BeforeValidator(_own_table)]
+Place = Annotated[tuple[Length, Length, Length], AS_LIST]
 
 
 class Part(BaseModel):
@@ -91,13 +77,12 @@ class Part(BaseModel):
         """A checked part, from plain data or from an object.
 
         Raises:
-            SceneError: the first fault, with its key, and the keys of further ones.
+            SceneError: the first fault, with its key.
         """
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            first, *others = faults_of(error, written=content)
-            raise first.of_file(source, others) from None
+            raise fault_of(error).of_file(source) from None
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
@@ -109,23 +94,23 @@ class Part(BaseModel):
     def _in_whole(cls, content: object, by_keys: ModelWrapValidatorHandler[Self]) -> Self:
         # Dictionaries of objects may have been changed since these were checked.
         if isinstance(content, cls):
-            if type(content) is cls and content.unchanged:
+            if content.unchanged:
                 return content
             content = content.as_given()
         if isinstance(content, Mapping):
             known_keys(content, (*cls.model_fields, *cls.short_forms))
             content = cls.completed(dict(content))
-        part = by_keys(content)
-        part.agree()
+        part = by_keys(content).agreed()
         part._checked = part.model_dump()
         return part
 
-    def agree(self) -> None:
-        """Check that the values of the keys agree with each other.
+    def agreed(self) -> Self:
+        """The part, after a check that the values of its keys agree with each other.
 
         Raises:
             ValueError: what is wrong.
         """
+        return self
 
     @property
     def unchanged(self) -> bool:

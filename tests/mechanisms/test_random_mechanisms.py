@@ -111,7 +111,7 @@ def test_what_is_drawn_off_a_slide_that_does_not_turn_is_turned_onto_it_the_leas
 def test_a_slide_whose_points_are_those_of_a_hinge_does_not_say_which_body_is_kept_from_turning() -> None:
     points, mechanism = carriage(0.0, arm=["front", "rear", "tip"])
     mechanism["points"]["tip"] = (points["above"] + 50.0).tolist()
-    with pytest.raises(SceneError, match=r"of arm and of carriage, so the body kept from turning"):
+    with pytest.raises(SceneError, match="to carriage and arm, so the body kept from turning"):
         scene_of(mechanism, [], travel=120.0)
 
 

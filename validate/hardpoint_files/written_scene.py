@@ -62,7 +62,7 @@ def scene_of(drawing: Drawing) -> Scene:
     places: dict[str, Any] = {point.name: tuple(map(float, point.place)) for point in drawing.points}
     try:
         file = mechanism_file(kind) if drawing.tables is None else MechanismFile.of(drawing.tables, kind)
-        driven = _driven_inputs(file, file.topology(places))
+        driven = _driven_inputs(file, file.topology(file.structures[AS_DRAWN].placed(places)))
     except TableFault as fault:
         raise fault.of_file(drawing.source) from None
     content = {

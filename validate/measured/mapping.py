@@ -34,7 +34,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from pointcoord import Scene, SceneError
 from pointcoord.effects.numbers import ConventionName, meant_by
-from pointcoord.mechanism.faults import faults_of, known_keys
+from pointcoord.mechanism.faults import fault_of, known_keys
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant, shown_key
 from validate.arrays import Array, Flags
@@ -287,7 +287,7 @@ def _map_said(content: Mapping[str, Any], columns: Columns, scene: Scene, where:
     try:
         said = MapSaid.model_validate(content)
     except ValidationError as error:
-        fault = faults_of(error)[0]
+        fault = fault_of(error)
         raise FileError(where, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
     topology = scene.mechanism.topology
     travels = [words for words, one in meanings_of(topology).items() if one.kind == TRAVEL]

@@ -45,7 +45,7 @@ MISDRAWN: list[tuple[str, dict[str, Any], str]] = [
     (
         WISHBONE,
         {"wheel_centre": (0.0, 18237.2, 5334.0)},
-        "half of them lie within 217.3 mm of it: is it drawn",
+        "half of them within 217.3 mm of it: is it drawn",
     ),
     (STRUT, {"lower_ball_joint": (-5.0, 712.0, 195.0)}, "the drawn kingpin angle is"),
     (STRUT, {"lower_arm_front": "lower_arm_rear"}, "drawn 300 mm behind lower_arm_rear"),

@@ -94,7 +94,7 @@ def test_a_table_beside_the_scene_is_the_one_in_it(tmp_path: Path, head: str) ->
         ),
         (
             "t,z (m)\n0,1\n",
-            "bump.csv: line 1: says that the second column, the input, is in m; allowed: mm or",
+            "bump.csv: line 1: says that the second column, the input, is in m; allowed: mm;",
         ),
         ("0,1\n0.5,2\n0.5,3\n1,4\n", "table: times do not increase: 0.5 follows 0.5; allowed"),
         ("", "inputs.wheel_travel.table.times: "),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from pointcoord.scene.own_units import UNITS
+from pointcoord.scene.reading import UNITS
 
 CAR: dict[str, Any] = {
     "axle": "front",

@@ -119,8 +119,8 @@ def test_points_named_in_any_letters_come_back_with_the_roles_of_the_wheel(tmp_p
     text = mjcf_of(json.loads(content), "car")
     mujoco.MjModel.from_xml_string(text)
     roles = imported(tmp_path, text, "car.xml").scene.mechanism.roles
-    assert roles["wheel_axis"] == ("Länge_wheel_axis_inner_1", "Länge_wheel_centre_1")
-    assert roles["steering_axis"] == ("Länge_lower_ball_joint_1", "Länge_upper_ball_joint_1")
+    assert roles["wheel_axis"] == ["Länge_wheel_axis_inner_1", "Länge_wheel_centre_1"]
+    assert roles["steering_axis"] == ["Länge_lower_ball_joint_1", "Länge_upper_ball_joint_1"]
 
 
 def test_an_axle_comes_back_as_one_mechanism_and_neither_wheel_is_doubted(tmp_path: Path) -> None:
