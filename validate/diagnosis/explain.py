@@ -14,7 +14,7 @@ another car, and two arithmetic faults in the same numbers.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 
@@ -23,7 +23,8 @@ import numpy as np
 from pointcoord import PointcoordError, Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Explanation, Outcome
-from validate.diagnosis.evidence import Evidence, Hypothesis, Kind, Row, Stage, together
+from validate.diagnosis.evidence import Evidence, Row, together
+from validate.diagnosis.fault import Fault, Kind, Stage
 from validate.diagnosis.kinds import KINDS
 
 # An unexplained row is reported as wrong in part if it agrees at least at this share of the instants.
@@ -40,8 +41,8 @@ def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
         explains any row.
     """
     one, two = outcome.solutions
-    held, given = (two, one) if two.accuracy.proven and not one.accuracy.proven else (one, two)
-    return explain_evidence(Evidence.of(scene, given, held, outcome)) if outcome.disagreements else ()
+    trusted, given = (two, one) if two.accuracy.proven and not one.accuracy.proven else (one, two)
+    return explain_evidence(Evidence.of(scene, given, trusted, outcome)) if outcome.disagreements else ()
 
 
 def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
@@ -52,28 +53,27 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     return (*(_in_words(evidence, one) for one in found), *_wrong_in_part(evidence, found))
 
 
-def _wrong_in_part(evidence: Evidence, found: Iterable[Hypothesis]) -> Iterator[Explanation]:
+def _wrong_in_part(evidence: Evidence, found: Iterable[Fault]) -> Iterator[Explanation]:
     """Where unexplained rows disagree, if that is one stretch and they agree at a share of all instants."""
     rows_of: dict[tuple[int, int], list[Row]] = {}
     for row in _open(evidence, found):
-        places = np.flatnonzero(evidence.wrong_at(row))
-        first, last = int(places[0]), int(places[-1])
-        if len(places) == last - first + 1 <= (1.0 - LEAST_RIGHT) * len(evidence.times):
-            rows_of.setdefault((first, last), []).append(row)
+        right = evidence.gap(row, evidence.trusted[row]) <= evidence.off_by(row)
+        places = np.flatnonzero(~right.reshape(len(right), -1).all(axis=-1)).tolist()
+        if len(places) == places[-1] - places[0] + 1 <= (1.0 - LEAST_RIGHT) * len(right):
+            rows_of.setdefault((places[0], places[-1]), []).append(row)
     for (first, last), rows in rows_of.items():
         where, end = evidence.label(first), evidence.label(last)
         where = f"at {where} only" if first == last else f"from {where} to {end} only"
         noun = "rows" if evidence.labels else "instants"
         words = f"disagrees {where}, {last - first + 1} of {len(evidence.times)} {noun}"
-        share = max(evidence.left(row, evidence.held[row], evidence.allowed[row]) for row in rows)
-        fault = Hypothesis(words, {}, kind="part", explains=tuple(rows), leftover=share)
-        yield _in_words(evidence, fault)
+        share = max(evidence.left(row, evidence.trusted[row], evidence.allowed[row]) for row in rows)
+        yield _in_words(evidence, Fault(words, {}, kind="part", explains=tuple(rows), leftover=share))
 
 
-def _explained(evidence: Evidence) -> list[Hypothesis]:
+def _explained(evidence: Evidence) -> list[Fault]:
     """The faults that explain rows, the best first."""
     found = _supposed(evidence, "numbers")
-    cars: list[Hypothesis] = []
+    cars: list[Fault] = []
     stages: tuple[Stage, ...] = ("motion", "drawing")
     for stage in stages if evidence.other_cars and _elsewhere(evidence) else ():
         if _open(evidence, [*found, *cars]):
@@ -92,11 +92,11 @@ def _explained(evidence: Evidence) -> list[Hypothesis]:
 
 def _elsewhere(evidence: Evidence) -> bool:
     """Whether another car or motion is possible: not if moving points are given and all are right."""
-    moving = [row for row in evidence.given if row.is_place and np.ptp(evidence.held[row], axis=0).any()]
+    moving = [row for row in evidence.given if row.is_place and np.ptp(evidence.trusted[row], axis=0).any()]
     return not moving or any(row in evidence.wrong for row in moving)
 
 
-def _open(evidence: Evidence, found: Iterable[Hypothesis]) -> tuple[Row, ...]:
+def _open(evidence: Evidence, found: Iterable[Fault]) -> tuple[Row, ...]:
     """The wrong rows that are not explained yet."""
     done = {row for one in found for row in one.explains}
     return tuple(
@@ -104,24 +104,23 @@ def _open(evidence: Evidence, found: Iterable[Hypothesis]) -> tuple[Row, ...]:
     )
 
 
-def _supposed(evidence: Evidence, stage: Stage) -> list[Hypothesis]:
+def _supposed(evidence: Evidence, stage: Stage) -> list[Fault]:
     faults = (one for kind in KINDS if kind.stage == stage for one in _merged(kind, evidence))
     return [found for one in faults if (found := _tested(evidence, one))]
 
 
-def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
+def _merged(kind: Kind, evidence: Evidence) -> Iterable[Fault]:
     """The possible faults of a kind; equal faults of several quantities are merged."""
-    merged: dict[Hashable, Hypothesis] = {}
+    merged: dict[str, Fault] = {}
     # A car that cannot be solved, or does not give the numbers, explains nothing.
     with suppress(PointcoordError):
         for one in kind.suppose(evidence):
-            key = one.key or one.words
-            known = merged[key].rows if key in merged else {}
-            merged[key] = replace(one, kind=kind.name, rows={**known, **one.rows})
+            known = merged[one.words].rows if one.words in merged else {}
+            merged[one.words] = replace(one, kind=kind.name, rows={**known, **one.rows})
     return [one for one in merged.values() if one.rows]
 
 
-def _tested(evidence: Evidence, fault: Hypothesis) -> Hypothesis | None:
+def _tested(evidence: Evidence, fault: Fault) -> Fault | None:
     """The fault with the rows that it explains; None if it explains none."""
     left: dict[Row, float] = {}
     # Rows with small differences prove nothing, but are listed if the fault is in the whole car.
@@ -136,19 +135,19 @@ def _tested(evidence: Evidence, fault: Hypothesis) -> Hypothesis | None:
                 left[row] = share
             elif fault.whole:
                 barely.append(row)
-    groups = (some for some in together(left) if fault.rests or evidence.distinct(some) > fault.fitted)
+    groups = (some for some in together(left) if evidence.distinct(some) > fault.fitted)
     exact = [row for some in groups for row in some]
     leftover = max((left[row] for row in exact), default=0.0)
     return replace(fault, explains=(*exact, *barely), leftover=leftover) if exact else None
 
 
-def _pairs(evidence: Evidence) -> Iterator[Hypothesis]:
+def _pairs(evidence: Evidence) -> Iterator[Fault]:
     """Two faults in the same numbers: the second is sought after the first is applied to trusted numbers."""
     for place, first in enumerate(KINDS):
         for one in _merged(first, evidence) if first.opens else ():
             after = evidence.after(one.rows, tuple(row for row in evidence.wrong if row in one.rows))
             if first.name == "unit":
-                after = replace(after, units=dict.fromkeys(after.held, ("in its own unit", 1.0)))
+                after = replace(after, units=dict.fromkeys(after.trusted, ("in its own unit", 1.0)))
             for second in (kind for kind in KINDS[place + 1 :] if kind.closes):
                 if any(_tested(after.few, two) for two in _merged(second, after.few)):
                     for two in _merged(second, after):
@@ -164,14 +163,14 @@ def _pairs(evidence: Evidence) -> Iterator[Hypothesis]:
                             yield found
 
 
-def _ranked(found: Iterable[Hypothesis]) -> list[Hypothesis]:
-    """The faults in order: more rows before fewer, simple before far-fetched, rounder amounts first."""
-    return sorted(found, key=lambda one: (-len(one.explains), one.cost, one.decimals, one.leftover))
+def _ranked(found: Iterable[Fault]) -> list[Fault]:
+    """The faults in order: more rows before fewer, simple before far-fetched, better fits first."""
+    return sorted(found, key=lambda one: (-len(one.explains), one.cost, one.leftover))
 
 
-def _best(ranked: Iterable[Hypothesis]) -> Iterator[Hypothesis]:
+def _best(ranked: Iterable[Fault]) -> Iterator[Fault]:
     """The faults that explain a row that no better fault explains, or the same rows as simply."""
-    kept: list[Hypothesis] = []
+    kept: list[Fault] = []
     for one in ranked:
         rows = {*one.explains}
         more = {row for other in kept if len(other.explains) > len(rows) for row in other.explains}
@@ -184,28 +183,26 @@ def _best(ranked: Iterable[Hypothesis]) -> Iterator[Hypothesis]:
             yield one
 
 
-def _left_out(evidence: Evidence, fault: Hypothesis, quantity: str) -> bool:
-    """Whether a quantity has rows that the fault does not explain, or that agree only without the fault."""
-    others = (row for row in evidence.held if row.quantity == quantity and row not in fault.explains)
-    return any(
-        evidence.left(row, *fault.rows[row]) > 1.0
-        if row in fault.rows
-        else row in evidence.wrong or row.order == 0 or evidence.held[row].any()
-        for row in others
-    )
-
-
-def _in_words(evidence: Evidence, fault: Hypothesis) -> Explanation:
+def _in_words(evidence: Evidence, fault: Fault) -> Explanation:
     quantities: list[str] = []
     parts: list[str] = []
     for quantity in evidence.wrong_quantities:
         names = [row.name for row in fault.explains if row.quantity == quantity]
         words, of_car = QUANTITIES[quantity].words, QUANTITIES[quantity].of == "car"
-        if names and not of_car and not _left_out(evidence, fault, quantity):
+        if names and not of_car and _is_whole(evidence, fault, quantity):
             quantities.append(quantity)
             parts.append(words)
         elif names:
             quantities += [f"{quantity}.{name}" for name in names]
             parts.append(("" if of_car else f"{words} of ") + ", ".join(names))
-    words = f"{', '.join(parts)}: {fault.words}"
-    return Explanation(words, fault.kind, tuple(quantities), fault.leftover)
+    return Explanation(f"{', '.join(parts)}: {fault.words}", fault.kind, tuple(quantities), fault.leftover)
+
+
+def _is_whole(evidence: Evidence, fault: Fault, quantity: str) -> bool:
+    """Whether a fault explains all rows of a quantity, but for those that agree with the fault too."""
+    others = [row for row in evidence.trusted if row.quantity == quantity and row not in fault.explains]
+    if any(row in evidence.wrong for row in others):
+        return False
+    silent = (row for row in others if row not in fault.rows)
+    agree = {row: fault.rows[row] for row in others if row in fault.rows}
+    return evidence.explained(agree) and not any(evidence.trusted[row].any() for row in silent)

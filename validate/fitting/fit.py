@@ -10,9 +10,9 @@ Let J = dq/da / s = U diag(w) V^T at the solution. The standard deviation of the
 file alone is f / w_k mm. f is the r.m.s. of the residual over the degrees of freedom, and at least 1, because
 the file has no more digits than those given. If this deviation is not smaller than the prior and the bounds,
 the file does not determine the combination: the prior keeps it as small as possible. The covariance of the
-corrections that are not on a bound is V diag(1 / (w^2 / f^2 + 1 / prior^2)) V^T, with the others fixed on
-their bounds. If f was estimated, the half width of the 95 % interval is a quantile of Student's t(freedom)
-times the standard deviation; otherwise a quantile of the normal distribution.
+corrections that are not on a bound is (J^T J / f^2 + 1 / prior^2)^-1, with the others fixed on their bounds.
+If f was estimated, the half width of the 95 % interval is a quantile of Student's t(freedom) times the
+standard deviation; otherwise a quantile of the normal distribution.
 
 Least squares are scipy's (dogleg in boxes, which ends on bounds exactly: Voglis and Lagaris, WSEAS Conference
 on Applied Mathematics, 2004). The prior gives the Jacobian the full rank that the method needs. If a design
@@ -26,11 +26,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import count
 
 import numpy as np
 from scipy.optimize import least_squares, lsq_linear
-from scipy.special import ndtri, stdtrit
+from scipy.special import chdtri, ndtri, stdtrit
 
 from pointcoord import PointcoordError, Scene
 from validate.arrays import Array, Flags
@@ -43,6 +42,8 @@ SETTLED = 0.01
 CONFIDENCE = 0.95
 MOST_SOLVES = 60
 AT_A_BOUND = 1e-9  # relative to the bounds: a correction this near to a bound lies on it
+LEVEL = 1000.0
+TWICE = 2.0 * math.sqrt(3.0)  # in standard deviations: twice the half unit of a rounded number
 
 Told = Callable[[str, int], None]
 
@@ -105,35 +106,32 @@ class Fit:
     """The result of a fit.
 
     Attributes:
-        scene: the corrected scene.
         coordinates: the free coordinates by name.
         columns: the columns of the file.
         combinations: the combinations of corrections, the best determined first.
         factor: f above: the residual in multiples of the rounding of the digits.
         freedom: degrees of freedom: number of numbers less number of combinations that they determine.
-        left: sum of squares of the residual, in standard deviations of the numbers.
-        largest: the largest residual, in standard deviations of its number.
-        bounds, prior: mm.
+        rest: the residual, (numbers,), in standard deviations of the numbers.
         converged: whether least squares ended at a minimum.
         solves: number of designs tried.
         failures: the reasons why designs could not be solved, each once.
-        notes: what was assumed because it is not given, and rows that were left out.
     """
 
-    scene: Scene
+    problem: Problem
     coordinates: dict[str, Coordinate]
     columns: tuple[Fitted, ...]
     combinations: tuple[Combination, ...]
     factor: float
     freedom: int
-    left: float
-    largest: float
-    bounds: float
-    prior: float
+    rest: Array
     converged: bool
     solves: int
     failures: tuple[str, ...]
-    notes: tuple[str, ...]
+
+    @property
+    def scene(self) -> Scene:
+        """The corrected scene."""
+        return self.problem.corrected([one.correction for one in self.coordinates.values()])
 
     @property
     def unseen(self) -> tuple[Combination, ...]:
@@ -141,9 +139,19 @@ class Fit:
         return tuple(one for one in self.combinations if not one.seen)
 
     @property
+    def left(self) -> float:
+        """The sum of squares of the residual."""
+        return float(self.rest @ self.rest)
+
+    @property
     def residual(self) -> float:
         """The r.m.s. residual over the degrees of freedom, in standard deviations of the numbers."""
         return math.sqrt(self.left / max(self.freedom, 1))
+
+    @property
+    def explains(self) -> bool:
+        """Whether rounding alone explains the residual."""
+        return explains(self.rest, self.freedom)
 
     @property
     def rms(self) -> dict[str, tuple[float, float, int]]:
@@ -158,6 +166,18 @@ class Fit:
         return found
 
 
+def explains(rest: Array, freedom: int) -> bool:
+    """Whether rounding alone explains a residual, in standard deviations.
+
+    It does if its sum of squares is exceeded in at least one of LEVEL files, and no number is off by more
+    than TWICE its rounding. The second condition is needed because least squares do not minimise the largest
+    difference. The error of a rounded number is evenly distributed; its square scatters less than that of a
+    normal error, so the chi-squared test is on the safe side.
+    """
+    small = freedom > 0 and float(rest @ rest) <= float(chdtri(freedom, 1.0 / LEVEL))
+    return small and bool((np.abs(rest) <= TWICE).all())
+
+
 def fit_hardpoints(
     problem: Problem, solves: int = MOST_SOLVES, told: Told = lambda words, count: None
 ) -> Fit:
@@ -169,15 +189,14 @@ def fit_hardpoints(
     Raises:
         FileError: a number has no derivative at a design of the search.
     """
-    bounds, prior = problem.bounds, problem.prior
-    rows, zero = problem.measured.rows, np.zeros(len(problem.free))
-    designs, tried, failures = {zero.tobytes(): problem.start}, count(1), dict[str, None]()
+    bounds, prior, zero = problem.bounds, problem.prior, np.zeros(len(problem.free))
+    designs, failures = {zero.tobytes(): problem.start}, dict[str, None]()
 
     def design(amounts: Array) -> Found:
         # Designs are kept: slopes are needed at the last one, or on a bound that is a rounding away from it.
         at = amounts.tobytes()
         if at not in designs:
-            told(f"{(number := next(tried))} tried", number)
+            told(f"{len(designs)} tried", len(designs))
             designs[at] = problem.solved(amounts)
         return designs[at]
 
@@ -187,8 +206,7 @@ def fit_hardpoints(
         try:
             there = design(amounts)
             misfit = problem.misfit(there)
-            for _, row in np.argwhere(problem.used & ~np.isfinite(problem.numbers(there)))[:1].tolist():
-                failures[f"{rows[row]}: {there.reasons.get(row, 'no number')}"] = None
+            failures.update(dict.fromkeys(problem.missing(there)))
         except PointcoordError as error:
             failures[str(error)] = None
         return np.concatenate([misfit, amounts / prior])
@@ -196,76 +214,70 @@ def fit_hardpoints(
     def slopes(amounts: Array) -> Array:
         return np.concatenate([problem.slopes(design(amounts)), np.eye(len(zero)) / prior])
 
-    solved = least_squares(
-        left,
-        zero,
-        slopes,
-        bounds=(-bounds, bounds),
-        method="dogbox",
-        xtol=1e-12,
-        ftol=ENOUGH,
-        gtol=1e-14,
-        max_nfev=solves,
-    )
-    amounts, rest = np.asarray(solved.x), np.asarray(solved.fun)
-    after = rest[: len(problem.spread)]
-    matrix = np.asarray(solved.jac)[: len(after)]
-    singular, turned = _known(matrix)
+    ends = {"xtol": 1e-12, "ftol": ENOUGH, "gtol": 1e-14, "max_nfev": solves}
+    solved = least_squares(left, zero, slopes, bounds=(-bounds, bounds), method="dogbox", **ends)
+    amounts, rest, matrix = np.asarray(solved.x), solved.fun[: -len(zero)], solved.jac[: -len(zero)]
     loose: Flags = np.abs(amounts) < (1.0 - AT_A_BOUND) * bounds
-    own, directions = _known(matrix[:, loose])
-    freedom = len(after) - int((own > 1.0 / bounds).sum())
-    factor = max(1.0, math.sqrt(float(after @ after) / freedom) if freedom > 0 else 1.0)
+    singular = np.linalg.svd(matrix[:, loose], compute_uv=False)
+    freedom = len(rest) - int((singular > 1.0 / bounds).sum())
+    factor = max(1.0, math.sqrt(float(rest @ rest) / freedom) if freedom > 0 else 1.0)
     deviations = np.zeros(len(zero))
-    deviations[loose] = np.sqrt(directions.T**2 @ (1.0 / ((own / factor) ** 2 + prior**-2)))
-    tail = 0.5 * (1.0 + CONFIDENCE)
-    half = deviations * float(stdtrit(freedom, tail) if factor > 1.0 else ndtri(tail))
-    points = problem.scene.mechanism.points
-    ends = (name.rpartition(".") for name in problem.free)
-    drawn = np.array([float(points[point]["xyz".index(axis)]) for point, _, axis in ends])
-    low, high = np.maximum(amounts - half, -bounds), np.minimum(amounts + half, bounds)
-    known = (part.tolist() for part in (drawn, amounts, drawn + amounts, deviations, low, high, ~loose))
-    coordinates = [Coordinate(*one) for one in zip(*known, strict=True)]
-    with np.errstate(divide="ignore"):
-        by_file = factor / singular
-    combinations = [
-        Combination(w, d, d < min(bounds, prior), dict(zip(problem.free, row, strict=True)))
-        for row, w, d in zip(turned.tolist(), singular.tolist(), by_file.tolist(), strict=True)
-    ]
-    better = lsq_linear(solved.jac, -rest, bounds=(-bounds - amounts, bounds - amounts))
+    known = np.concatenate([matrix[:, loose] / factor, np.eye(int(loose.sum())) / prior])
+    deviations[loose] = np.linalg.norm(np.linalg.pinv(known), axis=1)
+    better = lsq_linear(solved.jac, -solved.fun, bounds=(-bounds - amounts, bounds - amounts))
+    gain = float(solved.fun @ solved.fun) - 2.0 * float(better.cost)
     return Fit(
-        scene=problem.corrected(amounts),
-        coordinates=dict(zip(problem.free, coordinates, strict=True)),
-        columns=_columns(problem, problem.misfit(problem.start), after),
-        combinations=tuple(combinations),
+        problem=problem,
+        coordinates=_coordinates(problem, amounts, deviations, loose, freedom if factor > 1.0 else None),
+        columns=_columns(problem, problem.misfit(problem.start), rest),
+        combinations=_combinations(problem, matrix, factor),
         factor=factor,
         freedom=freedom,
-        left=float(after @ after),
-        largest=float(np.abs(after).max()),
-        bounds=bounds,
-        prior=prior,
-        converged=bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),
+        rest=rest,
+        converged=gain <= SETTLED * factor**2,
         solves=int(solved.nfev),
         failures=tuple(failures),
-        notes=problem.notes,
     )
 
 
-def _known(matrix: Array) -> tuple[Array, Array]:
-    """As many singular values as the matrix has columns, and the right singular vectors in rows."""
-    _, found, vectors = np.linalg.svd(matrix, full_matrices=True)
-    return np.concatenate([found, np.zeros(matrix.shape[1] - len(found))]), vectors
+def _coordinates(
+    problem: Problem, amounts: Array, deviations: Array, loose: Flags, freedom: int | None
+) -> dict[str, Coordinate]:
+    """The coordinates with their corrections, (free,).
+
+    Args:
+        freedom: degrees of freedom, if the size of the errors was estimated from the residual.
+    """
+    bounds, tail = problem.bounds, 0.5 * (1.0 + CONFIDENCE)
+    half = deviations * float(ndtri(tail) if freedom is None else stdtrit(freedom, tail))
+    low, high = np.maximum(amounts - half, -bounds), np.minimum(amounts + half, bounds)
+    points = problem.scene.mechanism.points
+    ends = (name.rpartition(".") for name in problem.free)
+    drawn = np.array([points[point]["xyz".index(axis)] for point, _, axis in ends])
+    known = (part.tolist() for part in (drawn, amounts, drawn + amounts, deviations, low, high, ~loose))
+    return {name: Coordinate(*one) for name, *one in zip(problem.free, *known, strict=True)}
+
+
+def _combinations(problem: Problem, matrix: Array, factor: float) -> tuple[Combination, ...]:
+    """The combinations of corrections, from the Jacobian, (numbers, free)."""
+    _, singular, directions = np.linalg.svd(matrix, full_matrices=True)
+    found, most = list[Combination](), min(problem.bounds, problem.prior)
+    # There are as many directions as coordinates; those without a singular value change nothing.
+    sizes = np.pad(singular, (0, len(directions) - len(singular)))
+    for size, direction in zip(sizes.tolist(), directions.tolist(), strict=True):
+        deviation, parts = factor / size if size else math.inf, zip(problem.free, direction, strict=True)
+        found.append(Combination(size, deviation, deviation < most, dict(parts)))
+    return tuple(found)
 
 
 def _columns(problem: Problem, before: Array, after: Array) -> tuple[Fitted, ...]:
     """The columns of the file, from the misfits before and after, each (used,)."""
-    measured = problem.measured
     which, _ = np.nonzero(problem.used)
     found = list[Fitted]()
-    for i, s in enumerate(measured.numbers):
-        here = which == i
-        if here.any():
+    for i, s in enumerate(problem.measured.numbers):
+        if count := int((here := which == i).sum()):
             known = problem.spread[here]
-            first, last = (float(np.sqrt(np.mean((p[here] * known) ** 2))) for p in (before, after))
-            known_to = float(np.sqrt(np.mean(known**2)))
-            found.append(Fitted(s.column, s.meaning.unit, first, last, known_to, int(here.sum())))
+            ends = np.stack([known * before[here], known * after[here], known])
+            first, last, known_to = np.sqrt(np.mean(ends**2, axis=1)).tolist()
+            found.append(Fitted(s.column, s.meaning.unit, first, last, known_to, count))
     return tuple(found)

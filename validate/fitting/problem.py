@@ -15,7 +15,7 @@ and the accuracy a_i that the user states, are treated in the same way:
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,13 +110,9 @@ class Problem:
         """What was assumed because it is not given, and rows that were left out."""
         return (*self.start.driven.notes, *self.start.left_out)
 
-    def corrected(self, amounts: Array) -> Scene:
-        """The scene with its free coordinates moved by amounts, (free,), mm.
-
-        Raises:
-            SceneError: the hardpoints do not form a mechanism.
-        """
-        return designs_of(self.scene, offsets=self._offsets(amounts)).design(0)
+    def corrected(self, amounts: Iterable[float]) -> Scene:
+        """The scene with its free coordinates moved by amounts, (free,), mm."""
+        return designs_of(self.scene, offsets=dict(zip(self.free, amounts, strict=True))).design(0)
 
     def solved(self, amounts: Array) -> Found:
         """The car with free coordinates moved by amounts, (free,), mm, at the rows of the file.
@@ -124,14 +120,17 @@ class Problem:
         Raises:
             PointcoordError: the car cannot be solved.
         """
-        return self.start.driven.redrawn(self._offsets(amounts)).at(tolerance=TIGHT)
+        driven = self.start.driven.redrawn(dict(zip(self.free, amounts.tolist(), strict=True)))
+        return driven.at(tolerance=TIGHT)
 
     def numbers(self, car: Found) -> Array:
         """A car's numbers, (columns, rows); NaN at rows without a pose."""
         return car.columns(car.numbers)
 
-    def _offsets(self, amounts: Array) -> dict[str, float]:
-        return dict(zip(self.free, amounts.tolist(), strict=True))
+    def missing(self, car: Found) -> Iterator[str]:
+        """The first row of the file at which a car lacks a number, and why."""
+        for _, row in np.argwhere(self.used & ~np.isfinite(self.numbers(car)))[:1].tolist():
+            yield f"{self.measured.rows[row]}: {car.reasons.get(row, 'no number')}"
 
     def misfit(self, car: Found) -> Array:
         """Computed less measured, (used,), in standard deviations; whole turns are removed from angles."""

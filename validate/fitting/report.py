@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -14,7 +12,7 @@ from scipy.linalg import qr
 from validate.exit_status import ExitStatus
 from validate.fitting.fit import CONFIDENCE, Combination, Coordinate, Fit
 from validate.fitting.suspects import Suspects
-from validate.output.table import csv_of
+from validate.output.table import Part, Table, csv_of, text_of
 from validate.plain_text import counted_as, shown
 from validate.tables.units import degrees_of
 from validate.toml_written import written
@@ -30,12 +28,11 @@ FIT_TABLE = (
     *("drawn [mm]", "correction [mm]", "corrected [mm]", "standard_deviation [mm]"),
     *("low_95 [mm]", "high_95 [mm]", "on_bound"),
 )
-INTERVAL = f"{100.0 * CONFIDENCE:g} % interval"
+MOVED = ("coordinate", "correction, mm", "standard deviation", f"{100.0 * CONFIDENCE:g} % interval")
 # Residual in multiples of the rounding; above this a cause other than hardpoints is more likely.
 STRANGE = 5.0
 SIZES = ("each coordinate alone", "sets of two", "sets of three")
 REFUSED = 3  # number of unsolvable sets that a warning names
-WIDE = 100  # characters per line
 
 
 @dataclass(frozen=True)
@@ -45,6 +42,7 @@ class Report:
     Attributes:
         kind: kind of the document.
         what: name of the result, in words.
+        status: NO_VERDICT if least squares did not converge and the result depends on it.
         results: the results as plain data for programs, angles in rad.
         table: the coordinates as CSV.
     """
@@ -61,59 +59,60 @@ class Report:
     def data(self, name: str, source: str) -> dict[str, Any]:
         """The results with the names of scene and file, the confidence, notes and warnings."""
         about = {"scene": name, "data": shown(source), "confidence": CONFIDENCE}
-        remarks = {"notes": self.notes, "warnings": self.warnings}
-        return {**about, **self.results, **{key: [*map(shown, words)] for key, words in remarks.items()}}
+        remarks = {"notes": [*map(shown, self.notes)], "warnings": [*map(shown, self.warnings)]}
+        return {**about, **self.results, **remarks}
 
 
 def report_of_fit(fit: Fit, name: str, source: str) -> Report:
-    """The report on a fit; status 3 if least squares did not converge."""
-    rms = ("unit", "before", "after", "count")
-    results = {
-        "rms": [dict(zip(rms, (unit, *found), strict=True)) for unit, found in fit.rms.items()],
-        "columns": [asdict(one) | {"column": shown(one.column)} for one in fit.columns],
-        "coordinates": _coordinates(fit),
-        "combinations": [asdict(one) for one in fit.combinations],
-        "unique": not fit.unseen,
-        "unseen": _undetermined(fit),
-        "left_over_digits": fit.factor,
-        **{key: getattr(fit, key) for key in ("freedom", "bounds", "prior", "converged", "solves")},
-        "failures": [shown(failure) for failure in fit.failures],
-    }
+    """The report on a fit."""
+    problem, unseen, rms = fit.problem, _undetermined(fit), ("unit", "before", "after", "count")
     return Report(
         kind="fit",
         what="the fit",
         status=ExitStatus.AGREE if fit.converged else ExitStatus.NO_VERDICT,
-        text="\n".join(_lines_of_fit(fit, name, source)),
-        notes=fit.notes,
+        text=text_of([f"{name}: hardpoints fitted to {source}", *_parts_of_fit(fit, unseen)]),
+        notes=problem.notes,
         warnings=tuple(_warnings_of_fit(fit)),
-        results=results,
+        results={
+            "rms": [dict(zip(rms, (unit, *found), strict=True)) for unit, found in fit.rms.items()],
+            "columns": [asdict(one) | {"column": shown(one.column)} for one in fit.columns],
+            "coordinates": _coordinates(fit),
+            "combinations": [asdict(one) for one in fit.combinations],
+            "unique": not fit.unseen,
+            "unseen": unseen,
+            "left_over_digits": fit.factor,
+            "freedom": fit.freedom,
+            "bounds": problem.bounds,
+            "prior": problem.prior,
+            "converged": fit.converged,
+            "solves": fit.solves,
+            "failures": [*map(shown, fit.failures)],
+        },
         table=csv_of(FIT_TABLE, map(_cells, _coordinates(fit))),
     )
 
 
-def _lines_of_fit(fit: Fit, name: str, source: str) -> Iterator[str]:
-    yield f"{name}: hardpoints fitted to {source}"
+def _parts_of_fit(fit: Fit, unseen: Sequence[str]) -> Iterator[Part]:
     for unit, (before, after, count) in fit.rms.items():
-        yield f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({counted_as(count, 'number')})"
-    for one in fit.columns:
-        ends = f"{_of(one.unit, one.before)} before, {_of(one.unit, one.after)} after"
-        yield f"    {shown(one.column)}: {ends}; standard deviation {_of(one.unit, one.known_to)}"
+        numbers = counted_as(count, "number")
+        yield f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({numbers})"
+    columns = (
+        (shown(one.column), *(_of(one.unit, rms) for rms in (one.before, one.after, one.known_to)))
+        for one in fit.columns
+    )
+    yield Table(("column", "r.m.s. before", "after", "standard deviation"), tuple(columns), indent=4)
     more = f"{fit.factor:.3g} times" if fit.factor > 1.0 else "no more than"
     yield f"  the residual is {more} the rounding of the digits\n"
-    yield f"  correction, mm, within +-{fit.bounds:g}; standard deviation; {INTERVAL}"
-    width = max(len(at) for at in fit.coordinates)
-    yield from (f"    {at.ljust(width)} {_moved(one)}" for at, one in fit.coordinates.items())
-    yield "\n  singular values of the scaled Jacobian, 1/mm, and standard deviation of each combination, mm"
-    for combined in fit.combinations:
-        known = f"{combined.deviation:.3g}" if combined.seen else "not determined"
-        yield f"    {combined.singular_value:10.3g}  {known}"
-    if not fit.unseen:
+    rows = tuple((at, *_moved(one)) for at, one in fit.coordinates.items())
+    yield Table(MOVED, rows, indent=4, caption=f"  corrections, at most {fit.problem.bounds:g} mm")
+    known = ", ".join(f"{one.singular_value:.3g}" for one in fit.combinations)
+    yield f"\n  singular values of the scaled Jacobian, 1/mm: {known}"
+    if not unseen:
         yield "\n  The data determine every combination of these coordinates: the answer is unique nearby."
         return
-    unseen = f"{len(fit.unseen)} of {counted_as(len(fit.combinations), 'combination')} of coordinates"
-    yield f"\n  The answer is not unique: the data do not determine {unseen}. Along these"
-    yield f"  the correction follows from the prior of {fit.prior:g} mm, not from the data. Any may be added:"
-    yield from (f"    {words}" for words in _undetermined(fit))
+    yield f"\n  The answer is not unique: the data do not determine {_count(fit)} of coordinates. Along these"
+    yield f"  the correction follows from the prior of {fit.problem.prior:g} mm, not from the data:"
+    yield from (f"    {words}" for words in unseen)
 
 
 def _warnings_of_fit(fit: Fit) -> Iterator[str]:
@@ -129,21 +128,15 @@ def _warnings_of_fit(fit: Fit) -> Iterator[str]:
             "wrong, or a column may have another unit, sign or definition; pointcoord validate SCENE "
             "--data FILE gives the difference column by column"
         )
-    if on := ", ".join(at for at, one in fit.coordinates.items() if one.on_bound):
-        yield f"{on}: on the bound of {fit.bounds:g} mm; wider bounds may give a smaller residual"
     if fit.unseen:
-        yield f"the answer is not unique: the data do not determine {_counted(fit.unseen)} of coordinates"
+        yield f"the answer is not unique: the data do not determine {_count(fit)} of coordinates"
 
 
 def corrected_text(fit: Fit, name: str, source: str) -> str:
     """A scene file (TOML) of the corrected car, with the corrections in comments."""
     before = [f"# {shown(name)}, its hardpoints fitted to {shown(source)}."]
-    before += [
-        f"# r.m.s. difference {first:.4g} {unit} before, {last:.4g} {unit} after."
-        for unit, (first, last, _) in fit.rms.items()
-    ]
     if fit.unseen:
-        before.append(f"# Not unique: the data do not determine {_counted(fit.unseen)} of coordinates.")
+        before.append(f"# Not unique: the data do not determine {_count(fit)} of coordinates.")
     for at, one in fit.coordinates.items():
         known = "which is the bound" if one.on_bound else f"standard deviation {one.deviation:.2g} mm"
         before.append(f"# {at} moved by {one.correction:+z.4f} mm, {known}.")
@@ -151,31 +144,30 @@ def corrected_text(fit: Fit, name: str, source: str) -> str:
 
 
 def report_of_suspects(found: Suspects, name: str, source: str) -> Report:
-    """The report on suspects; status 3 if no set explains the file and some fits did not converge."""
+    """The report on suspects."""
     sets, equal = (*found.explaining, *found.nearest), len(found.equal)
-    results = {
-        "explained_as_drawn": found.drawn,
-        "left_over_digits": found.residual,
-        "explaining": [_set(one, rank < equal) for rank, one in enumerate(found.explaining)],
-        "nearest": [_set(one, False) for one in found.nearest],
-        "tried": [{"fitted": some, "sets": every} for some, every in found.tried],
-        "changes_nothing": list(found.unseen),
-        "words": verdict(found),
-    }
     rows = [
-        (rank, str(one in found.explaining).lower(), one.residual, *_cells(row))
+        (rank, str(one.explains).lower(), one.residual, *_cells(row))
         for rank, one in enumerate(sets, 1)
         for row in _coordinates(one)
     ]
-    surely = found.ended or found.explaining or found.drawn
+    title = f"{name}: hardpoints that may explain {source} (a diagnosis: nothing is corrected)"
     return Report(
         kind="fit-suspects",
         what="the suspects",
-        status=ExitStatus.AGREE if surely else ExitStatus.NO_VERDICT,
-        text="\n".join(_lines_of_suspects(found, name, source)),
-        notes=found.notes,
+        status=ExitStatus.AGREE if found.certain else ExitStatus.NO_VERDICT,
+        text=text_of([title, *_parts_of_suspects(found), f"  {verdict(found)}"]),
+        notes=found.problem.notes,
         warnings=tuple(_warnings_of_suspects(found)),
-        results=results,
+        results={
+            "explained_as_drawn": found.drawn,
+            "left_over_digits": found.residual,
+            "explaining": [_set(one, rank < equal) for rank, one in enumerate(found.explaining)],
+            "nearest": [_set(one, False) for one in found.nearest],
+            "tried": [{"fitted": some, "sets": every} for some, every in found.tried],
+            "changes_nothing": list(found.unseen),
+            "words": verdict(found),
+        },
         table=csv_of(("set", "explains", "left_over_digits", *COORDINATE), rows),
     )
 
@@ -190,31 +182,28 @@ def _set(fit: Fit, equally_well: bool) -> dict[str, Any]:
     }
 
 
-def _lines_of_suspects(found: Suspects, name: str, source: str) -> Iterator[str]:
-    yield f"{name}: hardpoints that may explain {source} (a diagnosis: nothing is corrected)"
-    drawn = f"{found.residual:.3g} times the rounding of the digits"
-    yield f"  residual as drawn: {drawn}, r.m.s. of {counted_as(found.count, 'number')}"
-    if not found.drawn:
-        tried = zip(SIZES, found.tried, strict=False)
-        fitted = "; ".join(f"{size}: {some} of {every} fitted" for size, (some, every) in tried)
-        yield f"  {fitted}; the others explain less in the linear problem"
-        if found.unseen:
-            yield f"  no effect on the numbers of the file: {', '.join(found.unseen)}"
-        head = "sets that explain the file" if found.explaining else "no set explains the file; nearest sets"
-        yield f"\n  {head}: residual in multiples of the rounding; offsets, mm, +- deviation, {INTERVAL}"
-        sets = found.explaining or found.nearest
-        width = max((len(at) for one in sets for at in one.coordinates), default=0)
-        for rank, one in enumerate(sets, 1):
-            before = f"  {rank:4}. {one.residual:8.3g}"
-            for at, offset in one.coordinates.items():
-                yield f"{before}  {at.ljust(width)} {_moved(offset)}"
-                before = " " * len(before)
-        yield ""
-    yield from (f"  {line}" for line in wrap(verdict(found), WIDE, break_on_hyphens=False))
+def _parts_of_suspects(found: Suspects) -> Iterator[Part]:
+    numbers = counted_as(len(found.rest), "number")
+    yield f"  residual as drawn: {found.residual:.3g} times the rounding of the digits, r.m.s. of {numbers}"
+    if found.drawn:
+        return
+    tried = zip(SIZES, found.tried, strict=False)
+    fitted = "; ".join(f"{size}: {some} of {every} fitted" for size, (some, every) in tried)
+    yield f"  {fitted}; the others explain less in the linear problem"
+    if found.unseen:
+        yield f"  no effect on the numbers of the file: {', '.join(found.unseen)}"
+    rows = (
+        (f"{rank}", f"{one.residual:.3g}", at, *_moved(moved))
+        for rank, one in enumerate(found.explaining or found.nearest, 1)
+        for at, moved in one.coordinates.items()
+    )
+    caption = "sets that explain the file" if found.explaining else "no set explains the file; nearest sets"
+    yield Table(("set", "times the rounding", *MOVED), tuple(rows), indent=4, caption=f"\n  {caption}")
+    yield ""
 
 
 def _warnings_of_suspects(found: Suspects) -> Iterator[str]:
-    if not (found.ended or found.explaining):
+    if not found.certain:
         yield "some fits did not end at a minimum: one of their sets may still explain the file"
     if found.refused:
         some = "; ".join(found.refused[:REFUSED])
@@ -241,19 +230,20 @@ def verdict(found: Suspects) -> str:
     )
 
 
-def _moved(one: Coordinate) -> str:
-    """A correction, its standard deviation and its interval."""
-    known = f"+- {one.deviation:.2g}   {one.low:+z.4f} to {one.high:+z.4f}"
-    return f"{one.correction:+z10.4f} " + ("  on its bound, and fixed there" if one.on_bound else known)
-
-
-def _counted(some: Sequence[Combination]) -> str:
-    return f"{len(some)} combination{'' if len(some) == 1 else 's'}"
+def _moved(one: Coordinate) -> tuple[str, str, str]:
+    """A correction, its standard deviation and its interval, as cells."""
+    if one.on_bound:
+        return f"{one.correction:+z.4f}", "-", "on its bound, and fixed there"
+    return f"{one.correction:+z.4f}", f"{one.deviation:.2g}", f"{one.low:+z.4f} to {one.high:+z.4f}"
 
 
 def _of(unit: str, number: float) -> str:
     factor, unit = degrees_of(unit)
     return f"{factor * number:.4g} {unit}"
+
+
+def _count(fit: Fit) -> str:
+    return f"{len(fit.unseen)} of {counted_as(len(fit.combinations), 'combination')}"
 
 
 def _coordinates(fit: Fit) -> list[dict[str, Any]]:
@@ -281,13 +271,10 @@ def _undetermined(fit: Fit) -> list[str]:
 
 def _sum(parts: Mapping[str, float], least: float) -> str:
     """A combination as a sum, largest part first; parts below `least` times the largest are left out."""
-    largest = max(abs(part) for part in parts.values())
     ranked = sorted(parts.items(), key=lambda one: -abs(one[1]))
-    some = [(name, part / largest) for name, part in ranked if abs(part) >= least * largest]
-    if len(some) == 1:
-        return some[0][0]
-    sign = math.copysign(1.0, some[0][1])
-    words = " ".join(f"{'-' if sign * part < 0.0 else '+'} {abs(part):.2f} {name}" for name, part in some)
+    largest = ranked[0][1]
+    some = [(name, part / largest) for name, part in ranked if abs(part) >= least * abs(largest)]
+    words = " ".join(f"{'-' if part < 0.0 else '+'} {abs(part):.2f} {name}" for name, part in some)
     return words.removeprefix("+ ")
 
 

@@ -6,14 +6,9 @@ standard deviations (see `problem`). In the linear problem the sum of squares le
 
     |r|^2 - g_S . (J_S^T J_S + 1 / prior^2)^-1 g_S,    g_S = J_S^T r.
 
-For each size the sets with the smallest value are fitted.
-
-A set explains the file if rounding alone exceeds its sum of squares in at least one of LEVEL files, and no
-number is off by more than TWICE its rounding. The second condition is needed because least squares do not
-minimise the largest difference. The error of a rounded number is evenly distributed; its square scatters less
-than that of a normal error, so the chi-squared test is on the safe side. Two sets explain the file equally
-well if their sums of squares differ by no more than the reduction that one further coordinate gains from
-rounding alone in 95 of 100 files.
+For each size the sets with the smallest value are fitted. Two sets explain the file equally well if their
+sums of squares differ by no more than the reduction that one further coordinate gains from rounding alone in
+95 of 100 files.
 """
 
 from __future__ import annotations
@@ -28,12 +23,10 @@ from scipy.special import chdtri
 
 from pointcoord import PointcoordError
 from validate.arrays import Array
-from validate.fitting.fit import CONFIDENCE, Fit, Told, fit_hardpoints
+from validate.fitting.fit import CONFIDENCE, Fit, Told, explains, fit_hardpoints
 from validate.fitting.problem import Problem
 
 LARGEST = 3  # coordinates of a set: all of one misread point
-LEVEL = 1000.0
-TWICE = 2.0 * math.sqrt(3.0)  # in standard deviations: twice the half unit of a rounded number
 CANDIDATES = 24  # number of sets of a size that are fitted
 SHOWN = 8  # number of nearest sets kept if none explains the file
 
@@ -43,20 +36,17 @@ class Suspects:
     """Sets of coordinates that may explain a file.
 
     Attributes:
-        left: sum of squares of the misfit of the car as drawn.
-        count: number of numbers in this sum.
+        rest: the misfit of the car as drawn, (numbers,), in standard deviations of the numbers.
         drawn: whether the car as drawn explains the file; nothing is fitted then.
-        notes: what was assumed because it is not given, and rows that were left out.
         fits: all sets that could be fitted, the smallest sum of squares first.
         tried: by size, number of sets fitted and number of all sets.
         unseen: coordinates whose correction within the bounds does not change the numbers noticeably.
         refused: sets whose designs could not be solved, with the reason.
     """
 
-    left: float
-    count: int
+    problem: Problem
+    rest: Array
     drawn: bool
-    notes: tuple[str, ...]
     fits: tuple[Fit, ...] = ()
     tried: tuple[tuple[int, int], ...] = ()
     unseen: tuple[str, ...] = ()
@@ -65,17 +55,17 @@ class Suspects:
     @property
     def residual(self) -> float:
         """The r.m.s. misfit of the car as drawn, in standard deviations of the numbers."""
-        return math.sqrt(self.left / self.count)
+        return math.sqrt(float(self.rest @ self.rest) / len(self.rest))
 
     @property
     def explaining(self) -> tuple[Fit, ...]:
         """Sets that explain the file, all of one size."""
-        return tuple(one for one in self.fits if _explained(one))
+        return tuple(one for one in self.fits if one.explains)
 
     @property
     def nearest(self) -> tuple[Fit, ...]:
         """The sets with the smallest sums of squares among those that do not explain the file."""
-        return tuple(one for one in self.fits if not _explained(one))[:SHOWN]
+        return tuple(one for one in self.fits if not one.explains)[:SHOWN]
 
     @property
     def equal(self) -> tuple[Fit, ...]:
@@ -84,22 +74,9 @@ class Suspects:
         return tuple(one for one in explaining if one.left - explaining[0].left <= margin)
 
     @property
-    def ended(self) -> bool:
-        """Whether all fits converged."""
-        return all(one.converged for one in self.fits)
-
-
-def explains(left: float, largest: float, freedom: int) -> bool:
-    """Whether rounding alone explains a misfit, in standard deviations.
-
-    Args:
-        left: sum of squares. largest: largest misfit. freedom: degrees of freedom.
-    """
-    return freedom > 0 and left <= float(chdtri(freedom, 1.0 / LEVEL)) and largest <= TWICE
-
-
-def _explained(fit: Fit) -> bool:
-    return explains(fit.left, fit.largest, fit.freedom)
+    def certain(self) -> bool:
+        """Whether the file is explained, or all fits converged."""
+        return self.drawn or bool(self.explaining) or all(one.converged for one in self.fits)
 
 
 def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspects:
@@ -111,28 +88,25 @@ def suspected(problem: Problem, told: Told = lambda words, count: None) -> Suspe
         FileError: a number of the car as drawn has no derivative.
     """
     free, first = problem.free, problem.misfit(problem.start)
-    left, count = float(first @ first), len(first)
-    drawn = explains(left, float(np.abs(first).max()), count)
-    found = Suspects(left, count, drawn, problem.notes)
-    if drawn:
+    found = Suspects(problem, first, explains(first, len(first)))
+    if found.drawn:
         return found
     slopes = problem.slopes(problem.start)
-    seen = [i for i, size in enumerate(np.linalg.norm(slopes, axis=0)) if size * problem.bounds >= 1.0]
+    seen = np.flatnonzero(np.linalg.norm(slopes, axis=0) * problem.bounds >= 1.0).tolist()
     fits, refused, tried = list[Fit](), list[str](), list[tuple[int, int]]()
-    for size in range(1, min(LARGEST, len(seen), count - 1) + 1):
+    for size in range(1, min(LARGEST, len(seen), len(first) - 1) + 1):
         most = len(seen) if size == 1 else CANDIDATES
-        sets, here = _ranked(first, slopes, seen, size, problem.prior)[:most], list[Fit]()
+        sets = _ranked(first, slopes, seen, size, problem.prior)[:most]
         for chosen in sets:
             names = tuple(free[i] for i in chosen)
-            told(f"{', '.join(names)} is fitted", len(fits) + len(here) + len(refused) + 1)
+            told(f"{', '.join(names)} is fitted", len(fits) + len(refused) + 1)
             try:
                 # The solved car as drawn is reused.
-                here.append(fit_hardpoints(replace(problem, free=names)))
+                fits.append(fit_hardpoints(replace(problem, free=names)))
             except PointcoordError as error:
                 refused.append(f"{', '.join(names)}: {error}")
         tried.append((len(sets), math.comb(len(seen), size)))
-        fits += here
-        if any(map(_explained, here)):
+        if any(one.explains for one in fits):
             break
     return replace(
         found,

@@ -13,7 +13,8 @@ from validate.arrays import Array, Indices
 from validate.comparison.compare import Comparison, Outcome, Verdict
 from validate.comparison.pair import SMALLEST
 from validate.diagnosis import Explanation, explain_evidence
-from validate.diagnosis.evidence import Evidence, Row, Solved
+from validate.diagnosis.evidence import Evidence, Row
+from validate.diagnosis.solved import Solved
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import Measured
@@ -175,7 +176,7 @@ def _explained(
         scene=there or driven.scene,
         times=there.instants if there else times,
         given=of(lambda h: h.series.values),
-        held=of(lambda h: h.ours),
+        trusted=of(lambda h: h.ours),
         allowed=of(lambda h: factor * (h.swing + h.bound) + SMALLEST),
         wrong=tuple(row for row in whole if row in wrong),
         solved=Solved(there or driven.scene),

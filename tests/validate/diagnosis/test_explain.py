@@ -205,6 +205,7 @@ UNEXPLAINED: dict[str, Callable[[Solution], Numbers]] = {
     "a difference of some roundings": nearly(30.0),
     "a factor that is nearly one": lambda h: angle(h, "caster", lambda v: 0.9998905 * v),
     "a factor that leaves something": lambda h: angle(h, "caster", lambda v: noisy(1e-5)(0.97 * v)),
+    "all points shaken alike": lambda h: each(h, ("position",), noisy(1e-2)),
     "zeros": lambda h: each(h, ("velocity",), lambda v: 0.0 * v),
     "a constant": lambda h: angle(h, "camber", lambda v: np.full_like(v, 0.02)),
 }
@@ -251,9 +252,7 @@ def said(scene: Scene, given: Numbers, accuracy: float = 1e-5) -> list[str]:
             "1.5 mm too far out: -651.5",
         ),
         # Out is the side of the wheel that a point belongs to.
-        (AXLE, 1.5, "right.tie_rod_outer.y", "position", "1.5 mm too far out: "),
-        # A wheel that stands as drawn shows where it is drawn.
-        ("axle-single-wheel", 6.8, "left.wheel_centre.z", "position", "6.8 mm too high: 216.8, not 210"),
+        (AXLE, 1.5, "right.tie_rod_outer.y", "position", "1.5 mm too far out: 651.5, not 650"),
     ],
 )
 def test_what_is_misread_is_said_and_nothing_else(
@@ -265,16 +264,6 @@ def test_what_is_misread_is_said_and_nothing_else(
     (found,) = said(car, {quantity: numbers[quantity] for quantity in quantities.split()})
     assert f"{first} seems {parts}" in found
     assert all(found.endswith(f"and {other.rpartition('.')[0].strip('-')} with it") for other in others)
-
-
-@pytest.mark.parametrize(("amount", "accuracy"), [(3.1, 1e-5), (-40.0, 1e-5), (1.0, 0.1)])
-def test_a_point_that_moves_nothing_is_misread_all_the_same(amount: float, accuracy: float) -> None:
-    """The arm's hinge is along x: where on it its rear point is drawn shows in that point alone."""
-    scene = over_travel("double-wishbone")
-    right = simulate(scene).numbers["position"]
-    there = right["upper_arm_rear"] + [amount, 0.0, 0.0]
-    (only,) = said(scene, {"position": {**right, "upper_arm_rear": there}}, accuracy)
-    assert only.startswith(f"position of upper_arm_rear: upper_arm_rear.x seems {abs(amount):g} mm too far")
 
 
 def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validate.diagnosis.evidence import Kind
+from validate.diagnosis.fault import Kind
 from validate.diagnosis.kinds import drawing, motion, numbers
 
 KINDS = (
@@ -14,16 +14,15 @@ KINDS = (
     Kind("offset", numbers.offsets, closes=True),
     Kind("digits", numbers.printed_digits, closes=True),
     Kind("mirror", numbers.mirrored),
-    Kind("hardpoint", drawing.points_that_rest_elsewhere),
     Kind("swapped", numbers.swapped),
     Kind("names", numbers.names_exchanged),
     Kind("differences", motion.differences),
-    Kind("closure", drawing.other_closures, "motion"),
+    Kind("closure", motion.other_closures, "motion"),
     Kind("input", motion.wrong_inputs, "motion"),
-    Kind("branch", drawing.other_assemblies, "motion"),
     Kind("time shift", motion.shifted_in_time, "motion"),
     Kind("link", drawing.wrong_lengths, "drawing"),
     Kind("hardpoint", drawing.misread_hardpoints, "drawing"),
-    Kind("factor", numbers.factors, "last"),
+    Kind("branch", drawing.other_assemblies, "last"),
+    Kind("factor", numbers.other_factors, "last"),
 )
 """All kinds. In a pair of faults in the same numbers, the first fault is earlier in this list."""
