@@ -240,12 +240,13 @@ def _of_others(evidence: Evidence, others: Mapping[Row, Row]) -> dict[Row, Would
 
 def of_another_instant(evidence: Evidence) -> Iterator[Fault]:
     """All numbers are shifted by one row; the first or the last one, which is left over, may be anything."""
+    instants = np.arange(len(evidence.times))
     for words, late, left_over in (("one sample late", 1, 0), ("one sample early", -1, -1)):
-        rows: dict[Row, WouldBe] = {}
+        places, rows = (instants - late) % len(instants), dict[Row, WouldBe]()
         for row in evidence.looked:
-            allowed = np.roll(evidence.allowed[row], late, axis=0)
+            allowed = evidence.allowed[row][places]
             allowed[left_over] = ANY
-            rows[row] = np.roll(evidence.trusted[row], late, axis=0), allowed
+            rows[row] = evidence.trusted[row][places], allowed
         yield Fault(words, rows, cost=1.2)
 
 
