@@ -153,7 +153,6 @@ def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
         yield {name: PlainSolver(name, solver_at(options.solver, options.traceback), accuracy)}
         return
     with Apart(options.solver, options.traceback, options.solver_timeout or LIMIT) as solver:
-        solver.found()
         yield {name: PlainSolver(name, solver, accuracy)}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
@@ -13,7 +13,6 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.results.named_columns import html_table
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
-from pointcoord.wording import nearest, shown
 from validate.arrays import Array
 from validate.comparison.given import given_by_both
 from validate.comparison.pair import SMALLEST, Pair
@@ -171,7 +170,7 @@ class Outcome:
     def __repr__(self) -> str:
         first, second = (solution.formulation for solution in self.solutions)
         verdicts = dict.fromkeys(row.verdict for row in self.rows)
-        counts = ", ".join(f"{sum(row.verdict == v for row in self.rows)} {v}" for v in verdicts)
+        counts = ", ".join(f"{self.counts[verdict]} {verdict}" for verdict in verdicts)
         return f"<Outcome of {self.scene!r}, {first} and {second}: {counts}>"
 
     def _repr_html_(self) -> str:
@@ -257,8 +256,9 @@ def compare_solutions(
     rows: list[Comparison] = []
     missing: list[str] = []
     for quantity, names in (asked_numbers(scene) if asked is None else asked).items():
-        parts = _parts(quantity, names, first, second)
-        absent = dict(_missing(quantity, parts, first, second))
+        both = (part for part in first.numbers[quantity] if part in second.numbers[quantity])
+        parts = dict.fromkeys((*names, *both))
+        absent = _missing(quantity, parts, (first, second))
         missing += absent
         pair = Pair(quantity, (first, second), factor)
         for part in parts:
@@ -266,28 +266,15 @@ def compare_solutions(
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), len(instants), factor, faults=faults)
 
 
-def _parts(quantity: str, asked: Sequence[str], one: Solution, two: Solution) -> list[str]:
-    """Every point, body or angle that the scene asks for, and all others that both solutions give."""
-    both = (name for name in one.numbers[quantity] if name in two.numbers[quantity])
-    return list(dict.fromkeys((*asked, *both)))
-
-
-def _missing(
-    quantity: str, parts: Sequence[str], one: Solution, two: Solution
-) -> Iterator[tuple[str, Sequence[str]]]:
+def _missing(quantity: str, parts: Iterable[str], sides: Iterable[Solution]) -> dict[str, list[str]]:
     """One line for each kind of number that a solution does not give, with the names that are missing."""
-    words = QUANTITIES[quantity].words
-    for side in (one, two):
-        absent = [part for part in parts if part not in side.numbers[quantity]]
-        if absent and not side.numbers[quantity]:
-            yield f"{side.formulation} gives no {words}", absent
-        elif absent:
-            yield f"{side.formulation} gives no {words} of {', '.join(absent)}", absent
-        for name in side.numbers[quantity]:
-            near = "" if name in parts else nearest(name, absent)
-            if near:
-                line = f"{side.formulation} gives {words} of {shown(name)}, which is ignored"
-                yield f"{line} (did you mean {near!r}?)", [near]
+    lines = {}
+    for side in sides:
+        given = side.numbers[quantity]
+        if absent := [part for part in parts if part not in given]:
+            of = f" of {', '.join(absent)}" if given else ""
+            lines[f"{side.formulation} gives no {QUANTITIES[quantity].words}{of}"] = absent
+    return lines
 
 
 def _reasoned(
@@ -301,20 +288,16 @@ def _reasoned(
     """
     about = f": {QUANTITIES[row.quantity].words} of {row.name}"
     if row.verdict == "not given":
-        found = (
-            [fault for fault in faults if f"{about} " in fault][:1]
-            or [line for line, names in absent.items() if row.name in names]
-            or notes
-            or ["no instant of the scene has a number"]
-        )
+        lost = [fault for fault in faults if f"{about} " in fault][:1]
+        lost = lost or [line for line, names in absent.items() if row.name in names]
+        why = "; ".join(lost or notes) or "no instant of the scene has a number"
     elif row.verdict == "not tested":
-        wide = (
-            f"the tolerance is limited by the error bound of {row.rests_on}; it is too wide to test the other"
-        )
-        found = [note for note in notes if f"{about}: its accuracy " in note] or [wide]
+        wide = f"the tolerance is limited by the error bound of {row.rests_on}"
+        found = [note for note in notes if f"{about}: its accuracy " in note]
+        why = "; ".join(found) or f"{wide}; it is too wide to test the other"
     else:
-        return row
-    return replace(row, why="; ".join(found))
+        why = ""
+    return replace(row, why=why)
 
 
 def _row(name: str, part: str, pair: Pair, instants: Array, scene: Scene) -> Comparison:

@@ -12,13 +12,14 @@ from pointcoord import NotFollowed, Scene, SceneError
 from validate.closed_drawing import closing_data, closing_of, warnings_of
 from validate.comparison.compare import Outcome, compare_solutions, solved_by
 from validate.exit_status import ExitStatus, combined
-from validate.formulations.protocol import Formulation, FormulationError, Solution
+from validate.formulations.protocol import Formulation, FormulationError, Solution, reason_of
 from validate.formulations.refusals import Refusal, refusal_of
 from validate.formulations.registry import formulation
 from validate.plain_text import shown
 
 NEWTON = " (--first pointcoord-newton)"
 PRINTED = "printed"
+REFUSED = (SceneError, FormulationError)
 
 
 @dataclass(frozen=True)
@@ -123,86 +124,62 @@ def examine(
         others: further formulations by name, such as the user's solver.
     """
     solvers = {one: (others or {}).get(one) or formulation(one) for pair in pairs for one in pair}
-    answers: dict[str, Solution | Exception] = {}
+    solved: dict[str, Solution] = {}
+    errors: dict[str, Exception] = {}
+    # A defect of one formulation must not end the run: its error is recorded, and the status shows it.
     for one, solver in solvers.items():
-        answers[one] = _answer(solver, scene)
-        if _failed(answers[one]):
+        try:
+            solved[one] = solved_by(solver, scene)
+        except REFUSED as error:
+            errors[one] = error
+        except Exception as error:
+            # The traceback of a MemoryError would keep the memory in use.
+            errors[one] = MemoryError(str(error)) if isinstance(error, MemoryError) else error
             break  # a scene that fills the memory would do so again with the next formulation, and take long
-    refusals = {one: r for one, answer in answers.items() if (r := _refusal(one, answer, name, scene))}
-    failures = [failure_of(one, e) for one, e in answers.items() if isinstance(e, Exception) and _failed(e)]
     outcomes: list[Outcome] = []
     for first, second in pairs:
-        found = _compared(scene, name, answers.get(first), answers.get(second), factor)
-        if isinstance(found, Outcome):
-            outcomes.append(found)
-        elif isinstance(found, FormulationError):
-            refusals[found.formulation] = refusal_of(found.formulation, found, scene)
-        elif found:
-            failures.insert(0, failure_of(f"the comparison of {first} with {second}", found))
-    held, against, unprinted = answers[pairs[0][0]], None, None
-    if printed and PRINTED not in solvers and isinstance(held, Solution):
-        formulas = _answer(formulation(PRINTED), scene)
-        compared = _compared(scene, name, held, formulas, factor)
-        against = compared if isinstance(compared, Outcome) else None
-        unprinted = _refusal(PRINTED, formulas, name, scene)
-    moved, reasons = closing_of(scene), [getattr(answer, "reason", None) for answer in answers.values()]
+        if first not in solved or second not in solved:
+            continue
+        try:
+            outcomes.append(
+                compare_solutions(scene, solved[first], solved[second], shown(name), None, factor)
+            )
+        except FormulationError as error:
+            errors[error.formulation] = error
+        except Exception as error:
+            errors[f"the comparison of {first} with {second}"] = error
+    against, unprinted, held = None, None, solved.get(pairs[0][0])
+    if printed and PRINTED not in solvers and held is not None:
+        try:
+            formulas = solved_by(formulation(PRINTED), scene)
+            against = compare_solutions(scene, held, formulas, shown(name), factor=factor)
+        except Exception as error:
+            unprinted = _refusal(PRINTED, error, name, scene)
+    refused = {one: error for one, error in errors.items() if isinstance(error, REFUSED)}
+    moved = closing_of(scene)
     return Examined(
         name=shown(name),
         title=shown(scene.title),
         outcomes=tuple(outcomes),
         printed=against,
-        refusals=tuple(refusals[one] for one in solvers if one in refusals),
-        failures=tuple(failures),
+        refusals=tuple(_refusal(one, refused[one], name, scene) for one in solvers if one in refused),
+        failures=tuple(
+            Failure(one, type(error).__name__, told_failure(error))
+            for one, error in errors.items()
+            if one not in refused
+        ),
         unprinted=unprinted,
-        solved=tuple(n for n, one in answers.items() if isinstance(one, Solution) and n not in refusals),
+        solved=tuple(one for one in solved if one not in refused),
         # Some refusals advise the method newton; this is its name on the command line.
-        advice=NEWTON if any(isinstance(one, NotFollowed) for one in reasons) else "",
+        advice=NEWTON if any(isinstance(reason_of(e), NotFollowed) for e in refused.values()) else "",
         warnings=warnings_of(scene, moved),
         closing=closing_data(moved),
         defaults=scene.mechanism.defaults_taken,
     )
 
 
-def _answer(solver: Formulation, scene: Scene) -> Solution | Exception:
-    try:
-        return solved_by(solver, scene)
-    except MemoryError as error:
-        # A new error: the traceback of the old one would keep the memory in use.
-        return MemoryError(str(error))
-    # A defect of one formulation must not end the run: the error is recorded, and the status shows it.
-    except Exception as error:
-        return error
-
-
-def _compared(
-    scene: Scene,
-    name: str,
-    first: Solution | Exception | None,
-    second: Solution | Exception | None,
-    factor: float,
-) -> Outcome | Exception | None:
-    """The comparison of a pair, or the error that it raises; None if one of them has no solution."""
-    if not isinstance(first, Solution) or not isinstance(second, Solution):
-        return None
-    try:
-        return compare_solutions(scene, first, second, shown(name), factor=factor)
-    except Exception as error:
-        return error
-
-
-def _refusal(who: str, answer: Solution | Exception, name: str, scene: Scene) -> Refusal | None:
-    if isinstance(answer, SceneError):
-        answer = answer.of(shown(name))
-    return refusal_of(who, answer, scene) if isinstance(answer, SceneError | FormulationError) else None
-
-
-def _failed(answer: Solution | Exception) -> bool:
-    return isinstance(answer, Exception) and not isinstance(answer, SceneError | FormulationError)
-
-
-def failure_of(what: str, error: Exception) -> Failure:
-    """The data of an unexpected error."""
-    return Failure(what, type(error).__name__, told_failure(error))
+def _refusal(who: str, error: Exception, name: str, scene: Scene) -> Refusal:
+    return refusal_of(who, error.of(shown(name)) if isinstance(error, SceneError) else error, scene)
 
 
 def told_failure(error: BaseException) -> str:

@@ -45,11 +45,10 @@ def given(solution: Solution, instants: Array) -> Solution:
     if not isinstance(solution.accuracy, Accuracy):
         problem = f"its accuracy is of type {type(solution.accuracy).__name__}; needed: an Accuracy"
         raise FormulationError(who, TypeError(problem))
-    times = _real(solution.times)
+    own, times = solution.accuracy, _real(solution.times)
+    problem = times if isinstance(times, str) else f"have the shape {np.shape(times)}"
     if isinstance(times, str) or times.ndim != 1:
-        problem = times if isinstance(times, str) else f"have the shape {times.shape}"
         raise FormulationError(who, ValueError(f"its times {problem}; needed: one number for each instant"))
-    own = solution.accuracy
     if len(own.condition) != len(times):
         problem = f"its accuracy is for {counted_as(len(own.condition), 'instant')}; needed: {len(times)}"
         raise FormulationError(who, ValueError(problem))
@@ -71,7 +70,7 @@ def given(solution: Solution, instants: Array) -> Solution:
         claimed = own.claims.get(quantity, {})
         for name, raw in _by_name(given_part, f"{who}: {words}", faults).items():
             what = f"{who}: {words} of {name}"
-            array = _shaped(raw, shape)
+            array = _real(raw, shape)
             if isinstance(array, str):
                 faults.append(f"{what} {array}; it is ignored")
                 continue
@@ -84,8 +83,7 @@ def given(solution: Solution, instants: Array) -> Solution:
                 when = f"{times[np.argmax(other)]:g} s"
                 faults.append(f"{what} has different numbers at one instant, {when}; it is ignored")
                 continue
-            finite = np.isfinite(array)
-            wrong = 0 if finite.all() else int(np.sum(~finite.reshape(len(array), -1).all(axis=-1)))
+            wrong = int((~np.isfinite(array)).reshape(len(array), -1).any(axis=-1).sum())
             said = any(note.startswith(f"{words} of {name} ") for note in solution.notes)
             if wrong and not said:
                 notes.append(f"{what} is not a number at {wrong} of {len(array)} instants")
@@ -105,10 +103,8 @@ def usable(solution: Solution, instants: Array) -> Solution:
         FormulationError: see `given`.
     """
     side = given(solution, instants)
-    numbers, claims = (
-        {quantity: part for quantity, part in arrays.items() if part}
-        for arrays in (side.numbers, side.accuracy.claims)
-    )
+    numbers = {quantity: part for quantity, part in side.numbers.items() if part}
+    claims = {quantity: part for quantity, part in side.accuracy.claims.items() if part}
     accuracy = Accuracy(side.accuracy.condition, claims, usual=side.accuracy.usual)
     return Solution(side.formulation, side.times, numbers, accuracy)
 
@@ -129,16 +125,8 @@ def _by_name(part: object, what: str, faults: list[str]) -> Mapping[str, object]
     return {}
 
 
-def _shaped(raw: object, shape: tuple[int, ...]) -> Array | str:
-    """The numbers as an array of the given shape, or what is wrong with them."""
-    array = _real(raw)
-    if isinstance(array, str) or array.shape == shape:
-        return array
-    return f"has the shape {array.shape}; needed: {shape}"
-
-
-def _real(raw: object) -> Array | str:
-    """The numbers as an array of doubles, or what is wrong with them."""
+def _real(raw: object, shape: tuple[int, ...] | None = None) -> Array | str:
+    """The numbers as an array of doubles, of this shape if one is given, or what is wrong with them."""
     if isinstance(raw, str):
         return f"is {shown(raw)!r}; needed: real numbers"
     try:
@@ -149,4 +137,6 @@ def _real(raw: object) -> Array | str:
         return f"has {masked} masked entries; needed: numbers, or NaN where a number does not exist"
     if array.dtype.kind not in "iuf":
         return f"is of type {array.dtype}; needed: real numbers"
+    if shape is not None and array.shape != shape:
+        return f"has the shape {array.shape}; needed: {shape}"
     return np.asarray(array, dtype=float)

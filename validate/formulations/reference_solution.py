@@ -57,24 +57,22 @@ def _design(plain: str) -> Design:
     return Design.from_plain(json.loads(plain))
 
 
-def reference_instant(
-    scene: Scene, inputs: Inputs, exact_sides: bool = False, digits: int = DIGITS
-) -> Instant:
+def reference_instant(scene: Scene, inputs: Inputs, digits: int = DIGITS) -> Instant:
     """The reference for a scene's car at given inputs, reached from the drawing.
 
     Args:
         inputs: value, rate and acceleration of each input, and higher derivatives as far as points need them.
-        exact_sides: whether the drawing is exact, however near it is to another assembly.
     Raises:
         NoReferenceError: there is no pose, or no pose can be proven.
     """
-    clear = 0.0 if exact_sides else CLEAR
-    return next(instants_of(design_of(scene), [inputs], digits, clear, effects_of(scene)))
+    return next(instants_of(design_of(scene), [inputs], digits, CLEAR, effects_of(scene)))
 
 
 def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = False) -> list[Instant]:
     """The reference at instants of a scene's motion; each pose is reached from the one before.
 
+    Args:
+        exact_sides: whether the drawing is exact, however near it is to another assembly.
     Raises:
         NoReferenceError: an instant has no pose, or no pose can be proven.
     """
@@ -109,23 +107,19 @@ def as_solution(scene: Scene, instants: Sequence[Instant], times: Array | None =
     asked[ANGLE] = tuple(dict.fromkeys((*ANGLES, *asked.get(ANGLE, ()))))
     car, orders = filter(_is_effect, asked), len(instants[0].derivatives)
     had = {number.name for number in numbers_of(design_of(scene), effects_of(scene))}
-    numbers: dict[str, Arrays] = {}
+    numbers, claims = dict[str, Arrays](), dict[str, Arrays]()
     for quantity in (*STATES[:orders], *OF_BODIES, *FORCES, *car):
         rows = [exact_numbers(instant, quantity) for instant in instants]
         names = [name for name in asked[quantity] if name in had] if _is_effect(quantity) else [*rows[0]]
         if quantity == ANGLE or is_force(quantity):
             names = [name for name in names if all(name in row for row in rows)]
-        numbers[quantity] = {n: np.array([row.get(n, nan) for row in rows], dtype=float) for n in names}
-    proven = {quantity: proven_error(instants, quantity) for quantity in numbers}
-    swept = {
-        q: {n: np.where(np.abs(array) <= proven[q], 0.0, array) for n, array in arrays.items()}
-        for q, arrays in numbers.items()
-    }
-    claims = {
-        q: {n: UNIT_ROUNDOFF * np.abs(np.nan_to_num(array)) + proven[q] for n, array in arrays.items()}
-        for q, arrays in swept.items()
-    }
-    return Solution("reference", times, swept, Accuracy(np.ones(len(times)), claims, proven=True))
+        found = {n: np.array([row.get(n, nan) for row in rows], dtype=float) for n in names}
+        proven = proven_error(instants, quantity)
+        numbers[quantity] = {n: np.where(np.abs(one) <= proven, 0.0, one) for n, one in found.items()}
+        claims[quantity] = {
+            n: UNIT_ROUNDOFF * np.abs(np.nan_to_num(one)) + proven for n, one in numbers[quantity].items()
+        }
+    return Solution("reference", times, numbers, Accuracy(np.ones(len(times)), claims, proven=True))
 
 
 def exact_numbers(instant: Instant, quantity: str) -> Mapping[str, Any]:

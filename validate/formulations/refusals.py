@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral
+from typing import Any
 
 from pointcoord import AssemblyError, Scene
 from validate.errors import NoAnswer
@@ -91,57 +92,44 @@ class Refusal:
 def refusal_of(formulation: str, error: Exception, scene: Scene) -> Refusal:
     """The data of a refusal, or of the error inside it, as far as the error has them."""
     reason = reason_of(error)
-    wanted = _numbers(getattr(reason, "wanted", None) or getattr(reason, "inputs", None))
-    reached = _numbers(getattr(reason, "reached", None))
-    name = _at_fault(reason, wanted, reached)
+
+    def first(*attributes: str) -> Any:
+        """The first of these attributes of the error that is not empty."""
+        return next((found for name in attributes if (found := getattr(reason, name, None))), None)
+
+    wanted = {str(name): float(value) for name, value in (first("wanted", "inputs") or {}).items()}
+    reached = {str(name): float(value) for name, value in (first("reached") or {}).items()}
+    shortfalls = {
+        name: abs(value - reached[name]) / (abs(value) + abs(reached[name]))
+        for name, value in wanted.items()
+        if name in reached and value != reached[name]
+    }
+    # Of several inputs the one with the largest relative shortfall is at fault.
+    name = str(first("reduce", "name", "key") or max(shortfalls, key=shortfalls.__getitem__, default=""))
     value, limit = getattr(reason, "value", None), getattr(reason, "allowed", None)
     if name in wanted:
         value, limit = wanted[name], reached.get(name)
+    instant = getattr(reason, "instant", None)
+    if isinstance(instant, Integral):  # some models give its number instead of its time
+        instant = scene.instants[instant] if instant < len(scene.instants) else None
     return Refusal(
         formulation=formulation,
         error=type(reason).__name__,
         reason=why_refused(reason),
         message=" ".join(str(reason).split()),
-        instant=_instant(reason, scene),
+        instant=_finite(instant),
         input=name or None,
         value=_plain(value),
         limit=_plain(limit),
         inputs=wanted or None,
         reached=reached or None,
         condition=_finite(getattr(reason, "condition", None)),
-        links=tuple(map(str, getattr(reason, "limits", None) or getattr(reason, "links", None) or ())),
+        links=tuple(map(str, first("limits", "links") or ())),
     )
 
 
-def _instant(reason: Exception, scene: Scene) -> float | None:
-    """The time of a refusal, s; errors of some models give the number of the instant instead."""
-    instant = getattr(reason, "instant", None)
-    if isinstance(instant, Integral):
-        times = scene.instants
-        return float(times[int(instant)]) if instant < len(times) else None
-    return _finite(instant)
-
-
-def _at_fault(reason: Exception, wanted: Mapping[str, float], reached: Mapping[str, float]) -> str:
-    """The input or key at fault; of several inputs the one with the largest relative shortfall."""
-    named = getattr(reason, "reduce", "") or getattr(reason, "name", "") or getattr(reason, "key", "")
-    if named:
-        return str(named)
-    shortfalls = {
-        name: abs(value - reached[name]) / (abs(value) + abs(reached[name]))
-        for name, value in wanted.items()
-        if name in reached and value != reached[name]
-    }
-    return max(shortfalls, key=lambda name: shortfalls[name], default="")
-
-
-def _numbers(values: object) -> dict[str, float]:
-    if not isinstance(values, Mapping):
-        return {}
-    return {str(name): float(value) for name, value in values.items()}
-
-
 def _plain(value: object) -> float | str | None:
+    """A value that JSON can hold."""
     if value is None or isinstance(value, str):
         return value or None
     number = _finite(value)
@@ -149,6 +137,4 @@ def _plain(value: object) -> float | str | None:
 
 
 def _finite(value: object) -> float | None:
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        return float(value) if math.isfinite(value) else None
-    return None
+    return float(value) if isinstance(value, int | float) and math.isfinite(value) else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pointcoord.errors import MissingLibrary
 from pointcoord.method import AUTO, CHORD, MAP, NEWTON, NEWTON_COLD
@@ -51,15 +51,16 @@ METHODS = {
 }
 """Method of each formulation in point coordinates."""
 MODELS = {
-    "absolute": "validate.formulations.absolute_coordinates.AbsoluteCoordinates",
-    "reference": "validate.formulations.reference_solution.ManyDigits",
+    "absolute": ("validate.formulations.absolute_coordinates", "AbsoluteCoordinates"),
+    "reference": ("validate.formulations.reference_solution", "ManyDigits"),
 }
+"""Module and class of the models with a formulation of their own."""
 PROGRAMS = {
-    "relative": "validate.peers.in_pinocchio.InPinocchio",
-    "mujoco": "validate.peers.in_mujoco.InMujoco",
-    "exudyn": "validate.peers.in_exudyn.InExudyn",
+    "relative": ("validate.peers.in_pinocchio", "InPinocchio"),
+    "mujoco": ("validate.peers.in_mujoco", "InMujoco"),
+    "exudyn": ("validate.peers.in_exudyn", "InExudyn"),
 }
-"""Class of each program's model of a tree."""
+"""Module and class of each program's model of a tree."""
 
 
 def formulation(name: str) -> Formulation:
@@ -73,11 +74,12 @@ def formulation(name: str) -> Formulation:
         return PointCoordinates(name, METHODS[name], as_asked=name == AS_ASKED)
     if name not in WORDS:
         raise UsageError(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
-    if name in MODELS:
-        model: Formulation = _imported(name, MODELS[name])()
-        return model
-    tree: Formulation = _imported(name, "validate.formulations.trees.InTree")(name, program_of(name))
-    return tree
+    if name in PROGRAMS:
+        tree: Formulation = needed(name, "validate.formulations.trees").InTree(name, program_of(name))
+        return tree
+    module, of = MODELS[name]
+    model: Formulation = getattr(needed(name, module), of)()
+    return model
 
 
 def program_of(name: str) -> Callable[[SpanningTree], Program]:
@@ -86,14 +88,20 @@ def program_of(name: str) -> Callable[[SpanningTree], Program]:
     Raises:
         MissingLibrary: the program is not installed, or does not load.
     """
-    found: Callable[[SpanningTree], Program] = _imported(name, PROGRAMS[name])
+    module, of = PROGRAMS[name]
+    found: Callable[[SpanningTree], Program] = getattr(needed(name, module), of)
     return found
 
 
-def _imported(formulation: str, path: str) -> Any:
-    """A class by its path; the packages of its module may be missing."""
-    module, _, name = path.rpartition(".")
-    return getattr(needed(formulation, module), name)
+def missing(names: Iterable[str]) -> dict[str, str]:
+    """The formulations among `names` whose packages are not installed, each with the message."""
+    absent: dict[str, str] = {}
+    for name in names:
+        try:
+            formulation(name)
+        except MissingLibrary as error:
+            absent[name] = str(error)
+    return absent
 
 
 def second_there() -> tuple[str, str]:
@@ -102,23 +110,7 @@ def second_there() -> tuple[str, str]:
     Pinocchio is not built for all operating systems. The programs in `OUTSIDE` are, and the reference needs
     none of them.
     """
-    why = ""
-    for name in ("absolute", *OUTSIDE, "reference"):
-        try:
-            formulation(name)
-        except MissingLibrary as error:
-            why = why or str(error)
-        else:
-            return name, why
-    return "absolute", why
-
-
-def missing(names: Iterable[str]) -> dict[str, str]:
-    """The formulations among `names` whose packages are not installed, each with the message."""
-    absent: dict[str, str] = {}
-    for name in dict.fromkeys(names):
-        try:
-            formulation(name)
-        except MissingLibrary as error:
-            absent[name] = str(error)
-    return absent
+    why = missing(["absolute"]).get("absolute", "")
+    return next(
+        (name for name in ("absolute", *OUTSIDE, "reference") if not missing([name])), "absolute"
+    ), why

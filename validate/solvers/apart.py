@@ -22,7 +22,6 @@ from contextlib import suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from threading import TIMEOUT_MAX
-from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
@@ -30,7 +29,7 @@ import numpy as np
 from validate.errors import UsageError
 from validate.plain_text import named, shown
 from validate.solvers.load import solver_at
-from validate.solvers.plain import Solve, SolverFailed, no_mapping, raised_at, read_only
+from validate.solvers.plain import Solve, SolverFailed, answer_of, raised_at
 
 LIMIT = 600.0  # s, for an answer: no motion of a suspension takes that long
 PARTING = 2.0  # s, for a child to end by itself
@@ -49,7 +48,11 @@ class Apart:
     """
 
     def __init__(self, place: str, with_traceback: bool = False, limit: float = LIMIT) -> None:
-        """Start the child; `found` waits for it."""
+        """Start the child, and wait until it has imported the solver.
+
+        Raises:
+            UsageError: there is no such solver, it cannot be imported, or the import takes too long.
+        """
         self.place = place
         self.limit = limit
         self._with_traceback = with_traceback
@@ -61,26 +64,7 @@ class Apart:
         self._process = context.Process(target=serve, args=(there, self.place, self._with_traceback))
         self._process.start()
         there.close()
-        self._runs, self._found = True, False
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
-    ) -> None:
-        self._end(idle=self._found)
-
-    def found(self) -> None:
-        """Wait until the child has imported the solver.
-
-        Raises:
-            UsageError: there is no such solver, it cannot be imported, or the import takes too long.
-        """
-        if self._found:
-            return
-        if not self._runs:
-            self._start()
+        self._runs = True
         kind, rest = self._said(max(self.limit, LIMIT))
         if kind == ENDED:
             problem = f"the solver {shown(self.place)!r} cannot be imported: {rest}"
@@ -88,7 +72,12 @@ class Apart:
         if kind == NONE:
             self._end(idle=True)
             raise UsageError(rest)
-        self._found = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end(idle=True)
 
     def __call__(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
         """Ask the solver.
@@ -97,7 +86,8 @@ class Apart:
             SolverFailed: it raised an error, did not return a mapping, crashed or took too long.
         """
         try:
-            self.found()
+            if not self._runs:
+                self._start()
         except UsageError as error:
             raise SolverFailed(f"started again after it ended: {error}") from error
         # If the child has ended, waiting for its answer reports it.
@@ -132,7 +122,7 @@ class Apart:
         """End the child and its processes. An idle child first ends by itself, so that it can close files."""
         if not self._runs:
             return
-        self._runs = self._found = False
+        self._runs = False
         self._pipe.close()
         if idle:
             self._process.join(PARTING)
@@ -176,10 +166,9 @@ def serve(pipe: Connection[Any, Any], place: str, with_traceback: bool) -> None:
 
 def _answer(solve: Solve, given: dict[str, Any]) -> tuple[str, object]:
     try:
-        answer: object = solve(read_only(given))  # arrays are writeable again after unpickling
-        if not isinstance(answer, Mapping):
-            return FAILED, (no_mapping(answer), "")
-        return ANSWER, _plain(answer)
+        return ANSWER, _plain(answer_of(solve, given))
+    except SolverFailed as error:
+        return FAILED, (error.problem, error.where)
     # The child goes on after any error. Ctrl-C does not reach it: a KeyboardInterrupt is the solver's own.
     except BaseException as error:
         return FAILED, (named(error), raised_at(error))

@@ -40,7 +40,8 @@ def check(
     """
     function = as_function(solver, "the solver")
     taken = Scene.load(scene) if isinstance(scene, str) else scene
-    one = PlainSolver(_name_of(solver), function, required_accuracy(accuracy))
+    name = str(getattr(solver, "__name__", type(solver).__name__))
+    one = PlainSolver(name, function, required_accuracy(accuracy))
     outcome = compare(taken, one, against)
     if not outcome.disagreements:
         return outcome
@@ -59,7 +60,3 @@ def required_accuracy(accuracy: float) -> float:
     if not (isinstance(accuracy, Real) and 0.0 < accuracy < math.inf):
         raise UsageError(f"the accuracy is {accuracy!r} mm; give a length above 0, such as 1e-6")
     return float(accuracy)
-
-
-def _name_of(solver: object) -> str:
-    return str(getattr(solver, "__name__", type(solver).__name__))

@@ -15,9 +15,7 @@ from typing import Any
 from pointcoord.wording import meant
 from validate.errors import UsageError
 from validate.plain_text import named, shown
-from validate.solvers.plain import Solve, as_function, raised_at
-
-FORM = "give MODULE:NAME, such as package.module:Solver"
+from validate.solvers.plain import Solve, SolverFailed, as_function, raised_at
 
 
 def solver_at(place: str, with_traceback: bool = False) -> Solve:
@@ -29,13 +27,11 @@ def solver_at(place: str, with_traceback: bool = False) -> Solve:
         UsageError: the module or name does not exist, or the module cannot be imported.
     """
     what = f"the solver {shown(place)!r}"
-    module_name, colon, name = place.partition(":")
-    a_file = module_name.endswith(".py")
+    module_name, _, name = place.partition(":")
     words = (*module_name.split("."), *name.split("."))
-    if a_file or not colon or not all(word.isidentifier() for word in words):
-        as_module = module_name.removesuffix(".py").strip("./").replace("/", ".")
-        hint = f"; try {as_module}:{name or 'NAME'}" if a_file else ""
-        raise UsageError(f"{what} is not a module and a name in it; {FORM}{hint}")
+    if module_name.endswith(".py") or not all(word.isidentifier() for word in words):
+        allowed = "give MODULE:NAME without .py, such as package.module:Solver"
+        raise UsageError(f"{what} is not a module and a name in it; {allowed}")
     with _kept_aside(with_traceback):
         found: object = _module(what, module_name)
         for word in name.split("."):
@@ -60,18 +56,14 @@ def _module(what: str, name: str) -> ModuleType:
         sys.path.insert(0, here)
     try:
         return import_module(name)
-    except ModuleNotFoundError as error:
-        if error.name is not None and (name == error.name or name.startswith(f"{error.name}.")):
-            problem = f"{what}: the module {error.name!r} is not found"
-            raise UsageError(f"{problem}; searched in {here} and in Python's packages") from error
-        raise UsageError(f"{what} cannot be imported: {named(error)}{_at(error)}; install it") from error
     except (Exception, SystemExit) as error:
-        raise UsageError(f"{what} cannot be imported: {named(error)}{_at(error)}; fix the module") from error
-
-
-def _at(error: BaseException) -> str:
-    where = raised_at(error)
-    return f" at {where}" if where else ""
+        lost = error.name if isinstance(error, ModuleNotFoundError) else None
+        if lost is not None and f"{name}.".startswith(f"{lost}."):
+            problem = f"{what}: the module {lost!r} is not found"
+            raise UsageError(f"{problem}; searched in {here} and in Python's packages") from error
+        said = SolverFailed(named(error), raised_at(error))
+        remedy = "fix the module" if lost is None else "install it"
+        raise UsageError(f"{what} cannot be imported: {said}; {remedy}") from error
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 
 A solver is a function of one argument, an object with a method `solve` of one argument, or a class without
 arguments that makes such an object. Its argument is a mapping (lengths in mm, angles in rad, times in s;
-arrays are read-only copies, of numpy):
+arrays are numpy's, and copies):
 
     suspension  "macpherson", "double_wishbone"; closure, such as "drawn" (see the README); side of the car
     up, right   unit vectors of the car's axes, [x, y, z]
@@ -78,7 +78,7 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
     still = np.zeros_like(next(iter(driven.values())))
     laws = {name: driven.get(name, still) for name in part.topology.inputs}
     plain = part.plain(tuple(laws))
-    given = {
+    return {
         "suspension": part.name,
         "closure": part.closure,
         "side": part.side,
@@ -88,23 +88,9 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
         "carried": list(part.topology.carried),
         **{name: plain[name] for name in ("wheel_radius", "rack_per_turn", "car", "loads")},
         INSTANTS: instants,
-        "inputs": {
-            name: {order: rate.copy() for order, rate in zip(STATES, law.T, strict=False)}
-            for name, law in laws.items()
-        },
+        "inputs": {name: dict(zip(STATES, law.T.copy(), strict=False)) for name, law in laws.items()},
         "asked": {quantity: list(names) for quantity, names in asked_numbers(scene).items()},
     }
-    return read_only(given)
-
-
-def read_only(given: dict[str, Any]) -> dict[str, Any]:
-    """The same data; its arrays are made read-only in place."""
-    for part in given.values():
-        if isinstance(part, np.ndarray):
-            part.flags.writeable = False
-        elif isinstance(part, dict):
-            read_only(part)
-    return given
 
 
 def as_function(solver: object, name: str) -> Solve:
@@ -127,10 +113,22 @@ def as_function(solver: object, name: str) -> Solve:
     return cast("Solve", found)
 
 
-def no_mapping(answer: object) -> str:
-    """The message for an answer that is not a mapping."""
-    what = "None" if answer is None else f"data of type {type(answer).__name__}"
-    return f"it returns {what}; needed: a mapping of the numbers that it has"
+def answer_of(solve: Solve, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The answer of a solver.
+
+    Raises:
+        SolverFailed: the solver raises an error, or does not return a mapping.
+    """
+    try:
+        answer: object = solve(given)
+    except SolverFailed:
+        raise
+    except (Exception, SystemExit) as error:
+        raise SolverFailed(named(error), raised_at(error)) from error
+    if not isinstance(answer, Mapping):
+        what = "None" if answer is None else f"data of type {type(answer).__name__}"
+        raise SolverFailed(f"it returns {what}; needed: a mapping of the numbers that it has")
+    return answer
 
 
 @dataclass(frozen=True)
@@ -154,9 +152,8 @@ class PlainSolver:
         Raises:
             FormulationError: the solver raises an error (SolverFailed), or does not return a mapping.
         """
-        given = given_to_solver(scene)
         with refusing(self.name, SolverFailed):
-            answer = self._answer(given)
+            answer = answer_of(self.function, given_to_solver(scene))
             times = _times(answer, scene)
         numbers, notes, faults = _numbers(self.name, answer, scene)
         accuracy, why_not = self._accuracy(scene)
@@ -175,17 +172,6 @@ class PlainSolver:
             every = np.ones(len(scene.instants), dtype=bool)
             note = f"no tolerance can be derived for {self.name}, so nothing is tested: {error}"
             return Accuracy(np.ones(len(every)), blind=every, stated=self.accuracy), (note,)
-
-    def _answer(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
-        try:
-            answer = self.function(given)
-        except SolverFailed:
-            raise
-        except (Exception, SystemExit) as error:
-            raise SolverFailed(named(error), raised_at(error)) from error
-        if not isinstance(answer, Mapping):
-            raise SolverFailed(no_mapping(answer))
-        return answer
 
 
 def _times(answer: Mapping[str, Any], scene: Scene) -> Array:

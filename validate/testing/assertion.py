@@ -100,7 +100,9 @@ def assert_agrees(
     if untested:
         raise NotTested(outcome.scene, exact, untested, agree)
     if not outcome.passed:
-        raise AssertionError(_nothing(outcome))
+        asked = ", ".join(dict.fromkeys(row.quantity for row in outcome.rows))
+        line = f"{WHO} gives no verdict for {name!r}: {outcome.why_no_verdict}; asked for: {asked}"
+        raise AssertionError("\n".join([line, *(f"  note: {note}" for note in outcome.notes)]))
     return outcome
 
 
@@ -191,11 +193,3 @@ def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:
     lines += [f"  possible explanation: {one.words}" for one in explained]
     lines += [f"  note: {note}" for note in outcome.notes]
     return "\n".join(lines)
-
-
-def _nothing(outcome: Outcome) -> str:
-    asked = ", ".join(dict.fromkeys(row.quantity for row in outcome.rows))
-    lines = [f"{WHO} contains nothing that {outcome.scene!r} asks for: {asked}"]
-    if any(row.verdict == "agrees" for row in outcome.rows) or outcome.faults:
-        lines = [f"{WHO} gives no verdict for {outcome.scene!r}: {outcome.why_no_verdict}"]
-    return "\n".join([*lines, *(f"  note: {note}" for note in outcome.notes)])

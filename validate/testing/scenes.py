@@ -79,20 +79,19 @@ def impossible_scenes(
 
 def _loaded(name: str) -> Scene:
     """A scene by its name or path; raises if the name is a hard case without an answer."""
-    if name in NOT_ASKED:
-        raise ValueError(
-            f"the hard case {name!r} does not suit a solver: it is not a scene, or a solver may refuse it"
+    answered = {case.name: bool(case.answered) for case in CASES}
+    if not answered.get(name, True):
+        why = (
+            "it is not a scene, or a solver may refuse it"
+            if name in NOT_ASKED
+            else ("it has instants without a pose; mark with impossible_scenes")
         )
-    cases = {case.name: case for case in CASES}
-    if name in cases:
-        raise ValueError(f"the hard case {name!r} has instants without a pose; mark with impossible_scenes")
+        raise ValueError(f"the hard case {name!r} has no answer to compare: {why}")
     try:
         return Scene.load(name)
     except SceneError as error:
-        if not isinstance(name, str):
-            raise
-        known = (*built_in_scenes(), *(case for case in cases if case not in NOT_ASKED))
-        raise ValueError(f"{error}{meant(name, known)}") from error
+        known = (*built_in_scenes(), *(case for case, has_answer in answered.items() if has_answer))
+        raise ValueError(f"{error}{meant(str(name), known)}") from error
 
 
 def _taken(case: Case, values: Sequence[float], near: float | None) -> Iterator[tuple[str, Scene]]:

@@ -74,12 +74,11 @@ def test_what_a_solver_is_given_is_enough_for_the_contact_point() -> None:
 def test_a_solver_cannot_change_what_others_are_given() -> None:
     def spoils(given: Any) -> Any:
         given["points"]["strut_top"][0] = 1e9
+        given["instants"][:] = 0.0
         del given["inputs"]
         return RIGHT
 
     assert check(spoils, SCENE).passed
-    with pytest.raises(FormulationError, match="read-only"):
-        check(lambda given: given["instants"].sort(), SCENE)
     assert check(closed_form, SCENE).passed
 
 

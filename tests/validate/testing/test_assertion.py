@@ -60,7 +60,7 @@ WRONG: list[tuple[Callable[[States], States], str, str]] = [
         "",
         "possible explanation: |  m",
     ),
-    (lambda _: {}, "", "the answer contains nothing that 'mine' asks for"),
+    (lambda _: {}, "", "the answer gives no verdict for 'mine': no number is given; asked for: position, "),
     (lambda _: {"positions": {}}, "", "'positions' | did you mean 'position'"),
     (
         lambda s: changed(s, "wheel", "camber", [4, 9], np.nan),
