@@ -12,7 +12,7 @@ SHOWN = {
     "pointcoord.simulation",
     "pointcoord.time_functions",
     "validate.comparison.compare",
-    "validate.reference.solve",
+    "validate.reference.instant",
 }
 
 

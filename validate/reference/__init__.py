@@ -12,5 +12,5 @@ with needing("validate.reference"):
     from validate.reference.errors import NotDecidedError as NotDecidedError
     from validate.reference.errors import SingularPoseError as SingularPoseError
     from validate.reference.instant import Instant as Instant
-    from validate.reference.solve import instants_of as instants_of
-    from validate.reference.solve import pose_exists as pose_exists
+    from validate.reference.instant import instants_of as instants_of
+    from validate.reference.instant import pose_exists as pose_exists

@@ -3,37 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from validate.reference.car_data import directions
 from validate.reference.jet import Jet, value_of
-from validate.reference.vectors import Exact, Scalar, Vector, cross, dot, each, minus, plus, root, times
-
-
-@dataclass(frozen=True)
-class Turn:
-    """A turn about the line through `about` along a unit vector."""
-
-    about: Vector
-    along: Vector
-    sine: Scalar
-    cosine: Scalar
-
-    def turned(self, v: Vector) -> Vector:
-        """A vector after the turn (Rodrigues)."""
-        along = times(self.along, dot(v, self.along))
-        across = minus(v, along)
-        return plus(along, plus(times(across, self.cosine), times(cross(self.along, across), self.sine)))
+from validate.reference.vectors import (
+    AXES,
+    Exact,
+    Placement,
+    Vector,
+    cross,
+    dot,
+    each,
+    minus,
+    plus,
+    root,
+    times,
+)
 
 
 @dataclass(frozen=True)
 class ChassisMotion:
-    """The turns in order, and the displacement; local."""
+    """Where the turns place the car, and the displacement; local."""
 
-    turns: tuple[Turn, ...]
-    rise: Vector | None
+    turns: Placement
+    rise: Vector
 
     @classmethod
     def of(
@@ -45,38 +41,41 @@ class ChassisMotion:
         exact: Exact,
     ) -> ChassisMotion:
         """From a design's data and jets of any kind of number, rad and mm; `exact` converts a fraction."""
-        turns, rise = [], None
+        car, rise = Placement(AXES, (0, 0, 0)), (0, 0, 0)
         for name, spec in plain["inputs"].items():
             if "moves" in spec:
-                part = times(each(exact, directions(plain)[spec["along"]]), driven[name] * exact(1 / unit))
-                rise = part if rise is None else plus(rise, part)
+                way = each(exact, directions(plain)[spec["along"]])
+                rise = plus(rise, times(way, driven[name] * exact(1 / unit)))
             elif "turns" in spec:
                 about, along = each(exact, table[spec["about"]]), directions(plain)[spec["along"]]
                 # A turn keeps lengths only about a vector whose length is exactly 1.
-                unit_vector = times(each(exact, along), 1 / root(exact(dot(along, along))))
-                turns.append(Turn(about, unit_vector, *driven[name].sin_cos()))
-        return cls(tuple(turns), rise)
+                a = times(each(exact, along), 1 / root(exact(dot(along, along))))
+                sine, cosine = driven[name].sin_cos()
+
+                def turned(v: Vector, a: Vector = a, sine: Jet = sine, cosine: Jet = cosine) -> Vector:
+                    """Rodrigues' formula."""
+                    ahead = times(a, dot(v, a))
+                    return plus(ahead, plus(times(minus(v, ahead), cosine), times(cross(a, v), sine)))
+
+                x, y, z = map(turned, car.columns)
+                car = Placement((x, y, z), plus(turned(minus(car.origin, about)), about))
+        return cls(car, rise)
 
     def still(self) -> ChassisMotion:
         """Without derivatives."""
-        turns = (replace(t, sine=value_of(t.sine), cosine=value_of(t.cosine)) for t in self.turns)
-        return ChassisMotion(tuple(turns), None if self.rise is None else each(value_of, self.rise))
+        x, y, z, origin, rise = (
+            each(value_of, v) for v in (*self.turns.columns, self.turns.origin, self.rise)
+        )
+        return ChassisMotion(Placement((x, y, z), origin), rise)
 
     def taken_back(self, point: Vector) -> Vector:
         """The point of the drawn car that moves to this place."""
-        point = point if self.rise is None else minus(point, self.rise)
-        for turn in reversed(self.turns):
-            point = plus(replace(turn, sine=-turn.sine).turned(minus(point, turn.about)), turn.about)
-        return point
+        return self.turns.turned_back(minus(minus(point, self.rise), self.turns.origin))
 
     def turned(self, vector: Vector) -> Vector:
         """A vector fixed in the car, after the motion."""
-        for turn in self.turns:
-            vector = turn.turned(vector)
-        return vector
+        return self.turns.turned(vector)
 
     def moved(self, point: Vector) -> Vector:
         """A point fixed in the car, after the motion."""
-        for turn in self.turns:
-            point = plus(turn.turned(minus(point, turn.about)), turn.about)
-        return point if self.rise is None else plus(point, self.rise)
+        return plus(self.turns.place(point), self.rise)

@@ -1,24 +1,91 @@
-"""The drawn points as exact fractions, scaled to the mechanism's size, and the mechanism's equations."""
+"""The drawing as exact fractions, scaled to the mechanism's size, and its equations in any kind of number."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
+
+from flint import arb, ctx
 
 from validate.reference.car_data import car_data, corners
 from validate.reference.chassis import ChassisMotion
 from validate.reference.drives import compiled
-from validate.reference.equations import Equations, equations_in
 from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
+from validate.reference.krawczyk import Matrix, matrix_of
 from validate.reference.mechanism import Mechanism
-from validate.reference.vectors import Scalar, Vector, each, minus, times
+from validate.reference.polynomial import Polynomial, at, of_kind, ordered
+from validate.reference.vectors import Exact, Scalar, Vector, minus, times
 
 Driven = Mapping[str, Jet]
 """Value, rate, acceleration and perhaps higher derivatives of every input, in fractions; rad or mm."""
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """C(y, w) with coefficients in one kind of number; y and w may be jets or power series of this kind.
+
+    Attributes:
+        number: converts a fraction to this kind of number.
+        rows: C, in the unknowns and the numbers w; as many as unknowns.
+        entries: nonzero entries (row, column, entry) of the Jacobian by the unknowns.
+        places: position of each point, relative to the chassis.
+        frames: two vectors fixed in each moving body.
+    """
+
+    mechanism: Mechanism
+    number: Exact
+    rows: Sequence[Polynomial]
+    entries: Sequence[tuple[int, int, Polynomial]]
+    places: Mapping[str, Vector]
+    frames: Mapping[str, tuple[Vector, Vector]]
+
+    def residual(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
+        """C(y, w)."""
+        values = ordered(unknown, numbers)
+        return [row.at(values) for row in self.rows]
+
+    def jacobian(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[tuple[int, int, Scalar]]:
+        """Nonzero entries of dC/dy as (row, column, entry)."""
+        values = ordered(unknown, numbers)
+        return [(row, column, entry.at(values)) for row, column, entry in self.entries]
+
+    def matrix(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> Matrix:
+        """dC/dy as a square matrix of balls."""
+        return matrix_of(len(self.rows), self.jacobian(unknown, numbers))
+
+    def points_of(self, unknown: Sequence[Scalar], names: Iterable[str] | None = None) -> dict[str, Vector]:
+        """Positions of all or some points, relative to the chassis."""
+        return {n: at(self.places[n], unknown) for n in (self.places if names is None else names)}
+
+    def frame_of(self, unknown: Sequence[Scalar], body: str) -> tuple[Vector, Vector]:
+        """Two vectors fixed in a body, not parallel."""
+        one, two = self.frames[body]
+        return at(one, unknown), at(two, unknown)
+
+
+def equations_in(mechanism: Mechanism, number: Exact = as_ball) -> Equations:
+    """The equations in one kind of number, cached for the present precision.
+
+    Args:
+        number: converts a fraction to that kind of number.
+    """
+    return _equations(mechanism, number, ctx.prec)
+
+
+@lru_cache(maxsize=256)
+def _equations(mechanism: Mechanism, number: Exact, precision: int) -> Equations:
+    chosen = [mechanism.rows[row][1] for row in mechanism.chosen]
+    entries = [
+        (i, j, row.derivative(j).of_kind(number)) for i, row in enumerate(chosen) for j in row.unknowns
+    ]
+    places = {name: of_kind(place, number) for name, place in mechanism.places.items()}
+    frames = {n: (of_kind(u, number), of_kind(v, number)) for n, (u, v) in mechanism.frames.items()}
+    return Equations(mechanism, number, [row.of_kind(number) for row in chosen], entries, places, frames)
 
 
 @dataclass(frozen=True)
@@ -64,6 +131,11 @@ class Known:
         return self.equations.residual(unknown, self.numbers)
 
 
+def values_only(known: Known) -> Known:
+    """The known data for the position equations: the jets' values, without derivatives."""
+    return replace(known, numbers=[jet.value for jet in known.numbers], chassis=known.chassis.still())
+
+
 @dataclass(frozen=True, eq=False)
 class Design:
     """The mechanism of a checked scene, in exact local coordinates (p - origin) / unit.
@@ -99,20 +171,24 @@ class Design:
             NoReferenceError: a number is not finite, a rod or a body has no extent, or the inputs do not
                 determine all degrees of freedom.
         """
-        table = {name: exact_vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
-        up, right = exact_vector(plain["up"], "up"), exact_vector(plain["right"], "right")
+        table = {name: _vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
         origin = next(iter(table.values()))
-        unit = _unit(table.values(), origin)
+        size = max(abs(x) for place in table.values() for x in minus(place, origin))
+        if size == 0:
+            raise NoReferenceError("points", "are all in one place", "points with some distance between them")
+        unit = Fraction(2) ** (size.numerator.bit_length() - size.denominator.bit_length())
         table = {name: times(minus(p, origin), 1 / unit) for name, p in table.items()}
-        exact = {**plain, "up": up, "right": right}
+        exact = {**plain, "up": _vector(plain["up"], "up"), "right": _vector(plain["right"], "right")}
         mechanism = compiled(exact, table, unit)
         equations_in(mechanism)  # refuses what is not determined
-        return cls(exact, mechanism, table, origin, unit, corners(plain), car_data(plain), _loads(plain))
-
-    @property
-    def inputs(self) -> tuple[str, ...]:
-        """The names of the inputs."""
-        return tuple(self.plain["inputs"])
+        loads = {
+            f"{part}." if part else "": (
+                _vector(load["force"], "force"),
+                _vector(load.get("moment") or (0, 0, 0), "moment"),
+            )
+            for part, load in plain.get("loads", {}).items()
+        }
+        return cls(exact, mechanism, table, origin, unit, corners(plain), car_data(plain), loads)
 
     def role(self, name: str) -> Any:
         """The value of a role of the mechanism, or None."""
@@ -123,7 +199,7 @@ class Design:
         count = max((len(law) for law in inputs.values()), default=3)
         return {
             name: Jet(*(as_fraction(part, f"inputs[{name!r}]") for part in inputs.get(name, (0,) * count)))
-            for name in self.inputs
+            for name in self.plain["inputs"]
         }
 
     def known(self, driven: Driven) -> Known:
@@ -131,34 +207,11 @@ class Design:
         return Known.of(equations_in(self.mechanism), {name: balls(jet) for name, jet in driven.items()})
 
 
-def values_only(known: Known) -> Known:
-    """The known data for the position equations: the jets' values, without derivatives."""
-    return replace(known, numbers=[jet.value for jet in known.numbers], chassis=known.chassis.still())
-
-
-def exact_vector(numbers: Sequence[object], what: str) -> Vector:
-    """Three numbers as fractions; NoReferenceError if there are not three."""
-    if len(numbers) != 3:
-        raise NoReferenceError(what, f"is {numbers!r}", "three numbers")
-    return each(lambda number: as_fraction(number, what), (numbers[0], numbers[1], numbers[2]))
-
-
 def balls(jet: Jet) -> Jet:
     """A jet of fractions as a jet of balls."""
     return Jet(*map(as_ball, jet.parts))
 
 
-def _unit(points: Collection[Vector], origin: Vector) -> Fraction:
-    size = max(abs(x) for p in points for x in minus(p, origin))
-    if size == 0:
-        raise NoReferenceError("points", "are all in one place", "points with some distance between them")
-    power = size.numerator.bit_length() - size.denominator.bit_length()
-    return Fraction(2**power) if power >= 0 else Fraction(1, 2**-power)
-
-
-def _loads(plain: Mapping[str, Any]) -> dict[str, tuple[Vector, Vector]]:
-    found = {}
-    for part, load in plain.get("loads", {}).items():
-        force, moment = load["force"], load.get("moment") or (0, 0, 0)
-        found[f"{part}." if part else ""] = exact_vector(force, "force"), exact_vector(moment, "moment")
-    return found
+def _vector(numbers: Sequence[object], what: str) -> Vector:
+    x, y, z = (as_fraction(number, what) for number in numbers)
+    return x, y, z

@@ -39,10 +39,8 @@ def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
         return _angle_from_drawing(mechanism, name, spec)
     end, pivot = spec["of"], spec["about"]
     along = directions(mechanism.plain)[spec["from"]]
-    drawn = minus(mechanism.table[end], mechanism.table[pivot])
+    drawn = mechanism.drawn_line(f"inputs.{name}", pivot, end)
     d2, height = dot(drawn, drawn), dot(drawn, along)
-    if d2 == 0:
-        raise NoReferenceError(f"the distance from {end} to {pivot}", "is 0", "more than 0")
     mechanism.row(name, dot(minus(mechanism.place(end), mechanism.place(pivot)), along) - mechanism.number())
 
     def input_of(numbers: Sequence[arb]) -> arb:
@@ -69,7 +67,7 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
     products = [dot(turning, held.turned(v)) for v in (e, cross(n, e))]
     if on != CHASSIS:  # each product is quadratic: it becomes an unknown, so that the row stays quadratic
         for i, product in enumerate(tuple(products)):
-            (products[i],) = mechanism.unknowns(1, partial(_of_unknowns, product))
+            (products[i],) = mechanism.unknowns(1, partial(_value, product))
             mechanism.row(name, products[i] - product)
     sine, cosine = mechanism.number(), mechanism.number()
     mechanism.row(name, products[0] * sine - products[1] * cosine)
@@ -81,18 +79,8 @@ def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]
     return Drive(numbers, lambda w: arb.atan2(w[0], w[1] * as_ball(nn).sqrt()), turns=True)
 
 
-def _of_unknowns(
-    one: Polynomial, _: Table, unknown: Sequence[Scalar], exact: Exact, *__: object
-) -> list[Scalar]:
-    return [one.of_kind(exact).at(unknown)]
-
-
-def _travel(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    return _slid(mechanism, name, spec["travel"], lambda exact: exact(Fraction(1)))
-
-
-def _steers(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
-    return _slid(mechanism, name, spec["steers"], partial(travel_per_radian, mechanism.plain))
+def _value(row: Polynomial, _: Table, unknown: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
+    return [row.of_kind(exact).at(unknown)]
 
 
 def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scalar:
@@ -101,26 +89,27 @@ def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scala
     return exact(as_fraction(plain["rack_per_turn"], "rack_per_turn")) / (4 * quarter)
 
 
-def _slid(
-    mechanism: Mechanism, name: str, slides: Sequence[str], per_input: Callable[[Exact], Scalar]
-) -> Drive:
-    """Slides that travel `per_input` mm per mm or rad of the input."""
-    lines, unit = [mechanism.lines[slide] for slide in slides], mechanism.unit
-    lengths = [squared for *_, squared in lines]
-    for shares, *_ in lines:
-        mechanism.row(name, shares[0] - mechanism.number())
-    first, along = mechanism.plain["slides"][slides[0]], lines[0][1]
+def _travel(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
+    """Slides that travel with an input in mm, or with the angle of a steering wheel."""
+    slides, plain, unit = spec.get("travel") or spec["steers"], mechanism.plain, mechanism.unit
+    lengths = [mechanism.lines[slide][2] for slide in slides]
+    for slide in slides:
+        mechanism.row(name, mechanism.lines[slide][0][0] - mechanism.number())
+    first, along = plain["slides"][slides[0]], mechanism.lines[slides[0]][1]
     off = minus(mechanism.table[first["points"][0]], mechanism.table[first["through"]])
     drawn = dot(off, along) / dot(along, along)
 
-    def numbers(value: Jet, _: object, exact: Exact) -> list[Jet]:
-        local = value * (per_input(exact) * exact(1 / unit))
-        return [local * (1 / root(exact(squared))) for squared in lengths]
+    def per_input(exact: Exact) -> Scalar:
+        return exact(1 / unit) * (travel_per_radian(plain, exact) if "steers" in spec else 1)
 
-    def input_of(numbers: Sequence[arb]) -> arb:
-        return arb(numbers[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(as_ball))
+    def input_of(w: Sequence[arb]) -> arb:
+        return arb(w[0] * as_ball(lengths[0]).sqrt() / per_input(as_ball))
 
-    return Drive(numbers, input_of, lambda: input_of([as_ball(drawn)]))
+    return Drive(
+        lambda value, _, exact: [value * (per_input(exact) / root(exact(squared))) for squared in lengths],
+        input_of,
+        lambda: input_of([as_ball(drawn)]),
+    )
 
 
 def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -141,10 +130,8 @@ def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     inner, centre = spec["contact"]
     plain, table, unit, first = mechanism.plain, mechanism.table, mechanism.unit, mechanism.count
     up, r = directions(plain)["up"], Fraction(plain["wheel_radius"]) / unit
-    axis = minus(table[centre], table[inner])
+    axis = mechanism.drawn_line(f"inputs.{name}", inner, centre)
     l2, m, high = dot(axis, axis), dot(axis, up), dot(table[centre], up)
-    if l2 == 0:
-        raise NoReferenceError(f"the distance from {inner} to {centre}", "is 0", "more than 0")
     share2, grounded = r * r / l2, spec.get("over") == "ground"
     seen, lift = (mechanism.number(), mechanism.number(), mechanism.number()), mechanism.number()
 
@@ -164,10 +151,8 @@ def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     def numbers(value: Jet, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
         chassis = ChassisMotion.of(plain if grounded else {"inputs": {}}, table, unit, inputs, exact)
         zero, upward = value * 0, each(exact, up)
-        ways = ([zero + int(i == k) for i in range(3)] for k in range(3))
-        ground = [zero + dot(chassis.turned((a, b, c)), upward) for a, b, c in ways]
-        risen = value * exact(1 / unit) + drawn(exact)
-        return [*ground, zero + dot(chassis.moved((zero, zero, zero)), upward), risen]
+        ground = (*chassis.turns.turned_back(upward), dot(chassis.moved((0, 0, 0)), upward))
+        return [*(zero + x for x in ground), value * exact(1 / unit) + drawn(exact)]
 
     return Drive(numbers, lambda w: (w[4] - drawn(as_ball)) * as_ball(unit))
 
@@ -187,7 +172,7 @@ def _distance(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive
 KINDS: dict[str, Callable[[Any, str, Mapping[str, Any]], Drive]] = {
     "angle": _angle,
     "travel": _travel,
-    "steers": _steers,
+    "steers": _travel,
     "height": _height,
     "contact": _contact,
     "distance": _distance,

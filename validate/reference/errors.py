@@ -44,22 +44,12 @@ class InfeasibleError(NoReferenceError):
     def __init__(self, way: str, share: float, inputs: Mapping[str, Fraction]) -> None:
         self.way, self.share, self.inputs = way, share, inputs
         there = ", ".join(f"{name} = {float(value):.9g}" for name, value in inputs.items())
-        super().__init__(
-            way,
-            f"turns back at a fold after {share:.9g} of its length (needed 1), at {there}: this assembly "
-            "has no pose beyond it",
-            "inputs nearer to those of the drawing",
-        )
+        problem = f"turns back at a fold after {share:.9g} of its length, at {there}: there is no pose beyond"
+        super().__init__(way, problem, "inputs nearer to those of the drawing")
 
 
 class NotDecidedError(NoReferenceError):
-    """A proof fails with the present number of digits; more digits may help.
-
-    Args:
-        what: the quantity that is too large or too small.
-        value: its value.
-        limit: the required value.
-    """
+    """A proof fails with the present number of digits, as a value is not within a limit; more may help."""
 
     def __init__(self, what: str, value: object, limit: object) -> None:
         # A ball of 400 digits is unreadable in a message; six digits are enough.
@@ -77,9 +67,5 @@ class SingularPoseError(NoReferenceError):
 
     def __init__(self, digits: int, doubt: NotDecidedError) -> None:
         self.digits, self.doubt = digits, doubt
-        super().__init__(
-            "the pose",
-            f"cannot be proven with {digits} digits ({doubt}): it, or a pose on the path to it, is at a dead "
-            "point or a toggle",
-            "inputs away from there",
-        )
+        problem = f"or one on the path to it, is at a dead point or a toggle to {digits} digits ({doubt})"
+        super().__init__("the pose,", problem, "inputs away from there")

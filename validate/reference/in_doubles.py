@@ -12,8 +12,7 @@ from math import comb
 import numpy as np
 
 from validate.arrays import Array
-from validate.reference.design import Design, Known
-from validate.reference.equations import equations_in
+from validate.reference.design import Design, Known, equations_in
 from validate.reference.jet import Jet, value_of
 from validate.reference.kinematics import Solved
 from validate.reference.vectors import Scalar, Vector
@@ -27,7 +26,7 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
         count: N.
     """
     still = np.zeros((count, max((law.shape[-1] for law in laws.values()), default=3)))
-    driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}
+    driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.plain["inputs"]}
     return Known.of(equations_in(design.mechanism, float), driven)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import comb, nan
-from operator import add, neg, sub
+from operator import add
 from typing import ClassVar
 
 import numpy as np
@@ -48,35 +48,35 @@ class Jet:
         return self.parts[order] if order < len(self.parts) else 0
 
     def __add__(self, other: Scalar) -> Jet:
-        one, two = self.parts, _jet(other).parts
+        one, two = self.parts, _parts(other)
         return Jet(*map(add, one, two), *one[len(two) :], *two[len(one) :])
 
-    def __sub__(self, other: Scalar) -> Jet:
-        one, two = self.parts, _jet(other).parts
-        return Jet(*map(sub, one, two), *one[len(two) :], *map(neg, two[len(one) :]))
-
     def __mul__(self, other: Scalar) -> Jet:
-        if not isinstance(other, Jet):
-            return Jet(*(part * other for part in self.parts))
-        one, two = self.parts, other.parts
+        one, two = self.parts, _parts(other)
         return Jet(*(_leibniz(one, two, order) for order in range(max(len(one), len(two)))))
 
     def __truediv__(self, other: Scalar) -> Jet:
         """q with q y = x: each derivative of q follows from that of x and from lower derivatives of q."""
-        divisor = _jet(other)
-        found = [self.value / divisor.value]
-        for order in range(1, max(len(self.parts), len(divisor.parts))):
-            found.append((self.part(order) - _leibniz(found, divisor.parts, order)) / divisor.value)
+        divisor = _parts(other)
+        found = [self.value / divisor[0]]
+        for order in range(1, max(len(self.parts), len(divisor))):
+            found.append((self.part(order) - _leibniz(found, divisor, order)) / divisor[0])
         return Jet(*found)
 
     def __neg__(self) -> Jet:
         return Jet(*(-part for part in self.parts))
 
+    def __sub__(self, other: Scalar) -> Jet:
+        return self.__add__(-other)
+
     def __rsub__(self, other: Scalar) -> Jet:
         return self.__neg__().__add__(other)
 
     def __rtruediv__(self, other: Scalar) -> Jet:
-        return Jet(other).__truediv__(self)
+        return Jet(other) / self
+
+    __radd__ = __add__
+    __rmul__ = __mul__
 
     def sqrt(self) -> Jet:
         """The root r of a positive number: from r r = x, as for a quotient."""
@@ -87,15 +87,13 @@ class Jet:
 
     def sin_cos(self) -> tuple[Jet, Jet]:
         """The sine and the cosine: sin' = cos x', cos' = -sin x', and their derivatives by Leibniz."""
-        sine, cosine = ([number] for number in _sin_cos(self.value))
+        x = self.value
+        sine, cosine = ([y] for y in ((np.sin(x), np.cos(x)) if isinstance(x, np.ndarray) else x.sin_cos()))
         for order in range(len(self.parts) - 1):
             further = _leibniz(cosine, self.parts[1:], order), -_leibniz(sine, self.parts[1:], order)
             sine.append(further[0])
             cosine.append(further[1])
         return Jet(*sine), Jet(*cosine)
-
-    __radd__ = __add__
-    __rmul__ = __mul__
 
 
 def value_of(number: Scalar) -> Scalar:
@@ -115,9 +113,7 @@ def part_of(vector: Vector, order: int) -> Vector:
 
 def only_where(number: Scalar, holds: Flags | bool) -> Scalar:
     """The number where a condition holds, otherwise NaN."""
-    if isinstance(holds, bool):
-        return number if holds else number + nan
-    return number + np.where(holds, 0.0, nan)
+    return number + (np.where(holds, 0.0, nan) if isinstance(holds, np.ndarray) else 0.0 if holds else nan)
 
 
 def angle(y: Scalar, x: Scalar) -> Scalar:
@@ -131,6 +127,10 @@ def angle(y: Scalar, x: Scalar) -> Scalar:
     return Jet(angle(across, along), turning / (along * along + across * across))
 
 
+def _parts(number: Scalar) -> tuple[Scalar, ...]:
+    return number.parts if isinstance(number, Jet) else (number,)
+
+
 def _leibniz(one: Sequence[Scalar], two: Sequence[Scalar], order: int) -> Scalar:
     """A derivative of a product; missing derivatives of a factor are zero."""
     total: Scalar | None = None
@@ -140,11 +140,3 @@ def _leibniz(one: Sequence[Scalar], two: Sequence[Scalar], order: int) -> Scalar
         term = product if count == 1 else count * product
         total = term if total is None else total + term
     return one[0] * 0 if total is None else total
-
-
-def _sin_cos(number: Scalar) -> tuple[Scalar, Scalar]:
-    return (np.sin(number), np.cos(number)) if isinstance(number, np.ndarray) else number.sin_cos()
-
-
-def _jet(number: Scalar) -> Jet:
-    return number if isinstance(number, Jet) else Jet(number)

@@ -32,15 +32,15 @@ from typing import Any
 from flint import arb
 
 from validate.reference.car_data import DAMPER, KNUCKLE, RADIUS, TRAVEL, WHEEL
-from validate.reference.design import Design, Known
+from validate.reference.design import Design, Known, equations_in
 from validate.reference.drives import compiled
 from validate.reference.effects.at_pose import drawn_car, drivers, provided
-from validate.reference.equations import equations_in
 from validate.reference.exact import as_ball
 from validate.reference.jet import Jet, slope_of
 from validate.reference.kinematics import body_rates
 from validate.reference.krawczyk import column
-from validate.reference.mechanism import CHASSIS, Mechanism, at, of_kind
+from validate.reference.mechanism import CHASSIS, Mechanism
+from validate.reference.polynomial import at, of_kind
 from validate.reference.vectors import Vector, cross, dot, each, length, minus, plus, times
 
 FORCES = ROD, JOINT, THRUST = ("rod_force", "joint_force", "hinge_thrust")
@@ -69,12 +69,11 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         hinge_thrust: sum of the forces of a hinge along its line, by its first point; positive from the first
             point to the second, in the order of the body's list.
     """
-    forces: Forces = {quantity: {} for quantity in FORCES}
+    none: Forces = {quantity: {} for quantity in FORCES}
     if not (design.loads and _can_be_had(design)):
-        return forces
+        return none
     mechanism, chassis = _held(design), known.chassis.still()
-    equations = equations_in(mechanism)
-    places = known.equations.points_of(enclosure)
+    equations, places = equations_in(mechanism), known.equations.points_of(enclosure)
     numbers = [jet.value for jet in known.numbers]
     unknown = mechanism.unknown_of(places, numbers, as_ball)
     work, scale = [arb(0)] * mechanism.size, arb(0)
@@ -92,13 +91,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
     try:
         solved = equations.matrix(unknown, numbers).transpose().solve(column(work)).entries()
     except ZeroDivisionError:
-        return forces
-
-    rods = {name: (mechanism.rods[name], ends) for name, ends in design.plain["rods"].items()}
-    rods |= {f"{prefix}{DAMPER}": one for prefix, one in _dampers(design, mechanism).items()}
-    for name, (row, ends) in rods.items():
-        forces[ROD][name] = 2 * length(minus(places[ends[0]], places[ends[1]])) * solved[row]
-    pulls = forces[JOINT]
+        return none
 
     def pull(point: str, acts_on_first: bool) -> Vector:
         """The force that closes the gap of a point, on its first or its second place."""
@@ -107,34 +100,36 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
             total = plus(total, times(at(of_kind(vector, as_ball), unknown), solved[row]))
         return times(total, -1 if acts_on_first else 1)
 
-    for point, of_line in _sliding(design).items():
-        pulls[point] = chassis.turned(pull(point, not of_line))
+    rods = {name: (mechanism.rods[name], ends) for name, ends in design.plain["rods"].items()}
+    rods |= {f"{prefix}{DAMPER}": one for prefix, one in _dampers(design, mechanism).items()}
+    tensions = {
+        name: 2 * length(minus(places[a], places[b])) * solved[row] for name, (row, (a, b)) in rods.items()
+    }
+    pulls, thrusts = {point: pull(point, not of_line) for point, of_line in _sliding(design).items()}, {}
     for points, body in _joints(design).items():
         own = {point: pull(point, mechanism.gaps[point][0] == body) for point in points}
         if len(points) == 2:
             # Across the line at both points; along it only the sum is known.
             line = minus(places[points[1]], places[points[0]])
             along = {point: dot(force, line) / dot(line, line) for point, force in own.items()}
-            forces[THRUST][points[0]] = sum(along.values()) * length(line)
+            thrusts[points[0]] = sum(along.values()) * length(line)
             own = {point: minus(force, times(line, along[point])) for point, force in own.items()}
-        pulls |= {point: chassis.turned(force) for point, force in own.items()}
+        pulls |= own
+    pulls = {point: chassis.turned(force) for point, force in pulls.items()}
     within = scale * as_ball(Fraction(1, 10**digits))
-    every = [*forces[ROD].values(), *forces[THRUST].values(), *(x for pull in pulls.values() for x in pull)]
-    if not all(x.is_finite() and x.rad() <= within for x in every):
-        return {quantity: {} for quantity in FORCES}
-    return forces
+    every = [*tensions.values(), *thrusts.values(), *(x for pull in pulls.values() for x in pull)]
+    exact = all(x.is_finite() and x.rad() <= within for x in every)
+    return {ROD: tensions, JOINT: pulls, THRUST: thrusts} if exact else none
 
 
 def _can_be_had(design: Design) -> bool:
     """Whether no row is redundant, and each corner with a load or a damper has the data for forces."""
-    if len(design.mechanism.chosen) < len(design.mechanism.rows):
-        return False
     for prefix in design.corners:
         has = provided(design, prefix)
         needs = {WHEEL, KNUCKLE, RADIUS} if prefix in design.loads else set()
         if not needs | ({TRAVEL} if DAMPER in has else set()) <= has:
             return False
-    return True
+    return len(design.mechanism.chosen) == len(design.mechanism.rows)
 
 
 @lru_cache(maxsize=64)
@@ -148,7 +143,7 @@ def _held(design: Design) -> Mechanism:
 
 
 def _dampers(design: Design, mechanism: Mechanism) -> dict[str, tuple[int, Sequence[str]]]:
-    """The ends of each damper, and the row of the input that it replaces, by prefix of the corner."""
+    """The row of the input that each damper replaces, and its ends, by prefix of the corner."""
     return {
         prefix: (mechanism.driving[drivers(design, prefix)[TRAVEL]], design.role(prefix + DAMPER))
         for prefix in design.corners

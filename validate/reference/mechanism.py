@@ -43,9 +43,11 @@ from validate.reference.car_data import directions
 from validate.reference.errors import NoReferenceError
 from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
-from validate.reference.polynomial import Polynomial, ordered, polynomial
+from validate.reference.polynomial import Polynomial, at, of_kind, ordered, polynomial
 from validate.reference.vectors import (
+    AXES,
     Exact,
+    Placement,
     Scalar,
     Vector,
     across,
@@ -60,7 +62,6 @@ from validate.reference.vectors import (
 
 CHASSIS = "chassis"
 SAME_ROW = 1e-9  # relative to the largest pivot: a row with a smaller pivot depends on others, in doubles
-X, Y, Z = AXES = ((Fraction(1), 0, 0), (0, Fraction(1), 0), (0, 0, Fraction(1)))
 Table = Mapping[str, Vector]
 Columns = tuple[Vector, Vector, Vector]
 Reader = Callable[[Table, Sequence[Scalar], Exact, Sequence[Scalar]], Sequence[Scalar]]
@@ -85,28 +86,6 @@ class Drive:
     turns: bool = False
 
 
-@dataclass(frozen=True)
-class Body:
-    """A body in the equations: the columns of its matrix R, and the position of the drawing's origin."""
-
-    columns: Columns
-    origin: Vector
-
-    @classmethod
-    def of(cls, columns: Columns, drawn: Vector, place: Vector) -> Body:
-        """The body that moves the point `drawn` of the drawing to `place`."""
-        return cls(columns, minus(place, cls(columns, place).turned(drawn)))
-
-    def turned(self, v: Vector) -> Vector:
-        """A vector fixed in the body, rotated with it."""
-        x, y, z = (times(column, part) for column, part in zip(self.columns, v, strict=True))
-        return plus(plus(x, y), z)
-
-    def place(self, drawn: Vector) -> Vector:
-        """Position of a point of the body, from its drawn position."""
-        return plus(self.origin, self.turned(drawn))
-
-
 class Mechanism:
     """The compiled description of a mechanism.
 
@@ -115,7 +94,8 @@ class Mechanism:
         count: number of the numbers w.
         rows: C(y, w), each row with a name.
         frames: two vectors fixed in each moving body, not parallel.
-        readers: functions that read the unknowns from assembled points, one after the other.
+        readers: functions that read the unknowns from assembled points, one after the other, from points,
+            earlier unknowns, a function that converts a fraction, and the numbers w.
         drives: the inputs, without those that move the chassis.
         driving: for each of these, the last row with its numbers w.
         rods: row of each rod's length.
@@ -148,17 +128,14 @@ class Mechanism:
         self.gaps: dict[str, tuple[str, int, Sequence[Vector]]] = {}
         self.lines: dict[str, tuple[list[Polynomial], Vector, Fraction]] = {}
         self.free: dict[str, Vector] = {}
-        self.bodies = {CHASSIS: Body(AXES, (Fraction(0),) * 3)}
+        self.bodies = {CHASSIS: Placement(AXES, (0, 0, 0))}
         self.holder = dict.fromkeys(plain["bodies"][CHASSIS], CHASSIS)
         for name in self._in_order():
             self._add_body(name)
         for name, slide in plain["slides"].items():
             self._add_slide(name, slide)
         for name, ends in plain["rods"].items():
-            gap = minus(*(self.place(end) for end in ends))
-            drawn = minus(*(table[end] for end in ends))
-            if dot(drawn, drawn) == 0:
-                raise NoReferenceError(f"the length of {name}", "is 0", "more than 0")
+            gap, drawn = minus(*map(self.place, ends)), self.drawn_line(f"the length of {name}", *ends)
             self.rods[name] = len(self.rows)
             self.row(name, dot(gap, gap) - dot(drawn, drawn))
 
@@ -177,9 +154,6 @@ class Mechanism:
             NoReferenceError: the inputs do not determine all degrees of freedom.
         """
         rows, size = len(self.rows), self.size
-        if rows < size:
-            allowed = f"{size} rows: drive {size - rows} more of what can move"
-            raise NoReferenceError("the equations", f"are {rows} rows for {size} unknowns", allowed)
         if rows == size:
             return tuple(range(size))
         from scipy.linalg import qr  # few mechanisms need it, and it takes long to import
@@ -192,10 +166,9 @@ class Mechanism:
         triangle, taken = qr(matrix.T / np.linalg.norm(matrix, axis=1), mode="r", pivoting=True)
         rank = int((np.abs(np.diag(triangle)) > SAME_ROW).sum())
         if rank < size:
-            allowed = f"inputs and joints that leave no degree of freedom; {size - rank} are left as drawn"
-            raise NoReferenceError(
-                "the equations", f"are {rank} independent rows for {size} unknowns", allowed
-            )
+            allowed = f"{size}: drive {size - rank} more of what can move"
+            problem = f"are {rank} independent rows for {size} unknowns"
+            raise NoReferenceError("the equations", problem, allowed, rank)
         return tuple(sorted(int(row) for row in taken[:size]))
 
     def numbers(self, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
@@ -213,6 +186,12 @@ class Mechanism:
         """The numbers w at the drawn inputs, at the present precision."""
         return [w.value for w in self.numbers(self.drawn_inputs, as_ball)]
 
+    @property
+    def drawn_unknown(self) -> list[arb]:
+        """The unknowns from the points as drawn, exact; the drawing need not satisfy the rows."""
+        places = {name: each(as_ball, place) for name, place in self.table.items()}
+        return [arb(number).mid() for number in self.unknown_of(places, self.drawn_numbers, as_ball)]
+
     def unknown_of(self, points: Table, numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:
         """The unknowns from assembled points, relative to the chassis, and the numbers w, in one kind of
         number; `exact` converts a fraction.
@@ -222,14 +201,8 @@ class Mechanism:
             unknown.extend(read(points, unknown, exact, numbers))
         return unknown
 
-    @property
-    def drawn_unknown(self) -> list[arb]:
-        """The unknowns from the points as drawn, exact; the drawing need not satisfy the rows."""
-        places = {name: each(as_ball, place) for name, place in self.table.items()}
-        return [arb(number).mid() for number in self.unknown_of(places, self.drawn_numbers, as_ball)]
-
     def unknowns(self, count: int, read: Reader) -> list[Polynomial]:
-        """Add unknowns; `read` gives their values from points, earlier unknowns and the numbers w."""
+        """Add unknowns, and their reader."""
         first = self.size
         self.size += count
         self.readers.append(read)
@@ -244,6 +217,25 @@ class Mechanism:
         """Add the row `row` = 0."""
         self.rows.append((name, polynomial(row)))
 
+    def place(self, point: str) -> Vector:
+        """Position of a point, relative to the chassis."""
+        if point in self.holder:
+            return self.bodies[self.holder[point]].place(self.table[point])
+        if point not in self.free:
+            self.free[point] = self._position(point)
+        return self.free[point]
+
+    def drawn_line(self, what: str, start: str, end: str) -> Vector:
+        """From one point to another as drawn; NoReferenceError if they are in one place."""
+        line = minus(self.table[end], self.table[start])
+        if dot(line, line) == 0:
+            raise NoReferenceError(f"{what}: {end}", f"is in the place of {start}", "another place")
+        return line
+
+    def _position(self, point: str) -> Vector:
+        x, y, z = self.unknowns(3, lambda points, *_: points[point])
+        return x, y, z
+
     def _close(
         self, point: str, name: str, apart: Vector, along: Sequence[Vector] = AXES, body: str = ""
     ) -> None:
@@ -251,18 +243,6 @@ class Mechanism:
         self.gaps[point] = body, len(self.rows), along
         for vector in along:
             self.row(name, dot(apart, vector))
-
-    def place(self, point: str) -> Vector:
-        """Position of a point, relative to the chassis."""
-        if point in self.holder:
-            return self.bodies[self.holder[point]].place(self.table[point])
-        if point not in self.free:
-            self.free[point] = self._free_place(point)
-        return self.free[point]
-
-    def _free_place(self, point: str) -> Vector:
-        x, y, z = self.unknowns(3, lambda points, *_: points[point])
-        return x, y, z
 
     def _in_order(self) -> Iterator[str]:
         """The moving bodies, each after those that place it."""
@@ -279,17 +259,17 @@ class Mechanism:
         shared = {other: [p for p in points if p in self.plain["bodies"][other]] for other in self.bodies}
         # Bodies that share two points, a hinge, come first, the chassis before others.
         ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
-        if len(shared[CHASSIS]) == 2 and self.hangs:
-            columns, tied = self._hinged(name, *shared[CHASSIS]), {*shared[CHASSIS]}
-        else:
-            columns, tied = self._loose(name, points), set[str]()
-        base = ties[0][1][0] if ties and self.hangs else points[0]
+        on_hinge = self.hangs and len(shared[CHASSIS]) == 2
+        columns = self._hinged(name, *shared[CHASSIS]) if on_hinge else self._loose(name, points)
+        tied = {*shared[CHASSIS]} if on_hinge else set[str]()
         if ties and self.hangs:
+            other, (base, *_) = ties[0]
             tied |= {base}
-            place = self.bodies[ties[0][0]].place(self.table[base])
+            place = self.bodies[other].place(self.table[base])
         else:
-            place = self._free_place(base)
-        body = self.bodies[name] = Body.of(columns, self.table[base], place)
+            base = points[0]
+            place = self._position(base)
+        body = self.bodies[name] = Placement.of(columns, self.table[base], place)
         self.frames[name] = columns[:2]
         for other, both in ties:
             for i, point in enumerate(both):
@@ -297,33 +277,22 @@ class Mechanism:
                     continue
                 tied.add(point)
                 apart = minus(*(one.place(self.table[point]) for one in (body, self.bodies[other])))
-                if i:
-                    hinge = f"hinge of {name} and {other}"
-                    self._close(point, hinge, apart, self._across(hinge, other, both), name)
-                else:
-                    self._close(point, f"{point} of {name} and {other}", apart, AXES, name)
+                along: Sequence[Vector] = AXES
+                if i:  # the second point of a hinge: across its line
+                    sides = across(self.drawn_line(f"the hinge of {name} and {other}", *both))
+                    along = [self.bodies[other].turned(side) for side in sides]
+                self._close(point, f"{point} of {name} and {other}", apart, along, name)
         for point in points:
             self.holder.setdefault(point, name)
 
-    def _across(self, hinge: str, body: str, points: Sequence[str]) -> tuple[Vector, Vector]:
-        """Two vectors fixed in a body, across a hinge through two of its points."""
-        axis = minus(self.table[points[1]], self.table[points[0]])
-        if dot(axis, axis) == 0:
-            raise NoReferenceError(f"the {hinge}", "has both points in one place", "a line")
-        first, second = (self.bodies[body].turned(side) for side in across(axis))
-        return first, second
-
     def _hinged(self, name: str, a: str, b: str) -> Columns:
         """The columns of R of a body on a hinge of the chassis."""
-        n, start = near_one(minus(self.table[b], self.table[a])), self.table[a]
+        n = near_one(self.drawn_line(f"the hinge of {name}", a, b))
         nn = dot(n, n)
-        if nn == 0:
-            raise NoReferenceError(f"the hinge of {name}", f"has {a} and {b} in one place", "a line")
-        beside = {point: cross(n, minus(self.table[point], start)) for point in self.plain["bodies"][name]}
+        beside = {p: cross(n, minus(self.table[p], self.table[a])) for p in self.plain["bodies"][name]}
         seen = max(beside, key=lambda point: float(dot(beside[point], beside[point])))
         g = beside[seen]
-        if dot(g, g) == 0:
-            raise NoReferenceError(f"the points of {name}", "are all on one line", "a point beside the hinge")
+        _require_extent(name, dot(g, g))
         h = times(cross(g, n), Fraction(1) / nn)  # from the hinge to the point, perpendicular to the hinge
         cosine, sine = times(h, 1 / dot(h, h)), times(g, 1 / dot(g, g))
 
@@ -338,7 +307,8 @@ class Mechanism:
             along = times(n, dot(n, v) / nn)
             return plus(along, plus(times(minus(v, along), c), times(cross(n, v), s)))
 
-        return turned(X), turned(Y), turned(Z)
+        x, y, z = map(turned, AXES)
+        return x, y, z
 
     def _loose(self, name: str, points: Sequence[str]) -> Columns:
         """The columns of R of a body that is not on a hinge of the chassis."""
@@ -355,8 +325,7 @@ class Mechanism:
         one, two = ends[i, j], ends[k, m]
         normal = cross(one, two)
         area = dot(normal, normal)
-        if area == 0:
-            raise NoReferenceError(f"the points of {name}", "are all on one line", "a triangle")
+        _require_extent(name, area)
         # The reciprocal vectors of `one`, `two` and `normal`.
         duals = [times(g, 1 / area) for g in (cross(two, normal), cross(normal, one), normal)]
 
@@ -378,10 +347,8 @@ class Mechanism:
         # A direction of the car has length 1, up to rounding; a line towards a point has its drawn length.
         squared = Fraction(1)
         if along is None:
-            along = near_one(minus(self.table[slide["along"]], self.table[through]))
+            along = near_one(self.drawn_line(f"slides.{name}", through, slide["along"]))
             squared = dot(along, along)
-            if squared == 0:
-                raise NoReferenceError(f"slides.{name}: along", f"is {slide['along']} in {through}", "a line")
         line, start = self.bodies[body].turned(along), self.bodies[body].place(self.table[through])
         shorter, shares = times(line, 1 / dot(along, along)), list[Polynomial]()
         for point in slide["points"]:
@@ -401,27 +368,20 @@ class Mechanism:
                 self._close(point, f"{point} on {name}", minus(self.place(point), there))
         self.lines[name] = (shares, along, squared)
         if not slide["turns"]:
-            self._hold(name, slide, along)
+            # The axis of the rotation between the bodies has no component along the line: a body drawn off
+            # the line is rotated onto it by the smallest rotation.
+            held = self._on_slide(name, slide)
+            (u, v), (u2, v2) = (map(self.bodies[one].turned, across(along)) for one in (body, held))
+            self.row(f"turn of {name}", dot(u, v2) - dot(v, u2))
 
-    def _hold(self, name: str, slide: Mapping[str, Any], along: Vector) -> None:
-        """Add the row of a slide that may not turn."""
-        one = self.bodies[slide["body"]]
-        points = set(slide["points"])
-        holders = [b for b in self.bodies if b != slide["body"] and points <= set(self.plain["bodies"][b])]
-        if not holders:
-            raise NoReferenceError(f"slides.{name}: turns", "is False", "points of one other body")
-        other = self.bodies[holders[0]]
-        (u, v), (u2, v2) = ([body.turned(side) for side in across(along)] for body in (one, other))
-        # The axis of the rotation between the bodies has no component along the line: a body drawn off the
-        # line is rotated onto it by the smallest rotation.
-        self.row(f"turn of {name}", dot(u, v2) - dot(v, u2))
+    def _on_slide(self, name: str, slide: Mapping[str, Any]) -> str:
+        """The body of all points of a slide."""
+        for body in self.bodies:
+            if body != slide["body"] and {*slide["points"]} <= {*self.plain["bodies"][body]}:
+                return body
+        raise NoReferenceError(f"slides.{name}: turns", "is False", "points of one other body")
 
 
-def of_kind(vector: Vector, number: Exact) -> Vector:
-    """A vector of polynomials and fractions as polynomials in one kind of number."""
-    return each(lambda one: polynomial(one).of_kind(number), vector)
-
-
-def at(vector: Vector, values: Sequence[Scalar]) -> Vector:
-    """The value of a vector of polynomials."""
-    return each(lambda one: one.at(values), vector)
+def _require_extent(name: str, squared: Fraction) -> None:
+    if squared == 0:
+        raise NoReferenceError(f"the points of {name}", "are all on one line", "a point beside it")

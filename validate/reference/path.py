@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 from flint import arb, arb_mat, arb_poly, ctx
 
-from validate.reference.equations import Equations
+from validate.reference.design import Equations
 from validate.reference.errors import NotDecidedError
 from validate.reference.krawczyk import Contraction, Curve, column, largest, less, newton, within
 from validate.reference.vectors import Scalar

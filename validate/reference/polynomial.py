@@ -11,7 +11,7 @@ from itertools import chain, product
 
 from flint import fmpq
 
-from validate.reference.vectors import Exact, Scalar
+from validate.reference.vectors import Exact, Scalar, Vector, each
 
 Monomial = tuple[int, ...]  # at most two symbols, in ascending order
 
@@ -59,9 +59,8 @@ class Polynomial:
         terms: dict[Monomial, Scalar] = {}
         for monomial, coefficient in self.terms.items():
             if symbol in monomial:
-                rest = list(monomial)
-                rest.remove(symbol)
-                terms[tuple(rest)] = coefficient * monomial.count(symbol)
+                i = monomial.index(symbol)
+                terms[monomial[:i] + monomial[i + 1 :]] = coefficient * monomial.count(symbol)
         return Polynomial(terms)
 
     def of_kind(self, number: Exact) -> Polynomial:
@@ -72,13 +71,12 @@ class Polynomial:
     def at(self, values: Sequence[Scalar]) -> Scalar:
         """The value, in the kind of number of `values` even if no symbol occurs; see `of_kind`."""
         total: Scalar = None
-        for monomial, coefficient in self.terms.items():
-            if len(monomial) == 2:
-                term = values[monomial[0]] * values[monomial[1]] * coefficient
-            elif monomial:
-                term = values[monomial[0]] * coefficient
-            else:
-                term = coefficient if total is not None else values[0] * 0 + coefficient
+        for monomial, term in self.terms.items():
+            if monomial:
+                for symbol in monomial:
+                    term = values[symbol] * term
+            elif total is None:
+                term = values[0] * 0 + term
             total = term if total is None else total + term
         return values[0] * 0 if total is None else total
 
@@ -93,6 +91,16 @@ def polynomial(number: Scalar) -> Polynomial:
 def ordered(unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
     """Values indexed by symbol: the negative symbols of w count from the end."""
     return [*unknown, *reversed(numbers)]
+
+
+def of_kind(vector: Vector, number: Exact) -> Vector:
+    """A vector of polynomials and fractions as polynomials in one kind of number."""
+    return each(lambda one: polynomial(one).of_kind(number), vector)
+
+
+def at(vector: Vector, values: Sequence[Scalar]) -> Vector:
+    """The value of a vector of polynomials."""
+    return each(lambda one: one.at(values), vector)
 
 
 def _summed(terms: Iterable[tuple[Monomial, Scalar]]) -> Polynomial:

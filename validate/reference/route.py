@@ -1,8 +1,8 @@
 """From the drawing to given inputs: the drawing is closed, then its inputs change along a straight path.
 
-An angle measured from the drawing changes in steps of less than a quarter turn, each linear in its sine and
-cosine, because only their ratio matters in its row. The other inputs change linearly in the numbers w of the
-equations (see `drives`).
+The inputs change linearly in the numbers w of the equations (see `drives`). If an angle measured from the
+drawing turns far, the way is divided into straight paths on which it turns by less than a quarter turn: they
+are linear in its sine and cosine, and only their ratio matters in its row.
 """
 
 from __future__ import annotations
@@ -11,13 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from itertools import chain, islice, pairwise, permutations
+from itertools import islice, pairwise, permutations
 from math import ceil
 
 from flint import arb, ctx
 
-from validate.reference.design import Design, Driven, balls
-from validate.reference.equations import equations_in
+from validate.reference.design import Design, Driven, balls, equations_in
 from validate.reference.errors import InfeasibleError, NoReferenceError, NotDecidedError
 from validate.reference.exact import MOST_DIGITS, as_ball, bits, centre_of, with_more_digits
 from validate.reference.fold import fold_ahead, pose_before
@@ -26,7 +25,7 @@ from validate.reference.path import Pose, StraightPath, bending, next_pose, star
 
 DIGITS = (7, 39, 103, MOST_DIGITS)  # of the arithmetic on a path: twice a double's bits, and twice that
 FOLDS_FROM = 0.05  # share of a path: shorter steps lead into a fold, which is then searched for
-TURN = Fraction(3, 2)  # rad, less than a quarter turn
+TURN = 1.5  # rad, less than a quarter turn
 # A path takes a few steps, and up to a hundred if it ends within 1e-12 of a fold, or meets a singular pose
 # that is not a fold. No path has yet taken this many.
 MOST_STEPS = 400
@@ -85,13 +84,11 @@ def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
     try:
         return moved(design, here, driven)
     except InfeasibleError as straight:
-        drawn, wanted = _numbers(design, {}), _numbers(design, driven)
-        changed = [
-            n for n in drawn if not all(a.overlaps(b) for a, b in zip(drawn[n], wanted[n], strict=True))
-        ]
+        drawn, wanted = _inputs(design, {}), _inputs(design, driven)
+        changed = [name for name in design.mechanism.drives if not drawn[name].overlaps(wanted[name])]
         for order in islice(permutations(changed), MOST_ORDERS if len(changed) > 1 else 0):
+            there = here
             try:
-                there = here
                 for k in range(1, len(order)):
                     there = moved(design, there, {name: driven[name] for name in order[:k]})
                 return moved(design, there, driven)
@@ -147,7 +144,7 @@ def _led(path: StraightPath, pose: Pose, design: Design, what: str) -> Pose:
             if fold is None:
                 continue
             if fold.t < 1:
-                raise InfeasibleError(what, float(fold.t.mid()), _inputs(design, path.numbers(fold.t)))
+                raise InfeasibleError(what, float(fold.t.mid()), _inputs_of(design, path.numbers(fold.t)))
             if not fold.t > 1:
                 raise NotDecidedError(
                     "the place of the fold, as a share of the path,", fold.t, "more or less than 1"
@@ -158,35 +155,23 @@ def _led(path: StraightPath, pose: Pose, design: Design, what: str) -> Pose:
 
 def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
     """The numbers w at the ends of the straight paths."""
-    turns = {
-        name: [Fraction(inputs[name].value) if name in inputs else Fraction(0) for inputs in (begin, end)]
-        for name, one in design.mechanism.drives.items()
-        if one.turns
-    }
-    count = max(1, ceil(max((abs(b - a) for a, b in turns.values()), default=Fraction(0)) / TURN))
-    first, last = _numbers(design, begin), _numbers(design, end)
-    between = []
-    for k in range(1, count):
-        driven = {name: Jet(a + Fraction(k, count) * (b - a)) for name, (a, b) in turns.items()}
-        straight = {
-            n: [x + (y - x) * k / count for x, y in zip(first[n], last[n], strict=True)] for n in first
-        }
-        between.append(straight | {name: _numbers(design, driven)[name] for name in turns})
-    return [[*chain(*stop.values())] for stop in (first, *between, last)]
+    mechanism, first, last = design.mechanism, _inputs(design, begin), _inputs(design, end)
+    turns = [abs(float(last[name] - first[name])) for name, one in mechanism.drives.items() if one.turns]
+    count = max(1, ceil(max(turns, default=0.0) / TURN))
+    stops = ({n: Jet(x + (last[n] - x) * k / count) for n, x in first.items()} for k in range(count + 1))
+    return [[w.value for w in mechanism.numbers(stop, as_ball)] for stop in stops]
 
 
-def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
-    """The numbers w of each input; inputs that are not driven have their drawn values."""
-    given = design.mechanism.drawn_inputs | {name: balls(jet) for name, jet in driven.items()}
+def _inputs(design: Design, driven: Driven) -> dict[str, arb]:
+    """All inputs; those that are not driven have their drawn values."""
+    given = {name: balls(jet) for name, jet in driven.items()}
+    return {name: jet.value for name, jet in (design.mechanism.drawn_inputs | given).items()}
+
+
+def _inputs_of(design: Design, numbers: Sequence[arb]) -> dict[str, Fraction]:
+    """The inputs, without those that move the chassis, from the numbers w."""
+    left, drawn = iter(numbers), design.mechanism.drawn_inputs
     return {
-        name: [jet.value for jet in one.numbers(given[name], given, as_ball)]
+        name: centre_of(one.input_of([*islice(left, len(one.numbers(drawn[name], drawn, as_ball)))]))
         for name, one in design.mechanism.drives.items()
-    }
-
-
-def _inputs(design: Design, numbers: Sequence[arb]) -> dict[str, Fraction]:
-    left, drives = iter(numbers), design.mechanism.drives
-    return {
-        name: centre_of(drives[name].input_of([*islice(left, len(own))]))
-        for name, own in _numbers(design, {}).items()
     }

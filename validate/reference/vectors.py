@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from math import frexp, sqrt
 from typing import Any
@@ -16,6 +17,7 @@ Scalar = Any
 Vector = tuple[Scalar, Scalar, Scalar]
 Exact = Callable[[Any], Scalar]
 """Converts a fraction, Python's or flint's, to one kind of scalar."""
+X, Y, Z = AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
 def each(change: Callable[[Scalar], Scalar], a: Vector) -> Vector:
@@ -73,3 +75,29 @@ def across(axis: Vector) -> tuple[Vector, Vector]:
 def near_one(vector: Vector) -> Vector:
     """A vector of fractions times the power of two that makes its length near one, if it is not zero."""
     return times(vector, Fraction(2) ** -frexp(max(abs(float(x)) for x in vector))[1])
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where a body is: the columns of its rotation matrix R, and the position of the drawing's origin."""
+
+    columns: tuple[Vector, Vector, Vector]
+    origin: Vector
+
+    @classmethod
+    def of(cls, columns: tuple[Vector, Vector, Vector], drawn: Vector, place: Vector) -> Placement:
+        """The one that moves the point `drawn` of the drawing to `place`."""
+        return cls(columns, minus(place, cls(columns, place).turned(drawn)))
+
+    def turned(self, v: Vector) -> Vector:
+        """A vector fixed in the body, rotated with it: R v."""
+        x, y, z = (times(column, part) for column, part in zip(self.columns, v, strict=True))
+        return plus(plus(x, y), z)
+
+    def turned_back(self, v: Vector) -> Vector:
+        """The vector that is rotated to v: R^T v."""
+        return dot(self.columns[0], v), dot(self.columns[1], v), dot(self.columns[2], v)
+
+    def place(self, drawn: Vector) -> Vector:
+        """Position of a point of the body, from its drawn position."""
+        return plus(self.origin, self.turned(drawn))

@@ -19,8 +19,7 @@ from validate.reference import (
     SingularPoseError,
     instants_of,
 )
-from validate.reference.design import values_only
-from validate.reference.equations import equations_in
+from validate.reference.design import equations_in, values_only
 from validate.reference.exact import bits
 from validate.reference.fold import Fold, fold_ahead, pose_before
 from validate.reference.krawczyk import Contraction, less, middle_inverse, newton

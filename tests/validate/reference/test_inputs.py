@@ -44,7 +44,7 @@ def test_no_more_digits_are_promised_than_the_arithmetic_has() -> None:
     ("name", "other", "message"),
     [
         ("strut_rod_end", "strut_top", "length of strut_rod"),
-        ("strut_lower", "strut_top", "strut_top in strut_lower"),
+        ("strut_lower", "strut_top", "strut_top is in the place of strut_lower"),
         ("lower_arm_rear", "lower_arm_front", "hinge of lower_arm"),
         ("strut_top", "", "finite real number"),
     ],

@@ -1,4 +1,4 @@
-"""Poses as the cars of effects, and the driven inputs by which effects are differentiated."""
+"""Which effects a car has, the driven inputs by which they are differentiated, and their values at a pose."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
     Raises:
         NoReferenceError: there is no such effect.
     """
-    for name in names:
+    for name in (names := [*names]):
         if name.rpartition(".")[2] not in EFFECTS:
             raise NoReferenceError("effect", f"is {name!r}", "a name of `effects.registry`")
     return numbers_with(design.corners, {part: provided(design, part) for part in design.corners}, names)
@@ -61,22 +61,17 @@ def numbers_with(
     corners: Mapping[str, int], has: Mapping[str, Collection[str]], names: Iterable[str]
 ) -> tuple[Number, ...]:
     """The numbers of these names for which parts, by prefix, have what is needed (see `Effect.needs`)."""
-    found: dict[str, Number] = {}
+    left_right = tuple(sorted(corners, key=lambda prefix: corners[prefix]))
+    pairs = [left_right] if [corners[prefix] for prefix in left_right] == [-1, 1] else []
+    found = []
     for name in names:
         part, dot, base = name.rpartition(".")
-        effect, pair = EFFECTS[base], pair_of(corners)
-        of_both = ((name, pair),) if pair else ()
-        of_each = ((prefix + base, (prefix,)) for prefix in ([part + dot] if dot else corners))
-        for label, prefixes in of_both if PAIR in effect.needs else of_each:
+        effect = EFFECTS[base]
+        single = [(prefix,) for prefix in ([part + dot] if dot else corners)]
+        for prefixes in pairs if PAIR in effect.needs else single:
             if all({*effect.needs} <= {*has[prefix], PAIR} for prefix in prefixes):
-                found[label] = Number(label, effect, prefixes)
-    return tuple(found.values())
-
-
-def pair_of(corners: Mapping[str, int]) -> tuple[str, ...]:
-    """The prefixes of the left and the right part, if there are just two parts on opposite sides."""
-    both = tuple(sorted(corners, key=lambda prefix: corners[prefix]))
-    return both if [corners[prefix] for prefix in both] == [-1, 1] else ()
+                found.append(Number(base if len(prefixes) > 1 else prefixes[0] + base, effect, prefixes))
+    return tuple({number.name: number for number in found}.values())
 
 
 def drawn_car(design: Design, number: Exact, prefix: str = "") -> Car:
@@ -132,8 +127,7 @@ def effects_at(
     def car(prefix: str, along: str | None) -> Car:
         drawn, body = drawn_car(design, as_ball, prefix), design.role(prefix + KNUCKLE)
         if along is None:
-            places = equations.points_of(enclosure, drawn.points)
-            return drawn.at(known.chassis.still(), places)
+            return drawn.at(known.chassis.still(), equations.points_of(enclosure, drawn.points))
         driven = driven_along(design, known, prefix, along)
         pose = with_rates(enclosure, driven, solver)
         frame = equations.frame_of(pose, body) if body in equations.frames else None

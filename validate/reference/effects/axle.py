@@ -46,8 +46,7 @@ def _by_side(left: Car, right: Car, to_left: Scalar, to_right: Scalar) -> Scalar
 
 def _cotangent(car: Car) -> Scalar:
     """cot d."""
-    ahead = dot(car.wheel.along, car.forward)
-    return dot(car.wheel.along, car.outboard) / (ahead if car.is_right else -ahead)
+    return dot(car.wheel.along, car.outboard) / (dot(car.wheel.along, car.forward) * car.side)
 
 
 def _turning_radius(left: Car, right: Car) -> Scalar:

@@ -8,7 +8,9 @@ from typing import Any
 
 from validate.reference.car_data import LENGTHS, LINES, RADIUS, WHEEL, car_data, corners
 from validate.reference.chassis import ChassisMotion
-from validate.reference.vectors import Exact, Scalar, Vector, cross, dot, each, length, minus, times
+from validate.reference.jet import slope_of, value_of
+from validate.reference.kinematics import body_rates
+from validate.reference.vectors import Exact, Scalar, Vector, cross, dot, each, length, minus, plus, times
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,7 @@ class Car:
         on_chassis: the lines before the turns of the chassis.
         up, forward, outboard: unit vectors, which do not turn with the chassis; forward is up x right,
             outboard leads away from the car's middle.
+        side: 1 for a right wheel, -1 for a left one.
         origin: origin of the user's coordinates, a point of the car's middle plane.
         data: data of the whole car, see `car_data`.
         knuckle: two vectors fixed in the wheel's carrier, after the turns of the chassis; None if not given.
@@ -78,6 +81,7 @@ class Car:
     up: Vector
     forward: Vector
     outboard: Vector
+    side: int
     origin: Vector
     data: Mapping[str, Scalar]
     knuckle: tuple[Vector, Vector] | None = None
@@ -102,16 +106,17 @@ class Car:
         named = {role: plain["roles"].get(prefix + role) for role in LINES}
         ends = {role: (points[0], points[1]) for role, points in named.items() if points is not None}
         lines = {role: Line(*(each(number, points[name]) for name in both)) for role, both in ends.items()}
-        up, right = plain["up"], plain["right"]
+        up, right, side = plain["up"], plain["right"], corners(plain)[prefix]
         return cls(
             ends=ends,
             lines=lines,
             on_chassis=lines,
             up=each(number, up),
             forward=each(number, cross(up, right)),
-            outboard=each(number, times(right, corners(plain)[prefix])),
+            outboard=each(number, times(right, side)),
+            side=side,
             origin=each(number, times(origin, -1 / unit)),
-            data={k: number(x / unit if k in LENGTHS else x) for k, x in car_data(plain).items()},
+            data={key: number(x / unit if key in LENGTHS else x) for key, x in car_data(plain).items()},
         )
 
     def at(
@@ -127,26 +132,21 @@ class Car:
             places: positions of the lines' points, relative to the chassis.
             knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
         """
-        turning = replace(chassis, rise=None)
+        car = chassis.turns
         lines = {role: Line(places[start], places[end]) for role, (start, end) in self.ends.items()}
-        turned = {role: Line(turning.moved(one.start), turning.moved(one.end)) for role, one in lines.items()}
-        frame = None if knuckle is None else (turning.turned(knuckle[0]), turning.turned(knuckle[1]))
+        turned = {role: Line(car.place(one.start), car.place(one.end)) for role, one in lines.items()}
+        frame = None if knuckle is None else (car.turned(knuckle[0]), car.turned(knuckle[1]))
         return replace(self, lines=turned, on_chassis=lines, knuckle=frame, drawing=self)
 
     @property
     def drawn(self) -> Car:
         """The corner as drawn."""
-        return self if self.drawing is None else self.drawing
+        return self.drawing or self
 
     @property
     def points(self) -> tuple[str, ...]:
         """The points of its lines."""
         return tuple(dict.fromkeys(point for ends in self.ends.values() for point in ends))
-
-    @property
-    def is_right(self) -> bool:
-        """Whether outboard is to the right, forward x up."""
-        return bool(dot(self.outboard, cross(self.forward, self.up)) > 0)
 
     @property
     def wheel(self) -> Line:
@@ -167,3 +167,14 @@ class Car:
         a, up = wheel.along, self.up
         across = minus(times(up, dot(a, a)), times(a, dot(a, up)))
         return minus(wheel.end, times(across, self.data[RADIUS] / length(across)))
+
+    @property
+    def turning(self) -> Vector:
+        """omega, the angular velocity of the wheel's carrier, from the slopes of `knuckle`."""
+        assert self.knuckle is not None
+        return body_rates(*self.knuckle, 1)[0]
+
+    def velocity(self, place: Vector) -> Vector:
+        """Of the carrier's point at a place p: W' + omega x (p - W)."""
+        arm = minus(each(value_of, place), each(value_of, self.wheel.end))
+        return plus(each(slope_of, self.wheel.end), cross(self.turning, arm))

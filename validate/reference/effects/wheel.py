@@ -1,8 +1,7 @@
 r"""The numbers of one wheel, defined in `pointcoord/effects/README.md`.
 
 a is the wheel's spin axis, k the steering axis, W the wheel centre, c the contact point. ' is the derivative
-if the car's numbers are duals. The wheel's carrier turns with omega and moves its point at p with W' + omega
-x (p - W); v is the velocity of its point at c.
+if the car's numbers are duals. The wheel's carrier turns with omega; v is the velocity of its point at c.
 """
 
 from __future__ import annotations
@@ -14,8 +13,11 @@ from functools import partial
 import validate.reference.car_data as data
 from validate.reference.effects.car import Car, Effect
 from validate.reference.jet import angle, only_where, slope_of, value_of
-from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, plus, root, times
+
+_WHEEL = (data.WHEEL,)
+ON_GROUND = (*_WHEEL, data.RADIUS)
+MOVING = (*ON_GROUND, data.KNUCKLE, data.TRAVEL)
 
 # Of positions.
 
@@ -43,18 +45,18 @@ def _lean(name: str, car: Car, along: Vector | None = None) -> Scalar:
 
 def _toe_change_by_arcsine(car: Car) -> Scalar:
     """asin(n . forward) - asin(drawn n . forward) (OptimumK's steer angle with the opposite sign)."""
-    return _lean("toe_by_arcsine", car) - _lean("toe_by_arcsine", car, car.drawn.lines[data.WHEEL].along)
+    return _lean("toe_by_arcsine", car) - _lean("toe_by_arcsine", car.drawn)
 
 
 def steer_angle(car: Car) -> Scalar:
     """Toe of a right wheel, minus toe of a left one: positive to the left."""
-    ahead = dot(car.wheel.along, car.forward)
-    return angle(ahead if car.is_right else -ahead, dot(car.wheel.along, car.outboard))
+    a = car.wheel.along
+    return angle(dot(a, car.forward) * car.side, dot(a, car.outboard))
 
 
 def _travel(car: Car) -> Scalar:
     """(W - drawn W) . up, before the turns of the chassis."""
-    return dot(minus(car.on_chassis[data.WHEEL].end, car.drawn.lines[data.WHEEL].end), car.up)
+    return dot(minus(car.on_chassis[data.WHEEL].end, car.drawn.wheel.end), car.up)
 
 
 def _contact_travel(car: Car) -> Scalar:
@@ -91,146 +93,22 @@ OFFSETS: dict[str, tuple[bool, Callable[[Car, Vector, Vector], Scalar]]] = {
 """For each number, whether it belongs to c or to W, and its formula from that point's offset and from a."""
 
 
-def _offset(name: str, car: Car, start: Vector, k: Vector, known: Callable[[Vector], Vector]) -> Scalar:
-    """One of `OFFSETS`, from the point of the axis along k at the same height: o - k (o . up) / (k . up).
+def _offset(name: str, car: Car, start: Vector, k: Vector) -> Scalar:
+    """One of `OFFSETS`, from the point of an axis along k at the same height: o - k (o . up) / (k . up).
 
     Args:
         start: any point of the axis.
-        known: the part of the wheel's vectors that is used.
     """
     at_contact, formula = OFFSETS[name]
-    o = minus(known(car.contact if at_contact else car.wheel.end), start)
+    o = minus(car.contact if at_contact else car.wheel.end, start)
     level = minus(o, times(k, dot(o, car.up) / dot(k, car.up)))
-    return formula(car, level, known(car.wheel.along))
+    return formula(car, level, car.wheel.along)
 
 
 def _from_steering(name: str, car: Car) -> Scalar:
     axis = car.lines[data.STEERING]
-    return _offset(name, car, axis.start, axis.along, lambda vector: vector)
+    return _offset(name, car, axis.start, axis.along)
 
-
-# Of motion.
-
-
-def _values(vector: Vector) -> Vector:
-    return each(value_of, vector)
-
-
-def _slopes(vector: Vector) -> Vector:
-    return each(slope_of, vector)
-
-
-def _turning(car: Car) -> Vector:
-    """omega."""
-    assert car.knuckle is not None
-    return body_rates(*car.knuckle, 1)[0]
-
-
-def _velocity(car: Car, place: Vector) -> Vector:
-    """Of the carrier's point at a place p: W' + omega x (p - W)."""
-    arm = minus(_values(place), _values(car.wheel.end))
-    return plus(_slopes(car.wheel.end), cross(_turning(car), arm))
-
-
-def velocity_of_contact(car: Car) -> Vector:
-    """v."""
-    return _velocity(car, car.contact)
-
-
-def _roll_centre(car: Car, v: Vector) -> Scalar:
-    """(c . outboard) (v . outboard) / (v . up).
-
-    The line through c at right angles to v meets the middle plane, which contains the origin, at this height
-    above c.
-    """
-    far = dot(minus(_values(car.contact), car.drawn.origin), car.outboard)
-    return far * dot(v, car.outboard) / dot(v, car.up)
-
-
-def _arm_roll_centre_height(car: Car) -> Scalar:
-    """The roll centre with an added turn f k about the steering axis that makes the motion a pure rotation:
-    (omega + f k) . u = 0 with u the velocity at the axis' lower point.
-    """
-    axis, omega = car.lines[data.STEERING], _turning(car)
-    lower, k = _values(axis.start), _values(axis.along)
-    u = _velocity(car, axis.start)
-    turn = minus(omega, times(k, dot(omega, u) / dot(k, u)))
-    return _roll_centre(car, plus(u, cross(turn, minus(_values(car.contact), lower))))
-
-
-def _damper_per_wheel(car: Car) -> Scalar:
-    """-l' / travel'."""
-    return -slope_of(_damper_length(car)) / slope_of(_travel(car))
-
-
-def _spring_force(car: Car) -> Scalar:
-    """K (l_0 - l)."""
-    given = car.drawn.data
-    return given[data.SPRING_RATE] * (given[data.FREE_LENGTH] - value_of(_damper_length(car)))
-
-
-# When only the rack moves, the carrier turns with omega about an axis through W + omega x W' / omega^2, and
-# moves along it by omega . W' / omega^2 per radian. The quotients are not finite if omega is zero or level.
-
-
-def _from_screw(name: str, car: Car) -> Scalar:
-    omega, moved = _turning(car), _slopes(car.wheel.end)
-    start = plus(_values(car.wheel.end), times(cross(omega, moved), 1 / dot(omega, omega)))
-    return _offset(name, car, start, omega, _values)
-
-
-def _screw_lean(name: str, car: Car) -> Scalar:
-    """One of `LEANS` of the screw axis, omega (omega . up), which leads up."""
-    omega = _turning(car)
-    return _lean(name, car, times(omega, dot(omega, car.up)))
-
-
-def _screw_pitch(car: Car) -> Scalar:
-    """omega . W' / omega^2."""
-    omega = _turning(car)
-    return dot(omega, _slopes(car.wheel.end)) / dot(omega, omega)
-
-
-# In the plane through c that a level direction h and `up` span, the instant centre of the carrier is
-# c + x h + z up with
-#     v . h - z omega . a = 0,      v . up + x omega . a = 0,      a = h x up.
-# It has no number if omega . a = 0 or if it is farther from c than this, in wheel radii.
-FARTHEST = 10**9
-
-
-def _beside(car: Car, h: Vector) -> Scalar:
-    """x of the instant centre; NaN at infinity."""
-    far = -dot(velocity_of_contact(car), car.up) / dot(_turning(car), cross(h, car.up))
-    return only_where(far, abs(value_of(far)) <= FARTHEST * car.drawn.data[data.RADIUS])
-
-
-def _above(car: Car, h: Vector) -> Scalar:
-    """z of the instant centre; NaN at infinity."""
-    return dot(velocity_of_contact(car), h) / dot(_turning(car), cross(h, car.up)) + 0 * _beside(car, h)
-
-
-# A force F that brakes the car shifts the load F h / L from the rear to the front wheels; h is the height of
-# the centre of gravity above the ground at this pose, L the wheelbase. This axle's part, b F rearward, acts
-# on a point of the carrier that moves with v as the wheel travels, like a lifting force
-# b F (v . rearward) / (v . up). The share of the shifted load that this force carries is
-#     b s (v . rearward) / (v . up) L / h,      s = -1 at the front and +1 at the rear.
-# A brake locks the wheel to the carrier: v is the velocity of c. A driving force points forward and shifts
-# load rearward, which gives the same quotient; the shaft from the chassis takes the torque, so v = W'.
-
-
-def _anti(name: str, share: str, velocity: Callable[[Car], Vector]) -> Effect:
-    def evaluate(car: Car) -> Scalar:
-        given, v = car.drawn.data, velocity(car)
-        lever = given[data.WHEELBASE] / (given[data.HEIGHT] - value_of(_contact_travel(car)))
-        return 100 * given[share] * given[data.AXLE] * -dot(v, car.forward) / dot(v, car.up) * lever
-
-    return _of_travel(f"anti_{name}", "%", evaluate, (*MOVING, data.AXLE, data.WHEELBASE, data.HEIGHT, share))
-
-
-_WHEEL = (data.WHEEL,)
-ON_GROUND = (*_WHEEL, data.RADIUS)
-MOVING = (*ON_GROUND, data.KNUCKLE, data.TRAVEL)
-_SPRUNG = (data.DAMPER, data.WHEEL, data.TRAVEL, data.SPRING_RATE, data.FREE_LENGTH)
 
 OF_POSITIONS = (
     *(Effect(name, "rad", (role,), partial(_lean, name)) for name, (role, _) in LEANS.items()),
@@ -250,43 +128,141 @@ OF_POSITIONS = (
 )
 
 
-def _of_travel(
-    name: str, unit: str, evaluate: Callable[[Car], Scalar], needs: tuple[str, ...] = MOVING
-) -> Effect:
-    return Effect(name, unit, needs, evaluate, data.TRAVEL)
+# By the travel of the wheel.
 
 
-def _of_screw(name: str, unit: str, evaluate: Callable[[Car], Scalar]) -> Effect:
-    return Effect(f"screw_{name}", unit, (*ON_GROUND, data.KNUCKLE, data.RACK), evaluate, data.RACK)
+def velocity_of_contact(car: Car) -> Vector:
+    """v."""
+    return car.velocity(car.contact)
 
 
+def _roll_centre(car: Car, v: Vector) -> Scalar:
+    """(c . outboard) (v . outboard) / (v . up).
+
+    The line through c at right angles to v meets the middle plane, which contains the origin, at this height
+    above c.
+    """
+    far = dot(minus(each(value_of, car.contact), car.drawn.origin), car.outboard)
+    return far * dot(v, car.outboard) / dot(v, car.up)
+
+
+def _arm_roll_centre_height(car: Car) -> Scalar:
+    """The roll centre with an added turn f k about the steering axis that makes the motion a pure rotation:
+    (omega + f k) . u = 0 with u the velocity at the axis' lower point.
+    """
+    axis, omega = car.lines[data.STEERING], car.turning
+    lower, k = each(value_of, axis.start), each(value_of, axis.along)
+    u = car.velocity(axis.start)
+    turn = minus(omega, times(k, dot(omega, u) / dot(k, u)))
+    return _roll_centre(car, plus(u, cross(turn, minus(each(value_of, car.contact), lower))))
+
+
+def _damper_per_wheel(car: Car) -> Scalar:
+    """-l' / travel'."""
+    return -slope_of(_damper_length(car)) / slope_of(_travel(car))
+
+
+def _wheel_per_damper(car: Car) -> Scalar:
+    return -slope_of(_travel(car)) / slope_of(_damper_length(car))
+
+
+def _spring_force(car: Car) -> Scalar:
+    """K (l_0 - l)."""
+    given = car.drawn.data
+    return given[data.SPRING_RATE] * (given[data.FREE_LENGTH] - value_of(_damper_length(car)))
+
+
+def _wheel_rate(car: Car) -> Scalar:
+    """K (l' / travel')^2."""
+    return car.drawn.data[data.SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car)
+
+
+# In the plane through c that a level direction h and `up` span, the instant centre of the carrier is
+# c + x h + z up with
+#     v . h - z omega . a = 0,      v . up + x omega . a = 0,      a = h x up.
+# It has no number if omega . a = 0 or if it is farther from c than this, in wheel radii.
+FARTHEST = 10**9
+
+
+def _beside(car: Car, h: Vector) -> Scalar:
+    """x of the instant centre; NaN at infinity."""
+    far = -dot(velocity_of_contact(car), car.up) / dot(car.turning, cross(h, car.up))
+    return only_where(far, abs(value_of(far)) <= FARTHEST * car.drawn.data[data.RADIUS])
+
+
+def _above(car: Car, h: Vector) -> Scalar:
+    """z of the instant centre; NaN at infinity."""
+    return dot(velocity_of_contact(car), h) / dot(car.turning, cross(h, car.up)) + 0 * _beside(car, h)
+
+
+# A force F that brakes the car shifts the load F h / L from the rear to the front wheels; h is the height of
+# the centre of gravity above the ground at this pose, L the wheelbase. This axle's part, b F rearward, acts
+# on a point of the carrier that moves with v as the wheel travels, like a lifting force
+# b F (v . rearward) / (v . up). The share of the shifted load that this force carries is
+#     b s (v . rearward) / (v . up) L / h,      s = -1 at the front and +1 at the rear.
+# A brake locks the wheel to the carrier: v is the velocity of c. A driving force points forward and shifts
+# load rearward, which gives the same quotient; the shaft from the chassis takes the torque, so v = W'.
+
+
+def _anti(share: str, velocity: Callable[[Car], Vector], car: Car) -> Scalar:
+    given, v = car.drawn.data, velocity(car)
+    lever = given[data.WHEELBASE] / (given[data.HEIGHT] - value_of(_contact_travel(car)))
+    return 100 * given[share] * given[data.AXLE] * -dot(v, car.forward) / dot(v, car.up) * lever
+
+
+_DAMPED = (data.DAMPER, data.WHEEL, data.TRAVEL)
+_SPRUNG = (*_DAMPED, data.SPRING_RATE, data.FREE_LENGTH)
+_BRAKED = (*MOVING, data.AXLE, data.WHEELBASE, data.HEIGHT, data.BRAKE_SHARE)
+_DRIVEN = (*_BRAKED[:-1], data.DRIVE_SHARE)
+_BY_TRAVEL: dict[str, tuple[str, tuple[str, ...], Callable[[Car], Scalar]]] = {
+    "damper_per_wheel": ("mm/mm", _DAMPED, _damper_per_wheel),
+    "wheel_per_damper": ("mm/mm", _DAMPED, _wheel_per_damper),
+    "spring_force": ("N", _SPRUNG, _spring_force),
+    "wheel_force": ("N", _SPRUNG, lambda car: _spring_force(car) * _damper_per_wheel(car)),
+    "wheel_rate": ("N/mm", _SPRUNG, _wheel_rate),
+    "arm_roll_centre_height": ("mm", (*MOVING, data.STEERING), _arm_roll_centre_height),
+    "roll_centre_height": ("mm", MOVING, lambda car: _roll_centre(car, velocity_of_contact(car))),
+    "front_view_swing_arm": ("mm", MOVING, lambda car: -_beside(car, car.outboard)),
+    "front_view_centre_height": ("mm", MOVING, lambda car: _above(car, car.outboard)),
+    "side_view_swing_arm": ("mm", MOVING, lambda car: _beside(car, times(car.forward, -1))),
+    "side_view_centre_height": ("mm", MOVING, lambda car: _above(car, times(car.forward, -1))),
+    "anti_brake": ("%", _BRAKED, partial(_anti, data.BRAKE_SHARE, velocity_of_contact)),
+    "anti_drive": ("%", _DRIVEN, partial(_anti, data.DRIVE_SHARE, lambda car: each(slope_of, car.wheel.end))),
+}
+
+
+# By the travel of the rack. When only the rack moves, the carrier turns with omega about an axis through
+# W + omega x W' / omega^2, and moves along it by omega . W' / omega^2 per radian. The quotients are not
+# finite if omega is zero or level.
+
+
+def _from_screw(name: str, car: Car) -> Scalar:
+    omega, centre = car.turning, car.wheel.end
+    off = times(cross(omega, each(slope_of, centre)), 1 / dot(omega, omega))
+    return value_of(_offset(name, car, plus(each(value_of, centre), off), omega))
+
+
+def _screw_lean(name: str, car: Car) -> Scalar:
+    """One of `LEANS` of the screw axis, omega (omega . up), which leads up."""
+    return _lean(name, car, times(car.turning, dot(car.turning, car.up)))
+
+
+def _screw_pitch(car: Car) -> Scalar:
+    """omega . W' / omega^2."""
+    return dot(car.turning, each(slope_of, car.wheel.end)) / dot(car.turning, car.turning)
+
+
+_BY_RACK: dict[str, tuple[str, Callable[[Car], Scalar]]] = {
+    **{name: ("rad", partial(_screw_lean, name)) for name in ("kingpin", "caster")},
+    **{name: ("mm", partial(_from_screw, name)) for name in OFFSETS},
+    "pitch": ("mm/rad", _screw_pitch),
+}
 OF_MOTION = (
-    *(_of_screw(name, "rad", partial(_screw_lean, name)) for name in ("kingpin", "caster")),
-    *(_of_screw(name, "mm", partial(_from_screw, name)) for name in OFFSETS),
-    _of_screw("pitch", "mm/rad", _screw_pitch),
-    _of_travel("damper_per_wheel", "mm/mm", _damper_per_wheel, _SPRUNG[:3]),
-    _of_travel(
-        "wheel_per_damper",
-        "mm/mm",
-        lambda car: -slope_of(_travel(car)) / slope_of(_damper_length(car)),
-        _SPRUNG[:3],
+    *(Effect(name, unit, needs, of, data.TRAVEL) for name, (unit, needs, of) in _BY_TRAVEL.items()),
+    *(
+        Effect(f"screw_{name}", unit, (*ON_GROUND, data.KNUCKLE, data.RACK), of, data.RACK)
+        for name, (unit, of) in _BY_RACK.items()
     ),
-    _of_travel("spring_force", "N", _spring_force, _SPRUNG),
-    _of_travel("wheel_force", "N", lambda car: _spring_force(car) * _damper_per_wheel(car), _SPRUNG),
-    _of_travel(
-        "wheel_rate",
-        "N/mm",
-        lambda car: car.drawn.data[data.SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car),
-        _SPRUNG,
-    ),
-    _of_travel("arm_roll_centre_height", "mm", _arm_roll_centre_height, (*MOVING, data.STEERING)),
-    _of_travel("roll_centre_height", "mm", lambda car: _roll_centre(car, velocity_of_contact(car))),
-    _of_travel("front_view_swing_arm", "mm", lambda car: -_beside(car, car.outboard)),
-    _of_travel("front_view_centre_height", "mm", lambda car: _above(car, car.outboard)),
-    _of_travel("side_view_swing_arm", "mm", lambda car: _beside(car, times(car.forward, -1))),
-    _of_travel("side_view_centre_height", "mm", lambda car: _above(car, times(car.forward, -1))),
-    _anti("brake", data.BRAKE_SHARE, velocity_of_contact),
-    _anti("drive", data.DRIVE_SHARE, lambda car: _slopes(car.wheel.end)),
 )
 
 PER = {data.TRAVEL: "mm", data.RACK: "mm", data.ROLL: "rad", data.TIME: "s"}
@@ -301,14 +277,8 @@ def _gradient(effect: Effect, along: str) -> Effect:
         slope = slope_of(effect.evaluate(car))
         return slope / slope_of(_travel(car)) if travels else slope
 
-    return replace(
-        effect,
-        name=f"{effect.name}_{along}",
-        unit=f"{effect.unit}/{PER[along]}",
-        needs=tuple(dict.fromkeys(needs)),
-        evaluate=evaluate,
-        along=along,
-    )
+    name, unit = f"{effect.name}_{along}", f"{effect.unit}/{PER[along]}"
+    return replace(effect, name=name, unit=unit, needs=needs, evaluate=evaluate, along=along)
 
 
 GRADIENTS = tuple(_gradient(effect, along) for effect in OF_POSITIONS for along in PER)
