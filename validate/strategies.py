@@ -162,13 +162,15 @@ def near_singular(
     decades = draw(st.integers(0, 16)) / 16.0 * math.log10(farthest / nearest)
     steps = {name: draw(st.integers(-50, 50)) for name in names}
     distance = farthest * 10.0**-decades
+    others = ((driven, ahead) for driven in reversed(names) for ahead in (False, True))
     # Try the requested end first, then other ends of the car, then the ends of its base car.
-    ends = product(reversed(names), (False, True))
-    ways = product((car, variant.base), ends, (0.0,), (distance, 0.1))
-    for there, (driven, ahead), beside, share in ((car, first, aside, distance), *ways):
-        pose = approach(there, variant, names, driven=driven, forward=ahead, aside=beside, distance=share)
-        if pose is not None:
-            laws = {name: [pose.inputs[name], steps[name] * _step(there, name)] for name in names}
+    ways = product((car, variant.base), dict.fromkeys((first, *others)), dict.fromkeys((aside, 0.0)))
+    for there, (driven, ahead), beside in ways:
+        for share in (distance, 0.1):
+            pose = approach(there, variant, names, driven=driven, forward=ahead, aside=beside, distance=share)
+            if pose is None:
+                break  # this end does not exist, so another distance does not help
+            laws = {n: [pose.inputs[n], steps[n] * _step(there, n)] for n in pose.home if n in names}
             scene = Scene.from_mapping(content_of(there, laws))
             if _is_solved(scene):
                 return scene

@@ -50,27 +50,37 @@ class InExudyn(Program):
         self.solver.InitializeSolver(system, self.settings)
         self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
         self.nothing = np.zeros((self.size + rows, self.size + rows))
-        super().__init__(tree, np.zeros(self.size), self.size, rods_spin=False)
+        super().__init__(tree, self.size, rods_spin=False)
 
     def joint(self, body: str) -> tuple[int, int]:
         return self.last[body], self.last[body]
 
+    @property
+    def coordinates(self) -> Array:
+        return np.array(self.system.systemData.GetODE2Coordinates())
+
+    def put(self, coordinates: Array) -> None:
+        self.system.systemData.SetODE2Coordinates(coordinates)
+
+    def move(self, step: Array) -> None:
+        self.put(self.coordinates + step)
+
     def positions(self, which: slice) -> Array:
-        self.system.systemData.SetODE2Coordinates(self.q)
         return self._read("Position", which)
 
     def gap_jacobian(self) -> Array:
-        self.system.systemData.SetODE2Coordinates(self.q)
         self.solver.SetSystemJacobian(self.nothing)
         self.solver.ComputeJacobianAE(self.system)
         # Exudyn's constraints are second - first.
         return -np.asarray(self.solver.GetSystemJacobian())[self.size :, : self.size]
 
-    def rates(self, which: slice, velocity: Array, acceleration: Array) -> Array:
-        self.system.systemData.SetODE2Coordinates_t(velocity)
-        self.system.systemData.SetODE2Coordinates_tt(acceleration)
-        each = np.stack([self._read(what, which) for what in READ[1:]])
-        return each.reshape(2, 2, -1, 3).swapaxes(1, 2)
+    def set_rates(self, rates: Array, accelerations: Array) -> None:
+        self.system.systemData.SetODE2Coordinates_t(rates)
+        self.system.systemData.SetODE2Coordinates_tt(accelerations)
+
+    def rates_of(self, which: slice, order: int) -> Array:
+        kinds = READ[1:3] if order == 1 else READ[3:]
+        return np.stack([self._read(what, which) for what in kinds], axis=1)
 
     def _links(self, tree: SpanningTree) -> int:
         """Exudyn's number of the tree; each link has one coordinate and mass 1 (no result depends on it)."""

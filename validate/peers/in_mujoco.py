@@ -36,41 +36,46 @@ class InMujoco(Program):
         self.model = model = spec_of(tree, dict(zip(names, tree.sites, strict=True))).compile()
         self.data = mujoco.MjData(model)
         self.sites = [model.site(name).id for name in names]
-        super().__init__(tree, np.array(self.data.qpos), model.nv)
+        super().__init__(tree, model.nv)
 
     def joint(self, body: str) -> tuple[int, int]:
         joint = self.model.joint(body)
         return joint.qposadr[0], joint.dofadr[0]
 
-    def moved(self, step: Array) -> Array:
-        q = self.q.copy()
-        mujoco.mj_integratePos(self.model, q, step, 1.0)
-        return q
+    @property
+    def coordinates(self) -> Array:
+        return np.array(self.data.qpos)
+
+    def put(self, coordinates: Array) -> None:
+        self.data.qpos[:] = coordinates
+
+    def move(self, step: Array) -> None:
+        mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
 
     def positions(self, which: slice) -> Array:
-        self.data.qpos[:] = self.q
         mujoco.mj_kinematics(self.model, self.data)
         return np.asarray(self.data.site_xpos[self.sites[which]])
 
     def gap_jacobian(self) -> Array:
         model, data = self.model, self.data
-        data.qpos[:] = self.q
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_makeConstraint(model, data)
         return np.asarray(data.efc_J.reshape(data.nefc, model.nv))
 
-    def rates(self, which: slice, velocity: Array, acceleration: Array) -> Array:
-        model, data, sites = self.model, self.data, self.sites[which]
-        data.qvel[:], data.qacc[:] = velocity, acceleration
-        mujoco.mj_comVel(model, data)
-        mujoco.mj_rnePostConstraint(model, data)
-        found = np.empty((2, len(sites), 6))
-        for of, rows in zip((mujoco.mj_objectVelocity, mujoco.mj_objectAcceleration), found, strict=True):
-            for site, row in zip(sites, rows, strict=True):
-                of(model, data, mujoco.mjtObj.mjOBJ_SITE, site, row, 0)
+    def set_rates(self, rates: Array, accelerations: Array) -> None:
+        self.data.qvel[:], self.data.qacc[:] = rates, accelerations
+        mujoco.mj_comVel(self.model, self.data)
+        mujoco.mj_rnePostConstraint(self.model, self.data)
+
+    def rates_of(self, which: slice, order: int) -> Array:
+        of = (mujoco.mj_objectVelocity, mujoco.mj_objectAcceleration)[order - 1]
+        sites = self.sites[which]
+        found = np.empty((len(sites), 6))
+        for site, row in zip(sites, found, strict=True):
+            of(self.model, self.data, mujoco.mjtObj.mjOBJ_SITE, site, row, 0)
         # MuJoCo gives the angular part first.
-        return found.reshape(2, -1, 2, 3)[:, :, ::-1]
+        return found.reshape(-1, 2, 3)[:, ::-1]
 
 
 def spec_of(tree: SpanningTree, sites: Mapping[str, Place]) -> mujoco.MjSpec:

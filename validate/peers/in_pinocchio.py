@@ -36,15 +36,22 @@ class InPinocchio(Program):
             at, kind = pinocchio.SE3(np.eye(3), tree.local(place)), pinocchio.FrameType.OP_FRAME
             frame = pinocchio.Frame(f"site {number}", self.number[place.body], at, kind)
             self.sites.append(model.addFrame(frame))
-        self.data = model.createData()
-        super().__init__(tree, np.array(pinocchio.neutral(model)), model.nv)
+        self.data, self.q = model.createData(), np.array(pinocchio.neutral(model))
+        super().__init__(tree, model.nv)
 
     def joint(self, body: str) -> tuple[int, int]:
         joint = self.model.joints[self.number[body]]
         return joint.idx_q, joint.idx_v
 
-    def moved(self, step: Array) -> Array:
-        return np.array(pinocchio.normalize(self.model, pinocchio.integrate(self.model, self.q, step)))
+    @property
+    def coordinates(self) -> Array:
+        return self.q.copy()
+
+    def put(self, coordinates: Array) -> None:
+        self.q = np.array(coordinates)
+
+    def move(self, step: Array) -> None:
+        self.q = pinocchio.normalize(self.model, pinocchio.integrate(self.model, self.q, step))
 
     def positions(self, which: slice) -> Array:
         pinocchio.framesForwardKinematics(self.model, self.data, self.q)
@@ -58,14 +65,13 @@ class InPinocchio(Program):
         first, second = np.reshape(each, (2, -1, model.nv))
         return np.asarray(first - second)
 
-    def rates(self, which: slice, velocity: Array, acceleration: Array) -> Array:
-        pinocchio.forwardKinematics(self.model, self.data, self.q, velocity, acceleration)
-        each = [
-            of(self.model, self.data, site, CAR).vector
-            for of in (pinocchio.getFrameVelocity, pinocchio.getFrameClassicalAcceleration)
-            for site in self.sites[which]
-        ]
-        return np.reshape(each, (2, -1, 2, 3))
+    def set_rates(self, rates: Array, accelerations: Array) -> None:
+        pinocchio.forwardKinematics(self.model, self.data, self.q, rates, accelerations)
+
+    def rates_of(self, which: slice, order: int) -> Array:
+        of = (pinocchio.getFrameVelocity, pinocchio.getFrameClassicalAcceleration)[order - 1]
+        each = [of(self.model, self.data, site, CAR).vector for site in self.sites[which]]
+        return np.reshape(each, (-1, 2, 3))
 
 
 def _kind(joint: Joint, own: Array) -> object:

@@ -68,10 +68,9 @@ class Program(ABC):
     """A mechanism in a program. It keeps the last pose, so it is not safe for several threads.
 
     Attributes:
-        q: coordinates of the joints; never changed in place.
-        as_drawn: these coordinates in the drawing.
-        points, reported, ends: which sites (see `SpanningTree.sites`) are moving points, these and the
-            knuckles, and first and then second sides of the loops.
+        points, ends, bodies: which sites (see `SpanningTree.sites`) are moving points, first and then second
+            sides of the loops, and origins of the knuckles.
+        as_drawn: coordinates of the joints in the drawing.
         driven_at: indices of the driven joints among the coordinates.
         driven, unknown: indices of the driven and of the free joints among the joints' rates.
         rows: the rows that are solved.
@@ -93,17 +92,17 @@ class Program(ABC):
     begun: float = 1.0
     nearest: float = 1.0
 
-    def __init__(self, tree: SpanningTree, q: Array, rates: int, rods_spin: bool = True) -> None:
+    def __init__(self, tree: SpanningTree, rates: int, rods_spin: bool = True) -> None:
         """Number the joints of a program's model, which is made before.
 
         Args:
-            q: coordinates of the joints in the drawing.
             rates: number of rates of all joints.
             rods_spin: whether the joint of a rod has three rates, the last one about the rod.
         """
-        self.tree, self.q, self.as_drawn = tree, q, q
-        points, reported = len(tree.moving), len(tree.moving) + len(tree.knuckles)
-        self.points, self.reported, self.ends = slice(points), slice(reported), slice(reported, None)
+        self.tree, self.as_drawn = tree, self.coordinates
+        first = len(tree.moving)
+        last = first + 2 * len(tree.loops)
+        self.points, self.ends, self.bodies = slice(first), slice(first, last), slice(last, None)
         driven = np.array([self.joint(driven.body) for driven in tree.driven], dtype=np.intp)
         self.driven_at, self.driven = driven.reshape(-1, 2).T
         # The spin of a rod has no effect: its rate is fixed at 0.
@@ -114,31 +113,43 @@ class Program(ABC):
     def joint(self, body: str) -> tuple[int, int]:
         """Index of the first coordinate and of the first rate of the joint that carries a body."""
 
-    def moved(self, step: Array) -> Array:
-        """The coordinates after a small step: where these rates of the joints lead in a unit of time."""
-        return np.asarray(self.q + step)
+    @property
+    @abstractmethod
+    def coordinates(self) -> Array:
+        """A copy of the joints' coordinates."""
+
+    @abstractmethod
+    def put(self, coordinates: Array) -> None:
+        """Set all joints."""
+
+    @abstractmethod
+    def move(self, step: Array) -> None:
+        """Move all joints by a small step, as their rates would in a unit of time."""
 
     @abstractmethod
     def positions(self, which: slice) -> Array:
-        """Place all bodies at `q`. The positions of some sites, (sites, 3)."""
+        """Place all bodies. The positions of some sites, (sites, 3)."""
 
     @abstractmethod
     def gap_jacobian(self) -> Array:
-        """Place all bodies at `q`. Derivative of first - second of each loop by the rates, (rows, rates)."""
+        """Place all bodies. The derivative of first - second of each loop by the rates, (rows, rates)."""
 
     @abstractmethod
-    def rates(self, which: slice, velocity: Array, acceleration: Array) -> Array:
-        """Rates of some sites at the pose of the last call of `gap_jacobian`.
+    def set_rates(self, rates: Array, accelerations: Array) -> None:
+        """Set rates and accelerations of the joints at the pose of the last call of `gap_jacobian`."""
 
-        Args:
-            velocity, acceleration: of the joints.
-        Returns:
-            Velocity and acceleration, linear and angular, of each site, (2, sites, 2, 3).
-        """
+    @abstractmethod
+    def rates_of(self, which: slice, order: int) -> Array:
+        """Linear and angular velocity of some sites, or their accelerations for order 2, (sites, 2, 3)."""
 
     def misses(self) -> tuple[Array, Array]:
         """The residual of the loops, (rows,), and its Jacobian by the joints' rates."""
         return _apart(self.positions(self.ends)), self.gap_jacobian()
+
+    def apart(self, rates: Array, accelerations: Array) -> Array:
+        """Relative acceleration of the two sides of the loops, (rows,), for these rates of the joints."""
+        self.set_rates(rates, accelerations)
+        return _apart(self.rates_of(self.ends, 2)[:, 0])
 
     def closed(self, tolerance: float) -> Motion:
         """The drawing, closed at its own inputs: one pose, at rest.
@@ -149,9 +160,9 @@ class Program(ABC):
             NoAnswer: its inputs do not drive the mechanism, or it does not close in the drawn assembly.
         """
         self.tolerance, drawn = tolerance, self.tree.drawn_inputs
-        self.q = self.as_drawn
+        self.put(self.as_drawn)
         self._at(drawn)
-        jacobian = self.gap_jacobian()
+        jacobian = self.misses()[1]
         unknown, count = jacobian[:, self.unknown], len(self.unknown)
         rows = independent_rows(unknown)
         if len(rows) < count:
@@ -186,8 +197,8 @@ class Program(ABC):
                 `partial` has those before.
         """
         self.tolerance, inputs, here = tolerance, series[..., 0], start.inputs[-1]
-        self.q = start.coordinates[-1]
-        self.jacobian, self.way = self.gap_jacobian(), np.zeros(len(self.unknown) + len(self.driven))
+        self.put(start.coordinates[-1])
+        self.jacobian, self.way = self.misses()[1], np.zeros(len(self.unknown) + len(self.driven))
         driven = self.tree.coordinates(series)
         found: list[State] = []
 
@@ -202,7 +213,7 @@ class Program(ABC):
                 raise refusal("cannot be reached", here + done * (wanted - here))
             here = wanted
             if len(self.rows) < 3 * len(self.tree.loops):
-                missed = float(np.abs(_apart(self.positions(self.ends))).max())
+                missed = float(np.abs(self.misses()[0]).max())
                 if not missed <= HELD + step**2:
                     words = f"violates closures that are dependent in the drawing by {missed:.3g}"
                     raise refusal(words, wanted)
@@ -221,18 +232,22 @@ class Program(ABC):
         Raises:
             LinAlgError: the rates are not determined.
         """
-        linear = self.positions(self.points)[None]
-        if driven is None:
-            return self.q, linear, np.empty((0, len(self.tree.knuckles), 3)), step
-        jacobian = self.gap_jacobian()[self.rows]
-        velocity, acceleration = np.zeros((2, jacobian.shape[1]))
-        velocity[self.driven], acceleration[self.driven] = driven[:, 1], driven[:, 2]
-        inverse = np.linalg.inv(jacobian[:, self.unknown])
-        velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ driven[:, 1])
-        apart = _apart(self.rates(self.ends, velocity, acceleration)[1, :, 0])
-        acceleration[self.unknown] = -inverse @ apart[self.rows]
-        rates, points = self.rates(self.reported, velocity, acceleration), linear.shape[1]
-        return self.q, np.concatenate([linear, rates[:, :points, 0]]), rates[:, points:, 1], step
+        orders = 1 if driven is None else 3
+        linear = np.empty((orders, len(self.tree.moving), 3))
+        angular = np.empty((orders - 1, len(self.tree.knuckles), 3))
+        linear[0] = self.positions(self.points)
+        if driven is not None:
+            jacobian = self.misses()[1][self.rows]
+            velocity, acceleration = (np.zeros(jacobian.shape[1]) for _ in range(2))
+            velocity[self.driven], acceleration[self.driven] = driven[:, 1], driven[:, 2]
+            inverse = np.linalg.inv(jacobian[:, self.unknown])
+            velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ driven[:, 1])
+            acceleration[self.unknown] = -inverse @ self.apart(velocity, acceleration)[self.rows]
+            self.set_rates(velocity, acceleration)
+        for order in range(1, orders):
+            linear[order] = self.rates_of(self.points, order)[:, 0]
+            angular[order - 1] = self.rates_of(self.bodies, order)[:, 1]
+        return self.coordinates, linear, angular, step
 
     def signs(self, jacobian: Array) -> Array:
         """Signs of the determinants of the diagonal blocks of J_u, (blocks,)."""
@@ -243,8 +258,9 @@ class Program(ABC):
     def _at(self, inputs: Array) -> None:
         """Set the driven joints to inputs, (drives,)."""
         series = np.stack([inputs, *np.zeros((2, len(inputs)))], axis=-1)
-        self.q = self.q.copy()
-        self.q[self.driven_at] = self.tree.coordinates(series)[:, 0]
+        coordinates = self.coordinates
+        coordinates[self.driven_at] = self.tree.coordinates(series)[:, 0]
+        self.put(coordinates)
 
     def _go(self, start: Array, goal: Array) -> tuple[float, float]:
         """Follow the inputs to a goal, by halves where Newton's method would step too far.
@@ -258,13 +274,13 @@ class Program(ABC):
             self.begun, self.nearest = condition, 1.0
         self.way = way
         while done < 1.0:
-            kept, share = self.q, min(share, 1.0 - done)
+            kept, share = self.coordinates, min(share, 1.0 - done)
             there = start + (done + share) * (goal - start) if done + share < 1.0 else goal
             step = self._newton(there)
             if step is not None:
                 way, condition = self._way(there, goal - start)
             if step is None or self._turns_off(way, condition):
-                self.q = kept
+                self.put(kept)
                 share *= 0.5
                 if share < 0.5**HALVINGS:
                     break
@@ -320,7 +336,7 @@ class Program(ABC):
                 step *= LONGEST_STEP / size
             elif number == 1 and size > CONTRACTED * previous and size > ROUNDING_STEP and not shorten:
                 return None
-            self.q = self.moved(step)
+            self.move(step)
             if size <= self.tolerance or (size < ROUNDING_STEP and size >= 0.5 * previous):
                 return size if (self.signs(square) == self.drawn).all() else None
             previous = size
@@ -332,7 +348,7 @@ class Program(ABC):
         The multipliers u of the rows, with u J_u = 0 nearly, load the drives by u J_d. The parts with more
         than half of the largest share are named, the strongest first.
         """
-        jacobian = self.gap_jacobian()[self.rows]
+        jacobian = self.misses()[1][self.rows]
         if not len(self.unknown):
             return 1.0, ()
         left, sizes, _ = np.linalg.svd(jacobian[:, self.unknown])

@@ -34,8 +34,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations, repeat
-from typing import Any, Literal
+from itertools import combinations, count, repeat
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -58,8 +58,7 @@ TINIEST = 1e-250  # mm: the square of a smaller car is not a normal floating-poi
 # Share of the car's size: points that are nearer to a line count as drawn on it.
 ON_LINE = 16.0 * float(np.finfo(float).eps)
 COORDINATES: Mapping[Kind, int] = {"hinge": 1, "slide": 1, "ball": 3}
-Holding = tuple[str, str]
-"""A point and a body that has it."""
+Member = TypeVar("Member")
 
 
 @dataclass(frozen=True)
@@ -77,19 +76,27 @@ class _Edge:
     slide: str = ""
 
     @property
-    def between(self) -> tuple[str, frozenset[str]]:
-        return self.slide, frozenset(self.bodies)
-
-    @property
     def coordinates(self) -> int:
         return sum(COORDINATES[kind] for kind in self.kinds)
 
 
-def _merge(groups: dict[Holding, Holding], one: Holding, other: Holding) -> bool:
+def _merge(groups: dict[Member, Member], one: Member, other: Member) -> bool:
     """Merge the groups of two members; `groups` maps each member to its group. Whether they were apart."""
     old, new = groups.setdefault(one, one), groups.setdefault(other, other)
     groups.update({member: new for member, group in groups.items() if group == old})
     return old != new
+
+
+def unit_vector(vector: Array, start: str, end: str) -> Array:
+    """Unit vector from one point to another.
+
+    Raises:
+        NoAnswer: they coincide.
+    """
+    size = float(np.linalg.norm(vector))
+    if size == 0.0:
+        raise NoAnswer(start, f"is where {end} is, so that their line has no direction", "points apart")
+    return np.asarray(vector / size)
 
 
 def turned_least(vector: Array, line: Array, other: Array) -> Array:
@@ -166,8 +173,9 @@ class _Cutter:
 
     def tree(self) -> SpanningTree:
         edges = self._edges()
+        self.taken = self._taken(edges)
         self.made: dict[tuple[str, frozenset[str]], list[Joint]] = {}
-        self.joints = self._joints(edges)
+        self.joints = self._joints()
         depth = {CHASSIS: 0}
         for joint in self.joints:
             depth[joint.body] = depth[joint.parent] + COORDINATES[joint.kind]
@@ -196,19 +204,7 @@ class _Cutter:
         through, along = slide["through"], slide["along"]
         if along in self.directions:
             return self.directions[along]
-        return self._between(through, along)[1]
-
-    def _between(self, start: str, end: str) -> tuple[float, Array]:
-        """Distance of two points as drawn, and the unit vector from the first to the second.
-
-        Raises:
-            NoAnswer: they coincide.
-        """
-        vector = self.drawn[end] - self.drawn[start]
-        size = float(np.linalg.norm(vector))
-        if size == 0.0:
-            raise NoAnswer(start, f"is where {end} is, so that their line has no direction", "points apart")
-        return size, np.asarray(vector / size)
+        return unit_vector(self.drawn[along] - self.drawn[through], through, along)
 
     def _foot(self, slide: Mapping[str, Any], point: str) -> Array:
         """The place of a slide's line nearest to a point as drawn; the point itself if it is there."""
@@ -234,7 +230,9 @@ class _Cutter:
                 raise NoAnswer(f"{one} and {other}", f"share {len(shared)} points", "one or two")
             if len(shared) == 2:
                 p, q = shared
-                axis = self._between(p, q)[1]
+                axis = unit_vector(self.drawn[q] - self.drawn[p], p, q)
+                for body in (one, other):
+                    self._require_width(body, p, axis)
                 found.append(_Edge((one, other), ("hinge",), shared, axis))
             elif shared:
                 found.append(_Edge((one, other), ("ball",), shared, NO_AXIS))
@@ -250,11 +248,18 @@ class _Cutter:
                     found.append(_Edge((slide["body"], body), kinds, tuple(points), axis, name))
         return found
 
-    def _joints(self, edges: list[_Edge]) -> list[Joint]:
-        """Joints from the chassis outwards (Prim): driven ones first, then by the number of coordinates.
+    def _require_width(self, body: str, start: str, axis: Array) -> None:
+        """Raise `NoAnswer` if a moving body on a hinge has no point off the hinge's line."""
+        if body == CHASSIS:
+            return
+        for p in self.bodies[body]:
+            if np.any(np.cross(axis, self.drawn[p] - self.drawn[start])):
+                return
+        p = self.bodies[body][-1]
+        raise NoAnswer(p, f"lies on the hinge of {body}, as all of its points do", "a place beside that line")
 
-        `made` gets the joints of each edge that is taken, by its slide and its bodies.
-        """
+    def _taken(self, edges: list[_Edge]) -> list[_Edge]:
+        """The joints of the tree (Kruskal): driven ones first, then by the number of their coordinates."""
         turning = [
             {drive["angle"], drive.get("on", CHASSIS)}
             for drive in self.inputs.values()
@@ -263,38 +268,59 @@ class _Cutter:
         ways = sorted(
             edges, key=lambda e: (set(e.bodies) not in turning, e.coordinates, CHASSIS not in e.bodies)
         )
+        groups: dict[str, str] = {}
+        return [edge for edge in ways if _merge(groups, *edge.bodies)]
+
+    def _joints(self) -> list[Joint]:
+        """Joints from the chassis outwards; `made` has those of each edge, by its slide and its bodies."""
         joints: list[Joint] = []
         reached = [CHASSIS]
-        while left := [body for body in self.bodies if body not in reached]:
-            edge = next((e for e in ways if (e.bodies[0] in reached) != (e.bodies[1] in reached)), None)
-            if edge is None:
-                # The body with the most points: the remaining bodies are then connected to it.
-                child = max(left, key=lambda body: len(self.bodies[body]))
-                joints += self._floating(child)
-            else:
-                parent, child = sorted(edge.bodies, key=lambda body: body not in reached)
-                names = [*(f"{child} slide" for _ in edge.kinds[1:]), child]
-                links = zip(names, edge.kinds, repeat(edge.axis))  # as many as names
-                self.made[edge.between] = made = _in_a_row(parent, self.at[edge.points[0]], links)
-                joints += made
-            reached.append(child)
-        return joints
+        while True:
+            for parent in reached:
+                for edge in self.taken:
+                    child = {edge.bodies[0]: edge.bodies[1], edge.bodies[1]: edge.bodies[0]}.get(parent)
+                    if child is not None and child not in reached:
+                        names = [*(f"{child} slide" for _ in edge.kinds[1:]), child]
+                        links = zip(names, edge.kinds, repeat(edge.axis))  # as many as names
+                        made = _in_a_row(parent, self.at[edge.points[0]], links)
+                        self.made[edge.slide, frozenset(edge.bodies)] = made
+                        joints += made
+                        reached.append(child)
+            left = [body for body in self.bodies if body not in reached]
+            if not left:
+                return joints
+            # The body with the most points: the remaining bodies are then connected to it.
+            root = max(left, key=lambda body: len(self.bodies[body]))
+            joints += self._floating(root)
+            reached.append(root)
 
     def _floating(self, body: str) -> list[Joint]:
-        """The joints by which a body moves freely; a point needs no ball joint."""
-        names = [f"{body} {axis}" for axis in ("xy" if body in self.free.values() else "xyz")]
+        names = [f"{body} {axis}" for axis in "xyz"]
+        names[2:] = [body] if body in self.free.values() else [names[2], body]
+        axes = [*np.eye(3), NO_AXIS][: len(names)]
         kinds: list[Kind] = ["slide", "slide", "slide", "ball"]
-        links = zip([*names, body], kinds, [*np.eye(3), NO_AXIS], strict=False)  # as many as names
-        return _in_a_row(CHASSIS, self.at[self.bodies[body][0]], links)
+        return _in_a_row(CHASSIS, self.at[self.bodies[body][0]], zip(names, kinds, axes, strict=False))
 
     def _close(self, edges: list[_Edge]) -> None:
         """Add the closures for the joints, slides and rods that are not in the tree."""
-        met: dict[Holding, Holding] = {}
-        for edge in sorted(edges, key=lambda e: e.between not in self.made):
+        met: dict[tuple[str, str], tuple[str, str]] = {}
+        numbers = count()
+        for edge in self.taken:
+            if not edge.slide:
+                for p in edge.points:
+                    _merge(met, (p, edge.bodies[0]), (p, edge.bodies[1]))
+        for edge in edges:
+            if edge.slide:
+                continue
             one, other = edge.bodies
-            for p in () if edge.slide else edge.points:
-                if _merge(met, (p, one), (p, other)) and edge.between not in self.made:
-                    self.loops.append(Loop(p, Place(other, self.at[p]), Place(one, self.at[p])))
+            apart = [p for p in edge.points if _merge(met, (p, one), (p, other))]
+            for p in apart:
+                number, first, second = next(numbers), Place(other, self.at[p]), Place(one, self.at[p])
+                # Once the first point meets, the second one need only stay on the hinge's line.
+                if p != apart[0] or len(apart) < len(edge.points):
+                    self._on_line(f"closure {number} {p}", p, first, second, edge.axis)
+                else:
+                    self.loops.append(Loop(p, first, second))
         on_rods = {(slide, p) for slide, p, _, _ in self.sliding_rods.values()}
         for name, slide in self.slides.items():
             axis = self._line(slide)
@@ -304,22 +330,30 @@ class _Cutter:
                     continue
                 for p in points[:2]:
                     if (name, p) not in on_rods:
-                        self._on_line(f"closure {name} {p}", p, Place(body, self.at[p]), through, axis)
+                        self._on_line(
+                            f"closure {next(numbers)} {p}", p, Place(body, self.at[p]), through, axis
+                        )
                 if len(points) > 1 and not slide["turns"]:
                     # Two places of the body stay level: its frame's origin, and one along u, rotated by the
                     # smallest rotation of the slide's line onto the body's line.
                     u, v = across(axis)
-                    own = self._between(*points[:2])[1]
+                    own = unit_vector(self.drawn[points[1]] - self.drawn[points[0]], *points[:2])
                     start = next(joint.at for joint in self.joints if joint.body == body)
                     ends = Place(body, start), Place(body, start + turned_least(u, axis, own))
-                    self._level(f"closure {name}", name, slide["body"], v, *ends)
+                    self._level(f"closure {next(numbers)} {name}", name, slide["body"], v, *ends)
         for name, (one, other) in self.rods.items():
-            length, _ = self._between(one, other)
+            length, number = self._distance(one, other, f"{name} has no length"), next(numbers)
             if name in self.sliding_rods:
                 _, p, q, foot = self.sliding_rods[name]
                 self.loops.append(Loop(p, self.points[p], Place(self.free[q], foot)))
             else:
-                self._rod(f"closure rod {name}", name, self.points[one], self.points[other], length)
+                self._rod(f"closure {number} {name}", name, self.points[one], self.points[other], length)
+
+    def _distance(self, one: str, other: str, without: str) -> float:
+        length = float(np.linalg.norm(self.drawn[one] - self.drawn[other]))
+        if length == 0.0:
+            raise NoAnswer(other, f"is where {one} is, so that {without}", "points apart")
+        return length
 
     def _slide(self, name: str, place: Place, axis: Array) -> Place:
         self.joints.append(Joint(name, place.body, "slide", place.at, axis))
@@ -347,7 +381,7 @@ class _Cutter:
         self, name: str, of: str, first: Place, second: Place, length: float, is_driven: bool = False
     ) -> None:
         axis = second.at - first.at
-        axis /= np.linalg.norm(axis)
+        axis = axis / float(np.linalg.norm(axis))
         self.joints.append(Joint(name, first.body, "ball", first.at))
         self.rods_made[name] = axis
         end = Place(name, first.at + length * axis)
@@ -376,7 +410,7 @@ class _Cutter:
             self._height(label, name, "length", (rim, Place(base, rim.at)), up, base, 1.0, 0.0)
         elif "distance" in given:
             p, q = given["distance"]
-            length, _ = self._between(q, p)
+            length = self._distance(q, p, f"{name} has no direction")
             self._rod(label, name, self.points[p], self.points[q], length, True)
 
     def _turn(self, name: str, given: Mapping[str, Any]) -> None:
@@ -392,8 +426,8 @@ class _Cutter:
 
     def _angle(self, label: str, name: str, given: Mapping[str, Any]) -> None:
         of, about, axis = given["of"], given["about"], self.directions[given["from"]]
-        size, lever = self._between(about, of)
-        drawn = math.acos(min(1.0, max(-1.0, float(lever @ axis))))
+        size = self._distance(about, of, f"{name} is no angle")
+        drawn = math.acos(min(1.0, max(-1.0, float((self.drawn[of] - self.drawn[about]) @ axis) / size)))
         ends = self.points[of], self.points[about]
         self._height(label, name, "angle", ends, axis, CHASSIS, size, drawn)
 
@@ -444,14 +478,17 @@ class _Cutter:
         each in the ground's axes. Here the chassis is the base, so the joints have the reverse sense, and the
         joint of the first input comes first.
         """
-        movers = [one for one in self.inputs.items() if "moves" in one[1] or "turns" in one[1]]
+        moves = [(name, given) for name, given in self.inputs.items() if "moves" in given]
+        turns = [(name, given) for name, given in self.inputs.items() if "turns" in given]
         body = CHASSIS
-        for name, given in sorted(movers, key=lambda one: "turns" not in one[1]):
+        for name, given in [*turns, *moves]:
             turned, axis = "turns" in given, self.directions[given["along"]]
             at = self.drawn[given["about"]] if turned else np.zeros(3)
-            self.joints.append(Joint(f"ground by {name}", body, "hinge" if turned else "slide", at, axis))
-            body = self.joints[-1].body
-            self.driven.append(Driven(name, "turn" if turned else "length", 0.0, body, -1.0, 0.0))
+            joint = Joint(f"ground by {name}", body, "hinge" if turned else "slide", at, axis)
+            self.joints.append(joint)
+            kind: Literal["turn", "length"] = "turn" if turned else "length"
+            self.driven.append(Driven(name, kind, 0.0, joint.body, -1.0, 0.0))
+            body = joint.body
         return body
 
     def _contact(self, label: str, name: str, base: str, inner: str, centre: str) -> Place:
@@ -462,7 +499,7 @@ class _Cutter:
             raise NoAnswer(
                 name, f"needs a wheel with {inner} and {centre}", "points of one body, and a wheel_radius"
             )
-        axle = self._between(inner, centre)[1]
+        axle = unit_vector(self.drawn[centre] - self.drawn[inner], inner, centre)
         if not abs(float(up @ axle)) < 1.0:
             raise NoAnswer(name, "has a wheel that lies flat, with no lowest point", "an upright wheel")
         hub = self.at[centre]

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from validate.arrays import Array
+from validate.arrays import Array, Flags
 from validate.errors import NoAnswer
 
 CHASSIS = "chassis"
@@ -17,7 +17,6 @@ Kind = Literal["hinge", "ball", "slide"]
 UNIT_ROUNDOFF = 0.5 * float(np.finfo(float).eps)
 CHAIN = 6.0  # roundings on the way from the chassis to a point
 # Range of an input: an angle is found from its cosine, and a rod of zero length has no direction.
-ANY = -np.inf, np.inf, "finite numbers and rates"
 BETWEEN = {
     "angle": (0.0, np.pi, "an angle from 0 to pi"),
     "distance": (np.nextafter(0.0, 1.0), np.inf, "a distance above 0"),
@@ -132,10 +131,10 @@ class SpanningTree:
 
     @cached_property
     def sites(self) -> tuple[Place, ...]:
-        """The moving points, the origins of the knuckles, and the first and the second sides of all loops."""
-        bodies = [Place(body, self.frames[body][0]) for body in self.knuckles]
-        first, second = [loop.first for loop in self.loops], [loop.second for loop in self.loops]
-        return (*self.moving.values(), *bodies, *first, *second)
+        """The moving points, the first and the second sides of all loops, and the origins of the knuckles."""
+        first, second = ([getattr(loop, side) for loop in self.loops] for side in ("first", "second"))
+        bodies = (Place(body, self.frames[body][0]) for body in self.knuckles)
+        return (*self.moving.values(), *first, *second, *bodies)
 
     @cached_property
     def frames(self) -> Mapping[str, tuple[Array, Array]]:
@@ -174,20 +173,21 @@ class SpanningTree:
         Args:
             laws: value and two time derivatives of every input, (N, 3), rad or mm per s^d.
         Raises:
-            NoAnswer: an input is not a number, or is outside its range.
+            NoAnswer: an input is missing, is not a number, or is outside its range.
         """
-        ranges = {driven.input: BETWEEN.get(driven.kind, ANY) for driven in self.driven}
         for name, law in laws.items():
-            least, most, allowed = ranges.get(name, ANY)
-            right = np.isfinite(law).all(axis=1) & (law[:, 0] >= least) & (law[:, 0] <= most)
-            if not right.all():
-                at = int(np.argmin(right))
-                value = next((x for x in law[at].tolist() if not np.isfinite(x)), float(law[at, 0]))
-                words = f"is {value} at instant number {at}"
-                raise NoAnswer(f"input {name!r}", words, allowed, name=name, value=value, instant=at)
-        scales = [1.0 if driven.is_angle else driven.per_input / self.unit for driven in self.driven]
-        each = [scale * laws[driven.input] for scale, driven in zip(scales, self.driven, strict=True)]
-        return np.stack(each, axis=1)
+            _require(name, law, np.asarray(np.isfinite(law).all(axis=1)), "finite numbers and rates")
+        found = []
+        for driven in self.driven:
+            if driven.input not in laws:
+                raise _refused(driven.input, "missing", "; ".join(one.input for one in self.driven))
+            law = laws[driven.input]
+            if driven.kind in BETWEEN:
+                least, most, words = BETWEEN[driven.kind]
+                value = law[:, 0]
+                _require(driven.input, law, np.asarray((value >= least) & (value <= most)), words)
+            found.append(law if driven.is_angle else law * (driven.per_input / self.unit))
+        return np.stack(found, axis=1)
 
     def moved(self, places: Array) -> dict[str, float]:
         """Distance of the moving points, (points, 3), from their drawn places, mm, by name."""
@@ -202,6 +202,18 @@ class SpanningTree:
         """
         far = max(1.0, *(float(np.abs(place).max()) for place in self.drawn.values()))
         return np.asarray((CHAIN * UNIT_ROUNDOFF * far + last_step**2) * self.unit)
+
+
+def _require(name: str, law: Array, right: Flags, allowed: str) -> None:
+    if not right.all():
+        wrong = int(np.argmin(right))
+        bad = law[wrong][~np.isfinite(law[wrong])]
+        raise _refused(name, float(bad[0] if bad.size else law[wrong, 0]), allowed, wrong)
+
+
+def _refused(name: str, value: float | str, allowed: str, instant: int | None = None) -> NoAnswer:
+    where = "" if instant is None else f" at instant number {instant}"
+    return NoAnswer(f"input {name!r}", f"is {value}{where}", allowed, name=name, value=value, instant=instant)
 
 
 def across(axis: Array) -> tuple[Array, Array]:

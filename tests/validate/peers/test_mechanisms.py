@@ -79,12 +79,16 @@ def test_inputs_that_are_too_many_or_too_few_are_refused() -> None:
         InPinocchio(cut(mechanism)).closed(1e-12)
 
 
-def test_an_input_that_is_no_number_is_refused_with_its_instant() -> None:
+@pytest.mark.parametrize("wrong", [np.nan, None])
+def test_an_input_that_is_no_number_or_missing_is_refused_with_its_instant(wrong: float | None) -> None:
     laws = {name: held(np.full(9, value)) for name, value in drawn_inputs(Scene.load("bounce")).items()}
-    laws["rack"][7, 0] = np.nan
+    if wrong is None:
+        del laws["rack"]
+    else:
+        laws["rack"][7, 0] = wrong
     with pytest.raises(NoAnswer, match="rack") as caught:
         cut(plain_car("bounce")).series(laws)
-    assert caught.value.instant == 7
+    assert caught.value.instant == (None if wrong is None else 7)
 
 
 def parallelogram(apart: float) -> Any:
