@@ -326,20 +326,17 @@ class _Compiler:
             return through, self.directions[along]
         return through, self._line(f"slide {slide!r}", through, along)[0]
 
-    def _on_slide(self, slide: str, point: str) -> str:
-        """Owner of the rows that hold a point on a slide."""
-        return f"slide {slide}" + (f" at {point}" if len(self.slides[slide]["points"]) > 1 else "")
-
     def _slide(self, name: str) -> None:
         """Put points on a line; with `turns` false, a body with two of them does not turn about it."""
         slide, what = self.slides[name], f"slide {name!r}"
-        body, points = slide["body"], slide["points"]
+        body, points = slide["body"], tuple(slide["points"])
         one_of(f"the body of {what}", self.named, body)
         through, along = self._line_of(name)
         one_of(f"a point of {what}", self.points, *points)
         frame = frame_about(along)
         for point in points:
-            label, owners = self._on_slide(name, point), self._holders(point)
+            label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
+            owners = self._holders(point)
             held = self._other_than(body, point, what) if owners else self._held(point)[0]
             self._meet(label, (body, through), (held, point), frame[:2])
             # The force on a point of no body is reported if a rod at an angle to the slide pulls it.
@@ -347,19 +344,21 @@ class _Compiler:
             felt = len(owners) == 1 or (not owners and any(not {*ends} <= {*points} for ends in rods))
             if felt and slide["turns"] and self.guided.count(point) == 1:
                 self.reported[point,] = label, self._felt_by(held, body) if owners else held
-        if not slide["turns"]:
-            guided = {one: [p for p in points if p in own] for one, own in self.named.items() if one != body}
-            second = next((one for one, own in guided.items() if len(own) > 1), None)
-            if second is None:
-                raise DescriptionError(
-                    f"{what} has turns = false, and no two of its points {points} are of one body: "
-                    "leave `turns` out, or put a second point of the body on the line",
-                    name,
-                )
-            own = self._line(what, *guided[second][:2])[0]
-            own = -own if float(own @ along) < 0.0 else own
-            x = turned_least(f"{what} of {second}", frame, own)[0]
-            self._across(f"slide {name} of {second}", body, second, frame[1], x)
+        if slide["turns"]:
+            return
+        for second, names in self.named.items():
+            guided = [point for point in points if point in names]
+            if second != body and len(guided) > 1:
+                own = self._line(what, *guided[:2])[0]
+                own = -own if float(own @ along) < 0.0 else own
+                x = turned_least(f"{what} of {second}", frame, own)[0]
+                self._across(f"slide {name} of {second}", body, second, frame[1], x)
+                return
+        raise DescriptionError(
+            f"{what} has turns = false, and no two of its points {list(points)} are of one body: "
+            "leave `turns` out, or put a second point of the body on the line",
+            name,
+        )
 
     def _rod(self, name: str, ends: tuple[str, ...]) -> None:
         if len(ends) != 2:
@@ -379,7 +378,7 @@ class _Compiler:
             case {"travel": slides}:
                 self._slides(name, slides, 1.0)
             case {"steers": slides}:
-                self._steers(name, slides)
+                self._slides(name, slides, self._travel_per_radian(name))
             case {"height": point}:
                 one_of(f"the point of {what}", self.points, point)
                 body = self._other_than(CHASSIS, point, what)
@@ -404,8 +403,8 @@ class _Compiler:
 
     def _turn(self, name: str, first: str, second: str, axis: Array, turns: str = "") -> None:
         """An input that is the rotation of one body against another, from the drawing."""
-        across = frame_about(axis)[1]
-        row = self._row(name, "turn", (first, across), (second, across), axis)
+        x, y, _ = frame_about(axis)
+        row = self._row(name, "turn", (first, NOTHING), (second, -y), x)
         self.inputs.append(Input(row, name, 1.0, 0.0, turns=turns))
 
     def _angle(self, name: str, body: str, given: Mapping[str, Any]) -> None:
@@ -433,8 +432,8 @@ class _Compiler:
         row = self._row(name, "angle", (CHASSIS, NOTHING), (body, factor * along), way)
         self.inputs.append(Input(row, name, factor, drawn))
 
-    def _steers(self, name: str, slides: Sequence[str]) -> None:
-        """An input that is an angle of the steering wheel, which drives slides."""
+    def _travel_per_radian(self, name: str) -> float:
+        """Travel of the rack per radian of the steering wheel, mm."""
         per_turn = self.of.get("rack_per_turn")
         if not is_number(per_turn) or not per_turn:
             raise DescriptionError(
@@ -443,9 +442,9 @@ class _Compiler:
                 name,
                 per_turn,
             )
-        self._slides(name, slides, float(per_turn) / math.tau)
+        return float(per_turn) / math.tau
 
-    def _slides(self, name: str, slides: Sequence[str], per_unit: float) -> None:
+    def _slides(self, name: str, slides: Iterable[str], per_unit: float) -> None:
         """An input that drives slides, by `per_unit` mm per unit of its value."""
         one_of(f"a slide of input {name!r}", self.slides, *slides)
         for slide in slides:
@@ -453,8 +452,7 @@ class _Compiler:
             second, (through, way) = self._other_than(body, point, f"slide {slide!r}"), self._line_of(slide)
             row = self._row(name, "offset", (body, through), (second, point), way)
             drawn = float(way @ (self.points[point] - self.points[through])) / per_unit + 0.0
-            driven = Input(row, name, per_unit / self.size, drawn, per_unit, self._on_slide(slide, point))
-            self.inputs.append(driven)
+            self.inputs.append(Input(row, name, per_unit / self.size, drawn, steers=per_unit))
 
     def _contact(self, name: str, ends: Sequence[str], given: Mapping[str, Any]) -> None:
         inner, centre = ends

@@ -8,10 +8,12 @@ import numpy as np
 
 from absolute.errors import DescriptionError
 from absolute.model import CAR, ROLES, Corner
-from absolute.vectors import Array
+from absolute.vectors import EPS, Array
 
 # Products of three vectors between points below this limit, mm^3, are normal numbers.
 LARGEST_COORDINATE = 1e100
+# Error of a product of directions that were rotated in doubles.
+ROUNDED = 16.0 * EPS
 # Largest error of the right angle between `up` and `right`, rad: more than rounding.
 LARGEST_SKEW = 1e-6
 SIDES = ("left", "right")
@@ -130,8 +132,14 @@ def point_of(name: str, value: object) -> Array:
 
 
 def unit_of(name: str, vector: Array) -> Array:
-    """The direction of a vector; DescriptionError if it is zero."""
+    """The direction of a vector; a vector of length 1 to rounding is returned as it is.
+
+    Raises:
+        DescriptionError: it is zero.
+    """
     largest = float(np.abs(vector).max())
+    if largest < 2.0 and abs(float(vector @ vector) - 1.0) <= ROUNDED:
+        return vector
     if largest == 0:
         raise DescriptionError(
             f"{name} is {vector.tolist()}; a direction must not be zero", name, vector.tolist()

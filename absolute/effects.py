@@ -17,6 +17,7 @@ In the plane through c of a horizontal h and up, the knuckle's points move about
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -53,13 +54,11 @@ class Effect:
         value: motion at a wheel -> (N,); for an axle, motions at the left and the right wheel -> (N,).
         by: the input of each wheel by which it takes derivatives: "rack", the travel of a slide; "travel",
             the other input; "roll", the one that rolls the chassis; "time", all as they move; "" for none.
-        parts: the parts of a mechanism whose wheels it needs.
     """
 
     unit: str
     value: Callable[..., Array]
     by: str = ""
-    parts: tuple[str, ...] = ()
 
 
 def _of_line(role: str, number: Callable[..., Dual]) -> Number:
@@ -116,15 +115,17 @@ def damper_length(motion: Motion) -> Dual:
     return hypot(*motion.line(*motion.corner.need("damper")))
 
 
-def _at_wheel(motion: Motion, axis: Dual, to_centre: Number, beyond: Number | None = None) -> Dual:
-    """Components of the level vector from an axis to the wheel centre, or to a point `beyond` it, (3, N)."""
-    point = motion.components(to_centre(motion) + beyond(motion) if beyond else to_centre(motion))
+def _level_with(axis: Dual, point: Dual) -> Dual:
+    """Vector to a point from the axis at the same height; `point` counts from any point of the axis."""
     return point - axis * (point[UP] / axis[UP])
 
 
+def _at_wheel(motion: Motion, axis: Dual, to_centre: Number) -> Dual:
+    return _level_with(axis, motion.components(to_centre(motion)))
+
+
 def _at_ground(motion: Motion, axis: Dual, to_centre: Number) -> Dual:
-    """Components of the level vector from an axis to the contact point, (3, N)."""
-    return _at_wheel(motion, axis, to_centre, contact)
+    return _level_with(axis, motion.components(to_centre(motion) + contact(motion)))
 
 
 def mechanical_trail(motion: Motion, axis: Dual, to_centre: Number) -> Dual:
@@ -354,19 +355,25 @@ OF_RACK: Mapping[str, tuple[str, Values]] = {
 }
 
 
+def _values(number: Number, by: str) -> Values:
+    """A number, or its derivative: per mm of travel, per mm of the slide or per rad of roll while all else is
+    held; or per second, while everything moves."""
+
+    def of(motion: Motion) -> Array:
+        found = number(motion)
+        if not by:
+            return found.value
+        slope = _slope(motion, found, by)
+        return _per_travel(motion, slope) if by == "travel" else slope
+
+    return of
+
+
 def _with_gradients(name: str, unit: str, number: Number) -> dict[str, Effect]:
-    """A number, and its derivatives: per mm of travel, per mm of the slide or per rad of roll while all else
-    is held; and per second, while everything moves."""
-
-    def gradient(by: str) -> Values:
-        def of(motion: Motion) -> Array:
-            slope = _slope(motion, number(motion), by)
-            return _per_travel(motion, slope) if by == "travel" else slope
-
-        return of
-
-    gradients = {f"{name}_by_{by}": Effect(f"{unit}/{of}", gradient(by), by) for by, of in GRADIENTS.items()}
-    return {name: Effect(unit, lambda motion: number(motion).value)} | gradients
+    gradients = {
+        f"{name}_by_{by}": Effect(f"{unit}/{of}", _values(number, by), by) for by, of in GRADIENTS.items()
+    }
+    return {name: Effect(unit, _values(number, ""))} | gradients
 
 
 def _apart(left: Motion, right: Motion) -> Array:
@@ -449,23 +456,30 @@ AXLE_EFFECTS: Mapping[str, Effect] = {
 }
 
 
-def effects_in(model: Model) -> dict[str, Effect]:
+class Asked(NamedTuple):
+    """An effect, and the parts of the mechanism whose wheels it needs."""
+
+    effect: Effect
+    parts: tuple[str, ...]
+
+
+def effects_in(model: Model) -> dict[str, Asked]:
     """All effects of a model by name: `NAME` of EFFECTS, or `PART.NAME` in a mechanism with parts; and those
     of AXLE_EFFECTS if it has two parts on opposite sides. Some may need roles or car data that it has not.
     """
     found = {
-        f"{part}.{name}" if part else name: replace(effect, parts=(part,))
+        f"{part}.{name}" if part else name: Asked(effect, (part,))
         for part in model.corners
         for name, effect in EFFECTS.items()
     }
     sides = {corner.side: part for part, corner in model.corners.items()}
     if len(sides) == len(model.corners) == 2:
         parts = (sides["left"], sides["right"])
-        found |= {name: replace(effect, parts=parts) for name, effect in AXLE_EFFECTS.items()}
+        found |= {name: Asked(effect, parts) for name, effect in AXLE_EFFECTS.items()}
     return found
 
 
-def effects_of(names: Sequence[str], model: Model) -> tuple[dict[str, Effect], dict[tuple[str, str], str]]:
+def effects_of(names: Sequence[str], model: Model) -> tuple[dict[str, Asked], dict[tuple[str, str], str]]:
     """The effects with these names; and (part, "travel", "rack" or "roll") -> the value of the input by which
     they take derivatives.
 
@@ -479,25 +493,25 @@ def effects_of(names: Sequence[str], model: Model) -> tuple[dict[str, Effect], d
             raise InputError(f"there is no effect {name!r}; it must be one of {list(known)}", name, name)
     found = {name: known[name] for name in names}
     inputs = {
-        (part, effect.by): model.input_of(part, effect.by, f"effect {name!r}")
-        for name, effect in found.items()
-        for part in effect.parts
-        if effect.by not in ("", TIME)
+        (part, of.effect.by): model.input_of(part, of.effect.by, f"effect {name!r}")
+        for name, of in found.items()
+        for part in of.parts
+        if of.effect.by not in ("", TIME)
     }
     return found, inputs
 
 
-def numbers_of(effects: Mapping[str, Effect], motion: Motion) -> dict[str, Array]:
+def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]:
     """name -> (N,) for a motion.
 
     Raises:
         DescriptionError: an effect needs a role, a wheel radius or car data that the mechanism has not.
     """
     numbers: dict[str, Array] = {}
-    for name, effect in effects.items():
+    for name, asked in effects.items():
         try:
             with np.errstate(all="ignore"):
-                numbers[name] = effect.value(*(replace(motion, part=part) for part in effect.parts))
+                numbers[name] = asked.effect.value(*(replace(motion, part=part) for part in asked.parts))
         except DescriptionError as error:
             raise DescriptionError(f"effect {name!r} {error}", error.name) from None
     return numbers

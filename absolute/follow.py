@@ -6,7 +6,6 @@ solved first.
 """
 
 import math
-from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import partial
 
@@ -188,14 +187,21 @@ def _refusal(
     # Change of the targets at the end of the straight path.
     change = mechanism.targets(blocked.reached, goal - start)[1]
     limit = limiting_input(mechanism, pose, change[mechanism.joint_rows :])
-    condition, residual = float(pose.condition[0]), float(pose.residual[0]) * mechanism.model.size
-    message = (
-        f"instant {instant}: {asked} cannot be solved; going there the mechanism locks at {where} "
-        f"({limited_by(limits)}condition number about {condition:.3g}, at most {1 / SMALLEST_RCOND:.3g} "
-        f"allowed; rows closed to {residual:.3g} mm). Keep the inputs inside that limit ({limit!r} meets it) "
-        "or reach them by another sequence of instants"
-    )
-    return PoseError(message, instant, wanted, reached, condition, limits, limit)
+    condition = float(pose.condition[0])
+    near = f"{limited_by(limits)}condition number about {condition:.3g}"
+    if np.allclose(blocked.reached, goal, rtol=SMALLEST_RCOND, atol=0):
+        message = (
+            f"{asked} is a singular pose ({near}, at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and "
+            "branch are not determined there; stay away from the limit of the motion"
+        )
+    else:
+        residual = float(pose.residual[0]) * mechanism.model.size
+        message = (
+            f"{asked} cannot be reached; going there the mechanism locks at {where} ({near}, rows still "
+            f"closed to {residual:.3g} mm). Keep the inputs inside that limit ({limit!r} meets it), or reach "
+            "them by another sequence of instants"
+        )
+    return PoseError(f"instant {instant}: {message}", instant, wanted, reached, condition, limits, limit)
 
 
 def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:
@@ -210,12 +216,15 @@ def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:
     rows, (left, strengths, _) = min(blocks, key=lambda found: float(found[1][1][-1] / found[1][1][0]))
     if not strengths[-1] <= LARGEST_SHARE * strengths[0]:
         return ()
-    forces = Counter[str]()
+    forces: dict[str, float] = {}
     for row, force in zip(rows.tolist(), left[:, -1].tolist(), strict=True):
         if row < mechanism.joint_rows:
-            forces[mechanism.stack.owners[row]] += force * force
+            owner = mechanism.stack.owners[row]
+            forces[owner] = forces.get(owner, 0.0) + force * force
     least = SMALLEST_FORCE**2 * max(forces.values(), default=0.0)
-    return tuple(owner for owner, force in forces.most_common() if force >= least)
+    return tuple(
+        sorted((owner for owner in forces if forces[owner] >= least), key=lambda owner: -forces[owner])
+    )
 
 
 def limiting_input(mechanism: Mechanism, pose: Configurations, change: Array) -> str:

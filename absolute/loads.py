@@ -50,17 +50,22 @@ def forces(mechanism: Mechanism, motion: Motion) -> dict[str, dict[str, Array]]:
         found = solved(jacobian.swapaxes(1, 2), acting)[..., 0]
         found[~(np.linalg.cond(jacobian, 1) * SMALLEST_RCOND <= 1.0)] = np.nan
 
+    def place(point: str) -> Array:
+        body = model.holders[point]
+        return np.asarray(placed.origin[:, body] + np.matvec(placed.rotation[:, body], model.arms[point]))
+
     joints, thrusts = {}, {}
     for points, (owner, body) in model.reported_joints.items():
         own = [number for number, row in enumerate(rows) if row.owner == owner]
         second = rows[own[0]].second
-        own += [n for n, drive in enumerate(model.inputs, len(model.joints)) if drive.slide == owner]
+        if len(own) == 2:  # a point on a slide
+            own += _travels_of(model, rows[own[0]])
         pushed = found[:, own, None] * (-1.0 if second == model.numbers[body] else 1.0)
         force = (pushed[:, :3] * along[:, own[:3]]).sum(axis=1)
         if len(points) == 1:
             joints[points[0]] = force
             continue
-        start, end = (motion.place(point).value.T / model.size for point in points)
+        start, end = map(place, points)
         line = (end - start) / np.sqrt(np.vecdot(end - start, end - start))[:, None]
         meeting = placed.origin[:, second] + second_arm[:, own[0]]
         moment = (pushed[:, 3:] * cross(second_arm[:, own[3:]], along[:, own[3:]])).sum(axis=1)
@@ -80,6 +85,19 @@ def _loaded_rows(model: Model) -> list[Row]:
         moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,")
         driven[values.index(moving)] = damper
     return [*model.joints, *driven]
+
+
+def _travels_of(model: Model, slide: Row) -> list[int]:
+    """Numbers of the inputs' rows that are the travel of the same point on the same line as a slide's row."""
+
+    def points(row: Row) -> list[float]:
+        return [row.first, row.second, *row.first_arm, *row.second_arm]
+
+    return [
+        number
+        for number, drive in enumerate(model.inputs, len(model.joints))
+        if drive.steers and points(drive.row) == points(slide)
+    ]
 
 
 def _require_determined(mechanism: Mechanism) -> None:

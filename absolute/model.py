@@ -40,9 +40,9 @@ class Row(NamedTuple):
 
     Attributes:
         kind: "angle", "offset", "distance" or "turn".
-        along: a; for a turn, its axis; zero for a distance.
-        first_arm, second_arm: r1 and r2; for a right angle, zero and the partner direction; for a turn, the
-            directions that it compares.
+        along: a; for a turn, x; zero for a distance.
+        first_arm, second_arm: r1 and r2; for a right angle, zero and the partner direction; for a turn, zero
+            and -y.
         drawn: the value that a joint keeps: 0, or the drawn distance.
     """
 
@@ -63,7 +63,6 @@ class Input(NamedTuple):
         value: name of the value, which several rows may share; mm or rad.
         drawn: the value in the drawing.
         steers: travel of the slide per unit of the value, mm; 0 if the input drives no slide.
-        slide: owner of the rows that hold the point that it drives along its slide, "" if it drives none.
         turns: direction of the line about which it turns the whole car, "" if it does not.
         over_ground: whether it is a height over the ground, which displacements of the car change.
     """
@@ -73,7 +72,6 @@ class Input(NamedTuple):
     factor: float
     drawn: float
     steers: float = 0.0
-    slide: str = ""
     turns: str = ""
     over_ground: bool = False
 
@@ -181,12 +179,14 @@ class Model:
         """
         others = tuple(f"{other}." for other in self.corners if other != part)
         held = [drive for drive in self.inputs if not drive.turns and not drive.value.startswith(others)]
-        if by == "roll":
-            kind = "rolls the chassis"
-            fitting = [drive for drive in self.inputs if drive.turns in ("forward", "rearward")]
-        else:
-            kind = "is the travel of a slide" if by == "rack" else "is not the travel of a slide"
-            fitting = [drive for drive in held if bool(drive.steers) == (by == "rack")]
+        kind, fitting = {
+            "travel": ("is not the travel of a slide", [drive for drive in held if not drive.steers]),
+            "rack": ("is the travel of a slide", [drive for drive in held if drive.steers]),
+            "roll": (
+                "rolls the chassis",
+                [drive for drive in self.inputs if drive.turns in ("forward", "rearward")],
+            ),
+        }[by]
         found = list(dict.fromkeys(drive.value for drive in fitting))
         if len(found) != 1:
             own = list(dict.fromkeys(drive.value for drive in held))

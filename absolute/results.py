@@ -1,7 +1,7 @@
 """Points, bodies and lines of a solved motion, from the poses and rates of its bodies."""
 
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,27 +11,19 @@ from absolute.solution import Solution
 from absolute.vectors import EPS, Array, Counts, carried, cross
 
 
-@dataclass(frozen=True)
-class Motion:
-    """Bodies of a model at N instants, in units of size, before the car is displaced.
-
-    Places are measured from the middle of the drawing, so that the distance of the car from its origin costs
-    only the rounding of the last sum. Rates are zero for the standing body, and those of the motion for all
-    bodies if they were not asked for.
+class Instants(NamedTuple):
+    """Results at N instants, in units of size.
 
     Attributes:
-        by: part, and "travel", "rack" or "roll", of the K inputs by which effects take derivatives; the
-            derivatives by time follow these.
         rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), the standing body first.
         slopes: (N, K + 1, bodies, 2, 3) velocities [o', w] of the bodies for a unit rate of one input each,
             then as they move.
         higher: (N, R - 1, bodies, 2, 3) accelerations [o'', w'] and higher rates of the bodies.
         residual, condition, corrections: (N,) as in `Configurations`.
-        part: the part whose wheel is used.
+
+    Rates are zero for the standing body, and those of the motion for all bodies if they were not asked for.
     """
 
-    model: Model
-    by: tuple[tuple[str, str], ...]
     rotation: Array
     origin: Array
     slopes: Array
@@ -39,7 +31,28 @@ class Motion:
     residual: Array
     condition: Array
     corrections: Counts
-    part: str = field(default="", kw_only=True)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Bodies of a model at N instants for effects and loads, in mm, before the car is displaced.
+
+    Places are measured from the middle of the drawing, so that the distance of the car from its origin costs
+    only the rounding of the last sum.
+
+    Attributes:
+        rotation, origin, slopes: as in `Instants`, in units of size.
+        by: part, and "travel", "rack" or "roll", of the K inputs by which effects take derivatives; the
+            derivatives by time follow these.
+        part: the part whose wheel is used.
+    """
+
+    model: Model
+    rotation: Array
+    origin: Array
+    slopes: Array
+    by: tuple[tuple[str, str], ...] = ()
+    part: str = ""
 
     @property
     def corner(self) -> Corner:
@@ -96,15 +109,14 @@ class Motion:
         return Dual(turned.T, cross(self.slopes[:, :, body, 1], turned[:, None]).transpose(2, 0, 1))
 
 
-def solution_of(found: Motion, displaced: Array, rates: bool, **asked: Any) -> Solution:
+def solution_of(model: Model, found: Instants, displaced: Array, rates: bool, **asked: Any) -> Solution:
     """The solution in mm, with the requested effects and forces by name.
 
     Args:
         displaced: (N, 1 + R, 3) displacement of the car and its rates, mm and s.
     """
-    model = found.model
     moving = np.concatenate((found.slopes[:, -1:], found.higher), 1) if rates else found.higher[:, :0]
-    states = [dict(zip(model.points, of, strict=True)) for of in _points(found, moving, displaced)]
+    states = [dict(zip(model.points, of, strict=True)) for of in _points(model, found, moving, displaced)]
     # Without rates, all rates are empty.
     position, velocity, acceleration, *higher = states if rates else (*states, {}, {})
     spins = [{n: moving[:, order, model.numbers[n], 1] for n in model.reported if rates} for order in (0, 1)]
@@ -127,9 +139,9 @@ def solution_of(found: Motion, displaced: Array, rates: bool, **asked: Any) -> S
     )
 
 
-def _points(found: Motion, moving: Array, displaced: Array) -> Array:
+def _points(model: Model, found: Instants, moving: Array, displaced: Array) -> Array:
     """(1 + R, P, N, 3) all points and their rates, mm and s, from the rates of the bodies."""
-    model, (body, arms) = found.model, found.model.held()
+    body, arms = model.held()
     arm = np.matvec(found.rotation[:, body].swapaxes(0, 1), arms[:, None])
     state = np.empty((1 + moving.shape[1], *arm.shape))
     state[0] = found.origin[:, body].swapaxes(0, 1) + arm

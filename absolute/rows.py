@@ -8,13 +8,14 @@ from the origins (for a right angle: zero and the partner direction), a row has 
 Arms are rotated directly: differences of points far from the origin would lose digits.
 
 A distance |e| is such a row with a = e / |e|. It has the same rate, since a' is normal to e.
-The turn t about a common axis z, from y of the first body to y2 of the second, both normal to z, has
-cos t = y . y2 and sin t = z . (y x y2). Its rate is z . (w2 - w1). Its value is known up to whole turns:
-`gap` takes the nearest.
+The turn t of axes x, y of the first body to x2, y2 of the second, about a common third axis, has
+cos t = y . y2 and sin t = -x . y2. Its rate is that of the right angle -(x cos t + y sin t) . y2, which is 0
+there with t held. Its value is known up to whole turns: `gap` takes the nearest.
 
 A row's rate of order n with zero body rates of that order is the n-th derivative of a . e by the product
 rule: a, r1 and r2 turn with their bodies, e = o2 + r2 - o1 - r1. The rate of a distance l follows from l l =
-e . e, and that of a turn from t' = z . (w2 - w1).
+e . e, and that of a turn from t' = z . (w2 - w1), z the common axis. (The change of t is also an arcsine of a
+. e, but the rounding of its derivatives grows with the factorial of the order.)
 """
 
 from collections.abc import Iterable, Sequence
@@ -40,7 +41,7 @@ class Placed(NamedTuple):
 
     Attributes:
         rotation, origin: (..., bodies, 3, 3) and (..., bodies, 3) poses of the bodies.
-        vectors: (..., 3, rows, 3) a, r1 and r2 of every row; z, y and y2 of a turn. e: (..., rows, 3).
+        vectors: (..., 3, rows, 3) a, r1 and r2 of every row. e: (..., rows, 3).
         values: (..., rows) a . e; for turns the angle between -pi and pi.
     """
 
@@ -73,12 +74,21 @@ class RowStack:
         vectors = np.array([(row.along, row.first_arm, row.second_arm) for row in rows])
         self._local = vectors.reshape(-1, 3, 3).swapaxes(0, 1)
         self._holders = np.array((self.first, self.first, self.second))
+        # Vectors grouped by body, to be rotated by one product, and the index of each vector afterwards.
+        own = [np.flatnonzero(self._holders == body) for body in range(bodies)]
+        self._beside, places = np.zeros((bodies, 3, max(map(len, own)))), np.zeros(3 * self.count, np.intp)
+        for body, numbers in enumerate(own):
+            self._beside[body, :, : len(numbers)] = self._local.reshape(-1, 3)[numbers].T
+            places[numbers] = self._beside[0].size * body + np.arange(len(numbers))
+        read = places[:, None] + self._beside.shape[2] * np.arange(3)
+        self._read = read.reshape(3, self.count, 3)
         self._distances, self._turns = (
             indices(number for number, row in enumerate(rows) if row.kind == kind)
             for kind in ("distance", "turn")
         )
-        self._offset = np.array([float(row.kind in ("offset", "distance")) for row in rows])
-        self._offsets = self._offset[:, None]
+        # Repeated to the width of the vectors that it multiplies: broadcasting takes longer.
+        offset = [float(row.kind in ("offset", "distance")) for row in rows]
+        self._offset, self._offsets = np.array(offset), np.repeat(np.reshape(offset, (-1, 1)), 3, axis=1)
         # Largest sum of a row's terms, without the distances of the origins.
         self._spans = np.sqrt(np.vecdot(self._local[1:], self._local[1:])).sum(axis=0)
         # Index of each entry of the Jacobian among the four vectors of a row's rate, row by row, and a zero.
@@ -91,22 +101,29 @@ class RowStack:
 
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Evaluate rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
-        vectors = np.matvec(rotation.take(self._holders, -3), self._local)
+        turned = rotation @ self._beside
+        vectors = turned.reshape(*turned.shape[:-3], self._beside.size).take(self._read, -1)
         a, r1, r2 = (vectors[..., kind, :, :] for kind in range(3))
         e = self._offsets * (origin.take(self.second, -2) - origin.take(self.first, -2)) + (r2 - r1)
         if self._distances.size:
             along = e[..., self._distances, :]
             a[..., self._distances, :] = along / np.sqrt(np.vecdot(along, along))[..., None]
+        if self._turns.size:
+            x, y2 = a[..., self._turns, :], -e[..., self._turns, :]
+            y = np.matvec(rotation.take(self.first[self._turns], -3), -self._local[2, self._turns])
+            cosine, sine = np.vecdot(y, y2), -np.vecdot(x, y2)
+            level = cosine[..., None] * x + sine[..., None] * y
+            a[..., self._turns, :] = level / np.hypot(cosine, sine)[..., None]
         values = np.vecdot(a, e)
         if self._turns.size:
-            z, y, y2 = (each[..., self._turns, :] for each in (a, r1, r2))
-            values[..., self._turns] = np.arctan2(np.vecdot(z, cross(y, y2)), np.vecdot(y, y2))
+            values[..., self._turns] = np.arctan2(sine, cosine)
         return Placed(rotation, origin, vectors, e, values)
 
     def gap(self, placed: Placed, target: Array) -> Array:
         """(..., rows) target minus value; for turns the nearest of all equivalent targets."""
         gap: Array = target - placed.values
-        gap[..., self._turns] -= WHOLE_TURN * np.round(gap[..., self._turns] / WHOLE_TURN)
+        if self._turns.size:
+            gap[..., self._turns] -= WHOLE_TURN * np.round(gap[..., self._turns] / WHOLE_TURN)
         return gap
 
     def owners_of(self, rows: Iterable[int]) -> tuple[str, ...]:
@@ -133,11 +150,9 @@ class RowStack:
     def jacobian(self, placed: Placed) -> Array:
         """The Jacobian, (..., rows, unknowns)."""
         a, r1, r2 = (placed.vectors[..., kind, :, :] for kind in range(3))
-        push, turn, other = self._offsets * a, cross(a, r1 + placed.e), cross(r2, a)
-        axis = a[..., self._turns, :]
-        turn[..., self._turns, :], other[..., self._turns, :] = -axis, axis
+        push = self._offsets * a
         none = np.zeros((*a.shape[:-2], 1, 3))
-        entries = np.concatenate((-push, turn, push, other, none), -2)
+        entries = np.concatenate((-push, cross(a, r1 + placed.e), push, cross(r2, a), none), -2)
         matrix: Array = entries.reshape(*a.shape[:-2], 12 * self.count + 3).take(self._source, -1)
         return matrix
 
@@ -164,9 +179,12 @@ class RowStack:
         if self._distances.size:
             drift[..., self._distances] = _of_length([e[..., self._distances, :] for e in apart])
         if self._turns.size:
-            spins = [(each[..., 2, :, 1, :] - each[..., 1, :, 1, :])[..., self._turns, :] for each in held]
-            axes = [each[..., self._turns, :] for each in along[:order]]
-            drift[..., self._turns] = _product(axes, [*spins, 0.0 * axes[0]], order - 1)
+            first, second = self.first[self._turns], self.second[self._turns]
+            level = placed.vectors[..., 0, self._turns, :]
+            axis = -cross(level, placed.e[..., self._turns, :])
+            axes = carried(axis, [rate.take(first, -3)[..., 1, :] for rate in rates], order)
+            spins = [(rate.take(second, -3) - rate.take(first, -3))[..., 1, :] for rate in rates]
+            drift[..., self._turns] = _product(axes, [*spins, 0.0 * axis], order - 1)
         return drift
 
 

@@ -2,8 +2,6 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +14,7 @@ from absolute.loads import forces
 from absolute.mechanism import Mechanism
 from absolute.model import Model
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates
-from absolute.results import Motion, solution_of
+from absolute.results import Instants, Motion, solution_of
 from absolute.solution import Solution
 from absolute.vectors import EPS, Array
 
@@ -127,7 +125,7 @@ class Assembled:
         """The motion for inputs at N instants; arguments and errors as for `solve`."""
         model, mechanism = self.model, self._mechanism
         asked, by = effects_of(effects, model)
-        rated = rates or any(effect.by == TIME for effect in asked.values())
+        rated = rates or any(one.effect.by == TIME for one in asked.values())
         series = _series({*mechanism.values, *model.moves}, inputs)
         # Rows with the same value have a column each.
         columns = np.zeros((0, 3, 0))
@@ -139,11 +137,11 @@ class Assembled:
         followed = self._followed(columns, rated, tuple(by.values()))
 
         def solution(count: int | None = None) -> Solution:
-            arrays = (np.concatenate(parts)[:count] for parts in zip(*runs, strict=True))
-            motion = Motion(model, tuple(by), *arrays)
+            found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
+            motion = Motion(model, *found[:3], tuple(by))
             loaded = forces(mechanism, motion) if loads else {}
-            moved, numbers = displaced[: len(motion.residual)], numbers_of(asked, motion)
-            return solution_of(motion, moved, rates, effects=numbers, **loaded)
+            moved, numbers = displaced[: len(found.residual)], numbers_of(asked, motion)
+            return solution_of(model, found, moved, rates, effects=numbers, **loaded)
 
         with np.errstate(over="ignore", invalid="ignore"):
             runs = [next(followed)]
@@ -156,25 +154,20 @@ class Assembled:
                 raise
             whole = solution()
             # Accelerations overflow wherever rates do.
-            rates_of = [rate for of in whole.derivatives[2:] for rate in of.values()]
             finite = np.ones(len(columns), dtype=np.bool_)
-            finite = np.logical_and.reduce([finite, *(np.isfinite(rate).all(axis=1) for rate in rates_of)])
+            for rates_of in (whole.acceleration, *whole.higher):
+                for rate in rates_of.values():
+                    finite &= np.isfinite(rate).all(axis=1)
             if finite.all():
                 return whole
             bad = leading(finite)
-            found = {name: law[bad, 1:].tolist() for name, law in series.items()}
-            refused = InputError(
-                f"instant {bad}: the rates and accelerations of points overflow; those of the inputs "
-                f"are {found}: give smaller ones",
-                value=found,
-                instant=bad,
-            )
+            refused = _overflow(bad, {name: law[bad, 1:] for name, law in series.items()})
             refused.partial = solution(bad) if bad else None
             raise refused
 
-    def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Sequence[Any]]:
-        """The arrays of `Motion` for values (N, orders, values), with the velocities for unit rates of some
-        inputs: an empty run first, then one run after the other."""
+    def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Instants]:
+        """The instants of values (N, orders, values), with the velocities for unit rates of some inputs: an
+        empty run first, then one run after the other."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
         # For a slide, per unit of its travel, whatever value drives it.
@@ -182,7 +175,9 @@ class Assembled:
         per = np.array(steers + [1.0] * (series.shape[2] - len(steers)))
         named = np.array(mechanism.values)
         units = [mechanism.targets(series[:, 0], (named == value) / per)[1] for value in by]
-        for found in chain([self._drawn.part(slice(0))], through(mechanism, self._drawn, series[:, 0])):
+
+        def at(found: Configurations) -> tuple[Instants, NDArray[np.bool_]]:
+            """The results at some configurations, and whether left-out rows hold for all velocities."""
             rotation, origin = found.placed[:2]
             here = slice(done, done + len(origin))
             if rated:
@@ -195,10 +190,15 @@ class Assembled:
             for velocity in slopes.swapaxes(0, 1):
                 residual, followed = _of_rates(mechanism, found, velocity)
                 held &= followed
+            results = residual, found.condition, found.corrections
+            return Instants(rotation, origin, slopes, higher, *results), held
+
+        yield at(self._drawn.part(slice(0)))[0]
+        for found in through(mechanism, self._drawn, series[:, 0]):
+            instants, held = at(found)
             good = leading(held)
-            if good or not done:
-                arrays = rotation, origin, slopes, higher, residual, found.condition, found.corrections
-                yield [array[:good] for array in arrays]
+            if good:
+                yield Instants._make(part[:good] for part in instants)
             done += good
             if not held.all():
                 raise locked(mechanism, done, found.part(slice(good, good + 1)), series[done, 0].tolist())
@@ -208,7 +208,7 @@ def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, A
     """name -> (N, orders): value, rate, acceleration and any higher rates of every input.
 
     Raises:
-        InputError: an input is missing, unknown, of another shape, or not finite.
+        InputError: an input is missing, unknown, of another length, or not finite.
     """
     unknown, missing = sorted({*inputs} - {*names}), sorted({*names} - {*inputs})
     if unknown or missing:
@@ -220,21 +220,27 @@ def _series(names: Collection[str], inputs: Mapping[str, object]) -> dict[str, A
     orders = max([3, *(law.shape[1] for law in series.values() if law.ndim == 2)])
     count = len(next(iter(series.values()), ()))
     for name, law in series.items():
-        if law.shape != (count, orders):
+        if law.shape[1:] != (orders,):
             raise InputError(
-                f"{name!r} has shape {law.shape}; {(count, orders)} is needed: value, rate and acceleration "
-                "at each instant, and as many instants and higher rates as the other inputs have",
+                f"{name!r} has shape {law.shape}; {('N', orders)} is needed: value, rate and acceleration at "
+                "each instant, and as many higher rates as the other inputs have",
                 name,
                 law.shape,
             )
         instant = leading(np.asarray(np.isfinite(law).all(axis=1)))
-        if instant < count:
+        if instant < len(law):
             found = law[instant].tolist()
             raise InputError(
                 f"{name!r} is {found} at instant {instant}; all its numbers must be finite",
                 name,
                 found,
                 instant,
+            )
+        if len(law) != count:
+            raise InputError(
+                f"{name!r} has {len(law)} instants, the others have {count}; give all the same number",
+                name,
+                len(law),
             )
     return series
 
@@ -261,3 +267,17 @@ def _of_rates(
     allowed = LEFT_OUT * more_than_rounding(found.inverse) * speed
     # NaN passes here: overflow is reported elsewhere.
     return np.maximum(found.residual, missed), ~(rate > allowed)
+
+
+def _overflow(instant: int, rates: Mapping[str, Array]) -> InputError:
+    # Accelerations are of the order of squared speeds, and so on.
+    fastest = max(
+        rates, key=lambda name: max(abs(rate) ** (1.0 / d) for d, rate in enumerate(rates[name], 1))
+    )
+    return InputError(
+        f"instant {instant}: the rates and accelerations of points overflow; those of {fastest!r} are "
+        f"{rates[fastest].tolist()}: give smaller ones",
+        fastest,
+        rates[fastest].tolist(),
+        instant,
+    )
