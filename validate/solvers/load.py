@@ -29,9 +29,12 @@ def solver_at(place: str, with_traceback: bool = False) -> Solve:
     what = f"the solver {shown(place)!r}"
     module_name, _, name = place.partition(":")
     words = (*module_name.split("."), *name.split("."))
-    if module_name.endswith(".py") or not all(word.isidentifier() for word in words):
-        allowed = "give MODULE:NAME without .py, such as package.module:Solver"
-        raise UsageError(f"{what} is not a module and a name in it; {allowed}")
+    a_file = module_name.endswith(".py")
+    if a_file or not all(word.isidentifier() for word in words):
+        as_module = module_name.removesuffix(".py").strip("./").replace("/", ".")
+        hint = f"; try {as_module}:{name or 'NAME'}" if a_file else ""
+        allowed = "give MODULE:NAME, such as package.module:Solver"
+        raise UsageError(f"{what} is not a module and a name in it; {allowed}{hint}")
     with _kept_aside(with_traceback):
         found: object = _module(what, module_name)
         for word in name.split("."):
